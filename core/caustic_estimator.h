@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/bsdf.h"
+#include "core/scene.h"
+
+namespace caustics {
+
+/// A point of a receiver as a viewer sees it. Normals are on the viewer's side.
+struct ReceiverPoint {
+    Vec3 position;
+    Vec3 geometric_normal;  ///< unit
+    Vec3 shading_normal;    ///< unit
+    Vec3 wo;                ///< unit, away from the surface towards the viewer
+    Vec2 uv;
+    const Bsdf* bsdf = nullptr;  ///< of the receiver; not read by irradiance()
+    std::uint64_t id = 0;        ///< names the point's random numbers
+    float radius = 0;            ///< of the disc that `lighttrace` gathers over [m]
+};
+
+/// A value with its standard error (0 where the method has none to tell).
+struct Estimate {
+    Spectrum value = black();
+    Spectrum standard_error = black();
+};
+
+/// Counts by name, summed over threads in any order (they are whole numbers).
+using Counters = std::map<std::string, std::uint64_t>;
+
+/// A thread's scratch and counters. Made by the estimator; never shared between threads.
+class QueryContext {
+public:
+    virtual ~QueryContext() = default;
+    virtual void add_to(Counters&) const {}
+};
+
+/// What a built method holds.
+struct BuildReport {
+    std::uint64_t bytes = 0;  ///< of the built data
+    Counters counters;
+    /// Parameters the method chose by itself, by name (a maximum radius, say).
+    std::map<std::string, double> resolved;
+};
+
+/// The caustic layer of the camera's picture, for methods that connect light paths to the camera
+/// instead of answering at points. Row by row from the top.
+struct CameraLayer {
+    std::vector<Spectrum> radiance;
+    std::vector<Spectrum> standard_error;
+};
+
+/// How a build and a render are run. Both callbacks may be empty and are called from any thread;
+/// `progress` gets the done share of the current phase and may throw Interrupted.
+struct RunOptions {
+    std::uint64_t seed = 1;
+    int threads = 1;
+    int samples_per_pixel = 1;  ///< of the eye pass; 1 in `probe`
+    std::function<void(std::string_view)> begin_phase;
+    std::function<void(double)> progress;
+
+    void phase(std::string_view name) const {
+        if (begin_phase) begin_phase(name);
+    }
+    void report(double share) const {
+        if (progress) progress(share);
+    }
+};
+
+/// A built caustic method: radiance from light paths L S+ D only. Immutable: constructing it *is*
+/// the precompute pass, so no half-built state exists. Thread-safe; depends on nothing but the
+/// arguments and the built data.
+class CausticEstimator {
+public:
+    virtual ~CausticEstimator() = default;
+
+    virtual std::unique_ptr<QueryContext> make_context() const {
+        return std::make_unique<QueryContext>();
+    }
+    /// Radiance [W m^-2 sr^-1] leaving each receiver point along its `wo`. The points of a batch
+    /// are near each other, so that a method can share work.
+    virtual void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                          QueryContext& context) const = 0;
+    /// Irradiance [W m^-2] at the points, on the side of their geometric normals.
+    virtual void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                            QueryContext& context) const = 0;
+    /// The caustic layer of the scene's camera, or empty for a method that answers at points.
+    virtual std::optional<CameraLayer> camera_layer(const RunOptions&) const { return {}; }
+    /// Whether its values are unbiased samples, so that their scatter tells a standard error.
+    virtual bool is_statistical() const { return false; }
+    virtual BuildReport build_report() const { return {}; }
+};
+
+/// `none`: no caustic.
+struct NoneParams {};
+std::unique_ptr<const CausticEstimator> build(const Scene&, const NoneParams&, const RunOptions&);
+
+}  // namespace caustics

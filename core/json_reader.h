@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace caustics {
+
+/// A value of a JSON document with its place, read strictly: every access says what it expects,
+/// every key of an object must be asked for, and what does not fit throws InputError as
+/// "file: /pointer: reason (alternatives)". Cheap to copy; keeps the document alive.
+class JsonNode {
+public:
+    /// Parses a file; duplicate keys are errors. `{"$include": "file.json"}` is replaced by that
+    /// file's content (paths relative to the including file) and errors name the included file.
+    static JsonNode parse_file(const std::filesystem::path& file);
+    /// Parses text that did not come from a file; `origin` stands for the file in messages.
+    static JsonNode parse_text(const std::string& text, const std::string& origin);
+
+    /// Replaces the value at a JSON pointer ("/water/resolution"), or adds the last key of it to
+    /// an existing object. `value` is JSON, or else taken as a string.
+    void set(const std::string& pointer, const std::string& value);
+
+    bool is_object() const;
+    bool is_array() const;
+    bool is_number() const;
+    bool is_string() const;
+    bool is_bool() const;
+
+    double as_number() const;  ///< finite
+    double as_number_in(double low, double high) const;
+    std::int64_t as_integer_in(std::int64_t low, std::int64_t high) const;
+    bool as_bool() const;
+    std::string as_string() const;
+    /// The index of the string among the choices.
+    std::size_t as_choice(const std::vector<std::string>& choices) const;
+    std::vector<double> as_numbers(std::size_t count) const;
+    std::vector<JsonNode> as_array() const;
+
+    /// The child of an object; marks the key as known whether present or not.
+    std::optional<JsonNode> find(const std::string& key) const;
+    /// As find, but the key must be there.
+    JsonNode at(const std::string& key) const;
+    /// The children not yet asked for, in the order of their keys; marks them.
+    std::vector<std::pair<std::string, JsonNode>> others() const;
+    /// Throws unless every key was asked for.
+    void finish() const;
+
+    [[noreturn]] void fail(const std::string& reason) const;
+    /// "file: /pointer"
+    std::string place() const;
+    /// The file this value was written in; relative names inside are relative to its folder.
+    std::filesystem::path file() const;
+    /// Canonical text: sorted keys, shortest round-trip numbers.
+    std::string canonical() const;
+
+private:
+    struct Document;
+    JsonNode(std::shared_ptr<Document> document, std::string pointer);
+    std::shared_ptr<Document> document_;
+    std::string pointer_;
+};
+
+}  // namespace caustics

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace caustics {
+
+/// Triangles with optional smooth vertex normals and texture coordinates.
+/// `normals` and `uvs` are either empty or as long as `positions`. Counter-clockwise triangles
+/// seen from the side of the geometric normal.
+struct TriangleMesh {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;  ///< unit; empty = shade with the geometric normal
+    std::vector<Vec2> uvs;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Turns every triangle and normal round.
+void flip(TriangleMesh& mesh);
+
+/// Applies an affine map to positions and, by the inverse transpose, to normals (kept unit);
+/// reverses the winding when the map mirrors, so that normals stay on their side.
+void transform(TriangleMesh& mesh, const Transform& to_world);
+
+}  // namespace caustics

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace caustics {
+
+/// Runs body(index, worker) for every index below `count` on up to `threads` threads; `worker` is
+/// below `threads` and no two bodies run with the same one at a time. The first exception is
+/// rethrown after all have stopped. oneTBB, or std::thread where built with CAUSTICS_STD_THREADS
+/// (ThreadSanitizer cannot see into the distribution's TBB).
+void parallel_for(int threads, std::size_t count,
+                  const std::function<void(std::size_t index, std::size_t worker)>& body);
+
+/// The number of threads to use by default: those the process may run on.
+int available_threads();
+
+}  // namespace caustics

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/caustic_estimator.h"
+#include "core/json_reader.h"
+
+namespace caustics {
+
+/// `lighttrace`: particles from the lights through the casters to a receiver, there connected to
+/// the pinhole (render) or gathered over a disc round the point (probe). Unbiased up to the disc's
+/// average; serves every light; cannot reach pixels that see the receiver through a specular
+/// surface.
+struct LightTraceParams {
+    std::uint64_t paths = 1'000'000;  ///< emitted, thinned ones included
+    int max_bounces = 16;             ///< specular events between light and receiver
+    double radius = 0;                ///< [m] of the disc in `probe` for points without their own
+};
+void read(const JsonNode& node, LightTraceParams& params);
+std::unique_ptr<const CausticEstimator> build(const Scene&, const LightTraceParams&,
+                                              const RunOptions&);
+
+}  // namespace caustics

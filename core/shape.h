@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/bsdf.h"
+#include "core/heightfield.h"
+#include "core/mesh.h"
+#include "core/spectrum.h"
+#include "core/vec.h"
+
+namespace caustics {
+
+/// The exact shapes, each in a fixed local frame (see tessellate.h), and `mesh`.
+enum class Primitive { rectangle, disk, sphere, cylinder, heightfield, mesh };
+
+/// A shape as the scene file says it, ready to be intersected.
+struct Shape {
+    std::string name;  ///< its key in the scene file, for messages
+    Primitive primitive = Primitive::rectangle;
+    SineHeightfield field;  ///< of a heightfield
+    TriangleMesh mesh;      ///< of a mesh: world frame, flips and to_world applied
+    Transform to_world = Transform::Identity();  ///< of an exact shape
+    bool flip_normals = false;                   ///< of an exact shape
+    Bsdf bsdf;
+    std::optional<Spectrum> radiance;  ///< emitted from the front side [W m^-2 sr^-1]
+};
+
+/// World-frame bounds.
+Box bounds(const Shape& shape);
+/// World-frame bounding sphere: centre and radius.
+struct BoundingSphere {
+    Vec3 centre = Vec3::Zero();
+    float radius = 0;
+};
+BoundingSphere bounding_sphere(const Shape& shape);
+/// Number of triangles; 0 for an exact shape.
+std::size_t triangle_count(const Shape& shape);
+
+/// Area sampling of emitters. Not for an exact heightfield.
+class AreaSampler {
+public:
+    explicit AreaSampler(const Shape& shape);
+    double area() const { return area_; }  ///< [m^2]
+
+    struct Sample {
+        Vec3 position;
+        Vec3 normal;  ///< unit geometric normal, front side
+    };
+    /// Uniform by area, pdf_a = 1 / area().
+    Sample sample(const Shape& shape, float u0, float u1) const;
+
+private:
+    double area_ = 0;
+    std::vector<double> cumulative_;  ///< of the triangles' areas, normalised
+};
+
+}  // namespace caustics

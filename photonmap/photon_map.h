@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/caustic_estimator.h"
+#include "core/json_reader.h"
+
+namespace caustics {
+
+/// `photonmap` [J96]: photons traced from the lights through the casters, stored 20 bytes each in
+/// a balanced kd-tree, radiance from the N nearest (eqs. 1-4).
+struct PhotonMapParams {
+    enum class Estimator {
+        unbiased,  ///< the outermost photon only sets the radius: mean (N-1)/(pi r_N^2)
+        raw        ///< eq. 4 as printed; reads high by N/(N-1) in a uniform field
+    };
+    std::uint64_t photons = 100'000;  ///< to store; 0 when `emitted` is given instead
+    std::uint64_t emitted = 0;        ///< to emit; 0 when `photons` is given
+    int nearest = 50;                 ///< N
+    double max_radius = 0;            ///< [m]; 0: chosen from the photons, told in the report
+    Estimator estimator = Estimator::unbiased;
+    int max_bounces = 16;
+};
+void read(const JsonNode& node, PhotonMapParams& params);
+std::unique_ptr<const CausticEstimator> build(const Scene&, const PhotonMapParams&,
+                                              const RunOptions&);
+
+}  // namespace caustics
