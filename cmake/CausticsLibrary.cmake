@@ -1,0 +1,113 @@
+# caustics_library, caustics_executable and caustics_test: one way to make a target.
+#
+# An item of DEPENDS or PRIVATE_DEPENDS is a folder's library (`core`, meaning caustics::core) or any
+# target that exists already (`embree`, `Eigen3::Eigen`). Sources are listed one by one.
+
+include(GoogleTest)
+
+set(CAUSTICS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion)
+# No fused multiply-add: the same bits from every build of the same source.
+set(CAUSTICS_COMPILE_OPTIONS -ffp-contract=off)
+set(CAUSTICS_LINK_OPTIONS "")
+if(CAUSTICS_SANITIZE)
+    list(APPEND CAUSTICS_COMPILE_OPTIONS "-fsanitize=${CAUSTICS_SANITIZE}"
+        -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    list(APPEND CAUSTICS_LINK_OPTIONS "-fsanitize=${CAUSTICS_SANITIZE}")
+endif()
+if(CAUSTICS_COVERAGE)
+    list(APPEND CAUSTICS_COMPILE_OPTIONS --coverage -fprofile-update=atomic)
+    list(APPEND CAUSTICS_LINK_OPTIONS --coverage)
+endif()
+
+# Sets `out` to the targets that the items name.
+function(caustics_resolve_targets out)
+    set(targets "")
+    foreach(item IN LISTS ARGN)
+        if(TARGET "caustics_${item}")
+            list(APPEND targets "caustics_${item}")
+        elseif(TARGET "${item}")
+            list(APPEND targets "${item}")
+        else()
+            message(FATAL_ERROR "${CMAKE_CURRENT_SOURCE_DIR}: no target called '${item}'")
+        endif()
+    endforeach()
+    set(${out} "${targets}" PARENT_SCOPE)
+endfunction()
+
+# Language, warnings, instrumentation and include root of one target of ours.
+function(caustics_configure_target target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
+    target_compile_options(${target} PRIVATE ${CAUSTICS_WARNINGS} ${CAUSTICS_COMPILE_OPTIONS})
+    target_link_options(${target} PRIVATE ${CAUSTICS_LINK_OPTIONS})
+    if(CAUSTICS_WERROR)
+        target_compile_options(${target} PRIVATE -Werror)
+    endif()
+    if(CAUSTICS_STD_THREADS)
+        target_compile_definitions(${target} PRIVATE CAUSTICS_STD_THREADS=1)
+    endif()
+endfunction()
+
+# caustics_library(photonmap SOURCES ... [DEPENDS core ...] [PRIVATE_DEPENDS ...])
+# makes the static library caustics_photonmap with the alias caustics::photonmap.
+function(caustics_library name)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS")
+    caustics_resolve_targets(depends ${arg_DEPENDS})
+    caustics_resolve_targets(private_depends ${arg_PRIVATE_DEPENDS})
+    add_library(caustics_${name} STATIC ${arg_SOURCES})
+    add_library(caustics::${name} ALIAS caustics_${name})
+    caustics_configure_target(caustics_${name})
+    target_link_libraries(caustics_${name} PUBLIC ${depends} PRIVATE ${private_depends})
+endfunction()
+
+# caustics_executable(causticbench SOURCES ... DEPENDS ...): the program <build folder>/bin/causticbench.
+function(caustics_executable name)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
+    caustics_resolve_targets(depends ${arg_DEPENDS})
+    add_executable(${name} ${arg_SOURCES})
+    caustics_configure_target(${name})
+    target_link_libraries(${name} PRIVATE ${depends})
+    set_target_properties(${name} PROPERTIES
+        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+endfunction()
+
+# caustics_test(kd_tree SOURCES ... DEPENDS ... LABELS ... [DEFINES ...] [SHARED_MESHES])
+#
+# Makes one GoogleTest program; each of its tests becomes the ctest `kd_tree.Suite.Name`. The macro
+# CAUSTICS_SOURCE_DIR is the project's root, where tests find scenes. With SHARED_MESHES the tests
+# also carry the label `shared` and see the macro CAUSTICS_SHARED_DIR; they are left out where that
+# folder does not exist (the ctest shared.meshes_present says so).
+function(caustics_test name)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "SHARED_MESHES" "TIMEOUT"
+        "SOURCES;DEPENDS;LABELS;DEFINES")
+    if(NOT arg_LABELS)
+        message(FATAL_ERROR "caustics_test(${name}): LABELS is missing "
+            "(unit, statistical, agreement, cli, bench-smoke)")
+    endif()
+    if(NOT arg_TIMEOUT)
+        set(arg_TIMEOUT 600)
+    endif()
+    if(arg_SHARED_MESHES)
+        if(NOT IS_DIRECTORY "${CAUSTICS_SHARED_DIR}/meshes")
+            return()
+        endif()
+        list(APPEND arg_LABELS shared)
+        list(APPEND arg_DEFINES "CAUSTICS_SHARED_DIR=\"${CAUSTICS_SHARED_DIR}\"")
+    endif()
+    caustics_resolve_targets(depends ${arg_DEPENDS})
+    set(program test_${name})
+    add_executable(${program} ${arg_SOURCES})
+    caustics_configure_target(${program})
+    target_link_libraries(${program} PRIVATE ${depends} GTest::gtest_main)
+    target_compile_definitions(${program} PRIVATE
+        "CAUSTICS_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" ${arg_DEFINES})
+    set_target_properties(${program} PROPERTIES
+        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+    # The list of labels must reach set_tests_properties as one value.
+    string(REPLACE ";" "\\;" labels "${arg_LABELS}")
+    gtest_discover_tests(${program}
+        TEST_PREFIX "${name}."
+        DISCOVERY_TIMEOUT 120
+        PROPERTIES LABELS "${labels}" TIMEOUT ${arg_TIMEOUT})
+endfunction()
