@@ -22,10 +22,16 @@ struct ReceiverPoint {
     Vec3 shading_normal;    ///< unit
     Vec3 wo;                ///< unit, away from the surface towards the viewer
     Vec2 uv;
+    float offset = 0;            ///< as SurfacePoint::offset
     const Bsdf* bsdf = nullptr;  ///< of the receiver; not read by irradiance()
     std::uint64_t id = 0;        ///< names the point's random numbers
     float radius = 0;            ///< of the disc that `lighttrace` gathers over [m]
 };
+
+/// The receiver point at a surface point, seen along `wo`; its normals are turned to that side.
+/// Empty where the surface is no receiver or black on that side.
+std::optional<ReceiverPoint> receiver_point(const Scene& scene, const SurfacePoint& point,
+                                            const Vec3& wo);
 
 /// A value with its standard error (0 where the method has none to tell).
 struct Estimate {
@@ -56,6 +62,7 @@ struct BuildReport {
 struct CameraLayer {
     std::vector<Spectrum> radiance;
     std::vector<Spectrum> standard_error;
+    Counters counters;
 };
 
 /// How a build and a render are run. Both callbacks may be empty and are called from any thread;

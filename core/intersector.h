@@ -12,8 +12,8 @@ namespace caustics {
 /// in double. Robust mode; the tree is built by one thread, so that hits are the same everywhere.
 class Intersector {
 public:
-    /// Keeps a reference to the shapes.
-    explicit Intersector(const std::vector<Shape>& shapes);
+    /// Keeps references to both, which must not move; `offsets` as Scene::offset.
+    Intersector(const std::vector<Shape>& shapes, const std::vector<float>& offsets);
     ~Intersector();
     Intersector(const Intersector&) = delete;
     Intersector& operator=(const Intersector&) = delete;
@@ -24,12 +24,8 @@ public:
 private:
     struct Embree;
     const std::vector<Shape>& shapes_;
+    const std::vector<float>& offsets_;
     std::unique_ptr<Embree> embree_;
 };
-
-/// The one offset rule: moves a surface point off its surface to the side `direction` points to,
-/// by a distance in units of the float spacing of its coordinates (after Wächter & Binder, "A Fast
-/// and Robust Method for Avoiding Self-Intersection", Ray Tracing Gems, 2019).
-Vec3 offset_origin(const Vec3& position, const Vec3& geometric_normal, const Vec3& direction);
 
 }  // namespace caustics

@@ -24,6 +24,7 @@ struct Deposit {
     Vec3 shading_normal;    ///< unit, on the side of arrival
     Vec3 wi;                ///< unit, away from the surface, where the particle came from
     Vec2 uv;
+    float offset = 0;  ///< as SurfacePoint::offset
     Spectrum flux = black();
     std::uint32_t shape = 0;
     int bounces = 0;
@@ -69,20 +70,24 @@ private:
         float radius;
     };
     struct Source {
-        std::uint32_t light;
-        Spectrum power;                  ///< of the whole aimed measure [W]
-        double share;                    ///< probability of this light
+        std::uint32_t light = 0;
+        Spectrum power = black();        ///< of the whole aimed measure [W]
+        double share = 0;                ///< probability of this light
         std::vector<Cone> cones;         ///< point and area lights
         std::vector<Disc> discs;         ///< directional lights, on a plane before the scene
         std::vector<double> cumulative;  ///< of their measures, normalised
         float max_cosine = 1;            ///< area lights: bound of the cosine over the cones
     };
-    std::optional<LightParticle> emit_point(const Source&, Rng&) const;
-    std::optional<LightParticle> emit_area(const Source&, Rng&) const;
-    std::optional<LightParticle> emit_directional(const Source&, Rng&) const;
+    double aim_cones(Source& source, const BoundingSphere& from, const Shape* emitter);
+    double aim_discs(Source& source);
+    static std::optional<Vec3> direction_in_union(const Source&, Rng&);
+    static std::optional<Ray> emit_point(const Source&, const PointLight&, Rng&);
+    std::optional<Ray> emit_area(const Source&, const AreaLight&, Rng&) const;
+    std::optional<Ray> emit_directional(const Source&, const DirectionalLight&, Rng&) const;
 
     const Scene& scene_;
     std::vector<Source> sources_;
+    std::vector<double> cumulative_;  ///< of the sources' shares
 };
 
 /// Follows a particle through specular surfaces, reflection or refraction decided by Russian

@@ -41,4 +41,9 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
 /// medium (all but dielectrics: empty).
 std::optional<Spectrum> medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& w);
 
+/// Beer's law along a traced segment: the medium is the one on the side of the surface where the
+/// segment ends, else (it ends on no interface) where it starts, else none.
+Spectrum segment_transmittance(const std::optional<Spectrum>& start_absorption,
+                               const std::optional<Spectrum>& end_absorption, float distance);
+
 }  // namespace caustics

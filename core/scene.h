@@ -27,7 +27,15 @@ struct SurfacePoint {
     Vec3 shading_normal;    ///< unit, front side
     Vec2 uv;
     float distance;       ///< from the ray's origin [m]
+    float offset;         ///< how far a ray that leaves the point starts off the surface [m]
     std::uint32_t shape;  ///< index into Scene::shapes
+};
+
+/// An end of a line of sight: a free point (offset 0), or a point on a surface.
+struct SegmentEnd {
+    Vec3 position;
+    Vec3 geometric_normal = Vec3::Zero();  ///< unit, either side
+    float offset = 0;                      ///< of that surface [m]
 };
 
 /// How the pixel's samples are placed (Mitsuba's `independent` and `stratified`; row C4).
@@ -55,12 +63,13 @@ public:
     Scene& operator=(const Scene&) = delete;
 
     std::optional<SurfacePoint> intersect(const Ray& ray) const;
-    /// Whether any surface lies between two points. Each end that lies on a surface is given with
-    /// its geometric normal, or zero for a free point.
-    bool occluded(const Vec3& from, const Vec3& from_normal, const Vec3& to,
-                  const Vec3& to_normal) const;
-    /// Whether any surface lies in a direction (unit) from a surface point.
-    bool occluded(const Vec3& from, const Vec3& from_normal, const Vec3& direction) const;
+    /// Whether any surface lies between two ends.
+    bool occluded(const SegmentEnd& from, const SegmentEnd& to) const;
+    /// Whether any surface lies along a direction (unit).
+    bool occluded(const SegmentEnd& from, const Vec3& direction) const;
+    /// The offset of rays that leave a shape (see SurfacePoint::offset): 64 float spacings at the
+    /// largest coordinate of its bounds, where intersection errors are a few spacings.
+    float offset(std::uint32_t shape) const { return offsets_[shape]; }
 
     const std::vector<Shape>& shapes() const { return shapes_; }
     const Shape& shape_at(const SurfacePoint& p) const { return shapes_[p.shape]; }
@@ -78,6 +87,7 @@ private:
     std::vector<Shape> shapes_;
     std::vector<Light> lights_;
     std::vector<std::int32_t> light_of_shape_;
+    std::vector<float> offsets_;
     std::vector<std::uint32_t> casters_;
     Camera camera_;
     PixelSampling sampling_;
@@ -85,8 +95,11 @@ private:
     std::unique_ptr<const Intersector> intersector_;
 };
 
-/// A ray that leaves a surface point along `direction` without meeting it again (the one offset
-/// rule; see intersector.h).
-Ray spawn_ray(const Vec3& position, const Vec3& geometric_normal, const Vec3& direction);
+/// The one offset rule: a surface point moved off its surface to the side that `direction` points
+/// to.
+Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction);
+
+/// A ray that leaves an end along a unit direction without meeting its surface again.
+Ray spawn_ray(const SegmentEnd& end, const Vec3& direction);
 
 }  // namespace caustics

@@ -34,6 +34,9 @@ struct BoundingSphere {
     float radius = 0;
 };
 BoundingSphere bounding_sphere(const Shape& shape);
+/// Points whose convex hull contains the shape: a mesh's vertices, the corners of an exact shape's
+/// local bounds.
+std::vector<Vec3> hull_points(const Shape& shape);
 /// Number of triangles; 0 for an exact shape.
 std::size_t triangle_count(const Shape& shape);
 

@@ -1,0 +1,42 @@
+#include <algorithm>
+
+#include "core/caustic_estimator.h"
+
+namespace caustics {
+namespace {
+
+class NoCaustic : public CausticEstimator {
+public:
+    void radiance(std::span<const ReceiverPoint>, std::span<Estimate> out,
+                  QueryContext&) const override {
+        std::fill(out.begin(), out.end(), Estimate{});
+    }
+    void irradiance(std::span<const ReceiverPoint>, std::span<Estimate> out,
+                    QueryContext&) const override {
+        std::fill(out.begin(), out.end(), Estimate{});
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<const CausticEstimator> build(const Scene&, const NoneParams&, const RunOptions&) {
+    return std::make_unique<NoCaustic>();
+}
+
+std::optional<ReceiverPoint> receiver_point(const Scene& scene, const SurfacePoint& point,
+                                            const Vec3& wo) {
+    const Bsdf& bsdf = scene.shape_at(point).bsdf;
+    const bool front = point.geometric_normal.dot(wo) > 0;
+    if (!is_receiver(bsdf) || !scatters_from(bsdf, front)) return {};
+    ReceiverPoint receiver;
+    receiver.position = point.position;
+    receiver.geometric_normal = front ? point.geometric_normal : Vec3(-point.geometric_normal);
+    receiver.shading_normal = front ? point.shading_normal : Vec3(-point.shading_normal);
+    receiver.wo = wo;
+    receiver.uv = point.uv;
+    receiver.offset = point.offset;
+    receiver.bsdf = &bsdf;
+    return receiver;
+}
+
+}  // namespace caustics

@@ -1,0 +1,43 @@
+#include "core/reference/gather_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace caustics {
+
+GatherGrid::GatherGrid(std::span<const ReceiverPoint> points, std::span<const float> radii)
+    : points_(points), radii_(radii) {
+    if (points.empty()) return;
+    cell_size_ = 2 * *std::max_element(radii.begin(), radii.end());
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        // The thick disc lies in a ball of sqrt(2) radii.
+        const Vec3 half = Vec3::Constant(1.4143F * radii[i]);
+        const Cell low = cell_of(points[i].position - half);
+        const Cell high = cell_of(points[i].position + half);
+        for (int x = low.x(); x <= high.x(); ++x)
+            for (int y = low.y(); y <= high.y(); ++y)
+                for (int z = low.z(); z <= high.z(); ++z)
+                    cells_[key(Cell(x, y, z))].push_back(i);
+    }
+}
+
+GatherGrid::Cell GatherGrid::cell_of(const Vec3& p) const {
+    return (p / cell_size_).array().floor().cast<int>();
+}
+
+std::uint64_t GatherGrid::key(const Cell& cell) {
+    // Cells 2^21 apart share a key; contains() keeps the answer right.
+    const auto part = [](int i) { return static_cast<std::uint64_t>(i) & 0x1FFFFFU; };
+    return part(cell.x()) | part(cell.y()) << 21U | part(cell.z()) << 42U;
+}
+
+bool GatherGrid::contains(std::uint32_t index, const Vec3& position, const Vec3& wi) const {
+    const ReceiverPoint& p = points_[index];
+    const Vec3 offset = position - p.position;
+    const float height = p.geometric_normal.dot(offset);
+    const float radius = radii_[index];
+    return wi.dot(p.geometric_normal) > 0 && std::abs(height) <= radius &&
+           (offset - height * p.geometric_normal).squaredNorm() <= radius * radius;
+}
+
+}  // namespace caustics

@@ -1,0 +1,204 @@
+#include "core/reference/path_trace.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/frame.h"
+#include "core/optics.h"
+#include "core/rng.h"
+#include "core/sampling.h"
+
+namespace caustics {
+namespace {
+
+// Directions from a receiver point: half from its BSDF, half uniform in the cone of a caster's
+// bounding sphere, combined by the balance heuristic of one sample (Veach & Guibas 1995).
+class DirectionMixture {
+public:
+    DirectionMixture(const Scene& scene, const ReceiverPoint& point) : point_(point) {
+        for (const std::uint32_t index : scene.casters()) {
+            const BoundingSphere sphere = bounding_sphere(scene.shapes()[index]);
+            const Vec3 towards = sphere.centre - point.position;
+            const float distance = towards.norm();
+            const float sine = sphere.radius * (1 + 1e-5F) / distance;
+            // Seen from inside its bounds a caster may lie in every direction.
+            if (sine < 1) cones_.push_back({towards / distance, std::sqrt(1 - sine * sine)});
+        }
+    }
+
+    std::optional<Vec3> sample(Rng& rng) const {
+        const float u0 = rng.next();
+        const float u1 = rng.next();
+        const float u2 = rng.next();
+        if (cones_.empty() || u2 < 0.5F) {
+            const float rest = cones_.empty() ? u2 : 2 * u2;
+            return sample_direction(bsdf(), point_.shading_normal, point_.wo, u0, u1, rest);
+        }
+        const auto at = static_cast<std::size_t>((2 * u2 - 1) * static_cast<float>(cones_.size()));
+        const Cone& cone = cones_[std::min(at, cones_.size() - 1)];
+        return Frame(cone.axis).to_world(uniform_cone(cone.cos_angle, u0, u1)).normalized();
+    }
+
+    float pdf_w(const Vec3& wi) const {
+        const float bsdf_pdf = direction_pdf(bsdf(), point_.shading_normal, point_.wo, wi);
+        if (cones_.empty()) return bsdf_pdf;
+        float cone_pdf = 0;
+        for (const Cone& cone : cones_)
+            if (cone.axis.dot(wi) >= cone.cos_angle)
+                cone_pdf += static_cast<float>(1 / cone_solid_angle(cone.cos_angle));
+        return 0.5F * bsdf_pdf + 0.5F * cone_pdf / static_cast<float>(cones_.size());
+    }
+
+private:
+    const Bsdf& bsdf() const { return *point_.bsdf; }
+
+    struct Cone {
+        Vec3 axis;
+        float cos_angle;
+    };
+    const ReceiverPoint& point_;
+    std::vector<Cone> cones_;
+};
+
+// Factor on radiance for one specular vertex of a path traced against the light, so that it
+// carries what flux-conserving particles carry: with normals interpolated over a mesh the two
+// differ by the cosines about the shading and the geometric normal (Veach 1997, sec. 5.3).
+float flux_correction(const SurfacePoint& p, const Vec3& towards_receiver,
+                      const Vec3& towards_light) {
+    const float numerator = p.shading_normal.dot(towards_receiver) *
+                            p.geometric_normal.dot(towards_light);
+    const float denominator = p.shading_normal.dot(towards_light) *
+                              p.geometric_normal.dot(towards_receiver);
+    return denominator == 0 ? 0 : std::abs(numerator / denominator);
+}
+
+// Radiance arriving along a ray from L S+ by one random chain; 0 when its first surface is no
+// caster.
+Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, Rng& rng) {
+    Spectrum weight = Spectrum::Ones();
+    Spectrum result = black();
+    std::optional<Spectrum> start_absorption;
+    for (int bounces = 0;; ++bounces) {
+        const std::optional<SurfacePoint> hit = scene.intersect(ray);
+        if (!hit) return result;
+        const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
+        const Vec3 w = -ray.direction;
+        weight *= segment_transmittance(start_absorption,
+                                        medium_absorption(bsdf, hit->geometric_normal, w),
+                                        hit->distance);
+        const AreaLight* light = scene.area_light(hit->shape);
+        if (light != nullptr && bounces > 0 && hit->geometric_normal.dot(w) > 0)
+            result += weight * light->radiance;
+        if (!is_caster(bsdf) || bounces == max_bounces) return result;
+        const SpecularSplit split =
+            split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w);
+        const float reflect_share = (split.reflected_weight * weight).mean() / weight.mean();
+        const float refract_share = (split.refracted_weight * weight).mean() / weight.mean();
+        const float u = rng.next();
+        Vec3 next;
+        if (u < reflect_share) {
+            next = split.reflected;
+            weight *= split.reflected_weight / reflect_share;
+        } else if (u < reflect_share + refract_share) {
+            next = split.refracted;
+            weight *= split.refracted_weight / (refract_share * split.eta * split.eta);
+        } else {
+            return result;
+        }
+        weight *= flux_correction(*hit, w, next);
+        if (weight.maxCoeff() <= 0) return result;
+        start_absorption = medium_absorption(bsdf, hit->geometric_normal, next);
+        ray = spawn_ray({hit->position, hit->geometric_normal, hit->offset}, next);
+    }
+}
+
+class PathTrace : public CausticEstimator {
+public:
+    PathTrace(const Scene& scene, const PathTraceParams& params, const RunOptions& options)
+        : scene_(scene),
+          seed_(options.seed),
+          max_bounces_(params.max_bounces),
+          paths_per_point_(std::max(1, (params.spp + options.samples_per_pixel - 1) /
+                                           options.samples_per_pixel)) {}
+
+    void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                  QueryContext&) const override {
+        for (std::size_t i = 0; i < points.size(); ++i) out[i] = estimate(points[i], true);
+    }
+    void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                    QueryContext&) const override {
+        for (std::size_t i = 0; i < points.size(); ++i) out[i] = estimate(points[i], false);
+    }
+    bool is_statistical() const override { return true; }
+
+private:
+    Estimate estimate(const ReceiverPoint& point, bool with_bsdf) const {
+        static const Bsdf lambert{};
+        ReceiverPoint receiver = point;
+        if (!with_bsdf) {
+            // Irradiance needs no viewer and no material: cosine lobe about the true normal.
+            receiver.bsdf = &lambert;
+            receiver.shading_normal = receiver.wo = point.geometric_normal;
+        }
+        const DirectionMixture mixture(scene_, receiver);
+        Rng rng(seed_, Stage::path_trace, point.id);
+        SpectrumSum sum = SpectrumSum::Zero();
+        SpectrumSum squares = SpectrumSum::Zero();
+        for (int path = 0; path < paths_per_point_; ++path) {
+            const SpectrumSum value = sample(receiver, mixture, with_bsdf, rng).cast<double>();
+            sum += value;
+            squares += value * value;
+        }
+        const double n = paths_per_point_;
+        Estimate result{(sum / n).cast<float>(), black()};
+        if (paths_per_point_ > 1)
+            result.standard_error =
+                ((squares / n - (sum / n).square()).max(0) / (n - 1)).sqrt().cast<float>();
+        return result;
+    }
+
+    Spectrum sample(const ReceiverPoint& point, const DirectionMixture& mixture, bool with_bsdf,
+                    Rng& rng) const {
+        const std::optional<Vec3> wi = mixture.sample(rng);
+        if (!wi) return black();
+        const float cosine = point.geometric_normal.dot(*wi);
+        if (cosine <= 0) return black();
+        const Spectrum scattering =
+            with_bsdf ? evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo, *wi)
+                      : Spectrum(Spectrum::Ones());
+        if (is_black(scattering)) return black();
+        const Ray ray = spawn_ray({point.position, point.geometric_normal, point.offset}, *wi);
+        const float weight = cosine / mixture.pdf_w(*wi);
+        return scattering * chain_radiance(scene_, ray, max_bounces_, rng) * weight;
+    }
+
+    const Scene& scene_;
+    std::uint64_t seed_;
+    int max_bounces_;
+    int paths_per_point_;
+};
+
+}  // namespace
+
+void read(const JsonNode& node, PathTraceParams& params) {
+    if (const auto spp = node.find("spp"))
+        params.spp = static_cast<int>(spp->as_integer_in(1, 1'000'000'000));
+    if (const auto bounces = node.find("max_bounces"))
+        params.max_bounces = static_cast<int>(bounces->as_integer_in(1, 1000));
+    node.finish();
+}
+
+std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PathTraceParams& params,
+                                              const RunOptions& options) {
+    for (const Light& light : scene.lights())
+        if (!std::holds_alternative<AreaLight>(light))
+            throw UnsupportedScene(
+                std::string("pathtrace cannot serve a scene with a ") +
+                (std::holds_alternative<PointLight>(light) ? "point" : "directional") +
+                " light: a path from the receiver hits it with probability zero, so its caustic "
+                "would be black; use lighttrace, or give the light area");
+    return std::make_unique<PathTrace>(scene, params, options);
+}
+
+}  // namespace caustics

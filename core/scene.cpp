@@ -1,0 +1,71 @@
+#include "core/scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/intersector.h"
+
+namespace caustics {
+
+Scene::Scene(SceneDesc desc)
+    : shapes_(std::move(desc.shapes)),
+      light_of_shape_(shapes_.size(), -1),
+      camera_(desc.camera),
+      sampling_(desc.sampling) {
+    for (const PointLight& light : desc.point_lights) lights_.emplace_back(light);
+    for (const DirectionalLight& light : desc.directional_lights) lights_.emplace_back(light);
+    for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
+        const Shape& shape = shapes_[i];
+        const Box box = caustics::bounds(shape);
+        bounds_.extend(box);
+        offsets_.push_back(64 * 0x1p-24F *
+                           box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff());
+        if (is_caster(shape.bsdf)) casters_.push_back(i);
+        if (!shape.radiance) continue;
+        light_of_shape_[i] = static_cast<std::int32_t>(lights_.size());
+        lights_.emplace_back(AreaLight{i, *shape.radiance, AreaSampler(shape)});
+    }
+    intersector_ = std::make_unique<const Intersector>(shapes_, offsets_);
+}
+
+Scene::~Scene() = default;
+
+std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
+    return intersector_->intersect(ray);
+}
+
+bool Scene::occluded(const SegmentEnd& from, const SegmentEnd& to) const {
+    const Vec3 towards = to.position - from.position;
+    Ray ray;
+    ray.origin = offset_origin(from, towards);
+    const Vec3 segment = offset_origin(to, -towards) - ray.origin;
+    ray.max_distance = segment.norm();
+    if (ray.max_distance == 0) return false;
+    ray.direction = segment / ray.max_distance;
+    return intersector_->occluded(ray);
+}
+
+bool Scene::occluded(const SegmentEnd& from, const Vec3& direction) const {
+    return intersector_->occluded(spawn_ray(from, direction));
+}
+
+const AreaLight* Scene::area_light(std::uint32_t shape) const {
+    const std::int32_t index = light_of_shape_[shape];
+    return index < 0 ? nullptr : &std::get<AreaLight>(lights_[static_cast<std::size_t>(index)]);
+}
+
+float Scene::diameter() const { return bounds_.diagonal().norm(); }
+
+Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction) {
+    const float side = end.geometric_normal.dot(direction) < 0 ? -end.offset : end.offset;
+    return end.position + side * end.geometric_normal;
+}
+
+Ray spawn_ray(const SegmentEnd& end, const Vec3& direction) {
+    Ray ray;
+    ray.origin = offset_origin(end, direction);
+    ray.direction = direction;
+    return ray;
+}
+
+}  // namespace caustics
