@@ -17,13 +17,20 @@ struct PhotonMapParams {
     };
     std::uint64_t photons = 100'000;  ///< to store; 0 when `emitted` is given instead
     std::uint64_t emitted = 0;        ///< to emit; 0 when `photons` is given
-    int nearest = 50;                 ///< N
+    int nearest = 50;                 ///< N; at least 2 for `unbiased`
     double max_radius = 0;            ///< [m]; 0: chosen from the photons, told in the report
     Estimator estimator = Estimator::unbiased;
-    int max_bounces = 16;
+    int max_bounces = 16;  ///< specular events between light and receiver
 };
+
+/// Throws InputError for what cannot be used or is not built yet.
 void read(const JsonNode& node, PhotonMapParams& params);
-std::unique_ptr<const CausticEstimator> build(const Scene&, const PhotonMapParams&,
-                                              const RunOptions&);
+
+/// Phases "trace" and "balance". Counters: those of LightPathCounts; photons_emitted is the number
+/// that flux is divided by. Throws InputError for params that contradict each other and for a map that
+/// does not fit, UnsupportedScene when the photons asked for cannot be had; with `emitted` an
+/// empty map is an answer, and black.
+std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,
+                                              const RunOptions& options);
 
 }  // namespace caustics

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/vec.h"
+#include "photonmap/direction_code.h"
+#include "photonmap/rgbe.h"
+
+namespace caustics {
+
+/// The 20-byte photon of [J96, section 2].
+struct Photon {
+    float position[3];  ///< world frame [m]
+    Rgbe energy;        ///< flux in the map's unit (see TracedPhotons)
+    std::uint8_t theta;  ///< direction code of wi, from the surface to where the photon came from
+    std::uint8_t phi;
+    std::uint16_t flags;  ///< low two bits: axis of the splitting plane; the rest is kd_tree's
+};
+static_assert(sizeof(Photon) == 20);
+
+inline Vec3 position(const Photon& photon) {
+    return {photon.position[0], photon.position[1], photon.position[2]};
+}
+/// Unit, away from the surface; within the direction code's error.
+inline Vec3 incoming(const Photon& photon) { return decode_direction(photon.theta, photon.phi); }
+
+}  // namespace caustics

@@ -1,0 +1,75 @@
+#include <cmath>
+#include <string>
+
+#include "photonmap/photon_map.h"
+
+namespace caustics {
+
+namespace {
+
+constexpr std::int64_t most_photons = 2'000'000'000;
+constexpr std::int64_t most_paths = 1'000'000'000'000;
+constexpr std::int64_t most_bounces = 1'000;
+constexpr std::int64_t most_nearest = 1'000'000;
+
+/// Reads a choice of which only the first word is built yet.
+void read_choice(const JsonNode& node, const std::string& key,
+                 const std::vector<std::string>& choices) {
+    const std::optional<JsonNode> child = node.find(key);
+    if (!child) return;
+    const std::size_t choice = child->as_choice(choices);
+    if (choice != 0)
+        child->fail("\"" + choices[choice] + "\" is not built yet (built: \"" + choices[0] + "\")");
+}
+
+void refuse(const JsonNode& node, const std::string& key) {
+    if (const std::optional<JsonNode> child = node.find(key))
+        child->fail("this parameter of photonmap is not built yet (leave it out)");
+}
+
+void read_count(const JsonNode& node, PhotonMapParams& params) {
+    const std::optional<JsonNode> photons = node.find("photons");
+    const std::optional<JsonNode> emitted = node.find("emitted");
+    if (photons && emitted) emitted->fail("give either photons or emitted, not both");
+    if (photons)
+        params.photons = static_cast<std::uint64_t>(photons->as_integer_in(1, most_photons));
+    if (emitted) {
+        params.emitted = static_cast<std::uint64_t>(emitted->as_integer_in(1, most_paths));
+        params.photons = 0;
+    }
+}
+
+void read_estimate(const JsonNode& node, PhotonMapParams& params) {
+    using Estimator = PhotonMapParams::Estimator;
+    if (const auto estimator = node.find("estimator"))
+        params.estimator =
+            estimator->as_choice({"unbiased", "raw"}) == 0 ? Estimator::unbiased : Estimator::raw;
+    if (const auto nearest = node.find("nearest")) {
+        params.nearest = static_cast<int>(nearest->as_integer_in(1, most_nearest));
+        if (params.nearest < 2 && params.estimator == Estimator::unbiased)
+            nearest->fail("must be at least 2 with the estimator \"unbiased\", which leaves the "
+                          "outermost photon out (or choose \"raw\")");
+    }
+    if (const auto max_radius = node.find("max_radius")) {
+        params.max_radius = max_radius->as_number();
+        const auto stored = static_cast<float>(params.max_radius);
+        if (!(stored * stored > 0) || !std::isfinite(stored * stored))
+            max_radius->fail("must be a length above 0 [m] (leave it out to have it chosen)");
+    }
+}
+
+}  // namespace
+
+void read(const JsonNode& node, PhotonMapParams& params) {
+    read_count(node, params);
+    read_estimate(node, params);
+    if (const auto max_bounces = node.find("max_bounces"))
+        params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, most_bounces));
+    read_choice(node, "emission", {"random", "stratified"});
+    read_choice(node, "interaction", {"roulette", "split"});
+    read_choice(node, "tree", {"balanced", "unbalanced", "packed"});
+    for (const char* key : {"filter", "adaptive", "tables", "passes", "radius"}) refuse(node, key);
+    node.finish();
+}
+
+}  // namespace caustics

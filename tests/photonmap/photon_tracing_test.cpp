@@ -1,0 +1,174 @@
+#include "photonmap/photon_tracing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/error.h"
+#include "core/rng.h"
+
+namespace caustics {
+namespace {
+
+/// Paths that store with probability `rate`, white and 1 W.
+TracePath synthetic_paths(float rate, std::uint64_t seed = 1) {
+    return [rate, seed](std::uint64_t path, LightPathCounts& counts) -> std::optional<Deposit> {
+        Rng rng(seed, Stage::test, path);
+        counts.aimed = 1;
+        if (rng.next() >= rate) {
+            counts.missed = 1;
+            return {};
+        }
+        Deposit deposit;
+        const float x = rng.next(), y = rng.next();
+        deposit.position = {x, y, 0};
+        deposit.wi = deposit.geometric_normal = deposit.shading_normal = Vec3::UnitZ();
+        deposit.uv = Vec2::Zero();
+        deposit.flux = Spectrum::Ones();
+        return deposit;
+    };
+}
+
+TracedPhotons trace(const TracePath& paths, const PhotonTarget& target, int threads = 1) {
+    RunOptions options;
+    options.threads = threads;
+    return trace_photons(paths, Spectrum::Ones(), target, options);
+}
+
+TEST(PhotonTracing, StoresExactlyAsManyAsAsked) {
+    for (const float rate : {1.0F, 0.5F, 0.01F}) {
+        for (const std::uint64_t stored : {1U, 2U, 63U, 64U, 65U, 5'000U}) {
+            const TracedPhotons traced = trace(synthetic_paths(rate), {.stored = stored}, 2);
+            EXPECT_EQ(traced.store.size(), stored);
+            EXPECT_EQ(traced.counts.stored, stored);
+            EXPECT_EQ(traced.counts.emitted, traced.counts.stored + traced.counts.missed);
+            EXPECT_EQ(traced.counts.aimed, traced.counts.emitted);
+            EXPECT_TRUE(rate < 1 || traced.counts.emitted == stored);
+        }
+    }
+}
+
+TEST(PhotonTracing, CountsThePathsBeforeTheNextPhoton) {
+    const TracePath paths = synthetic_paths(0.3F);
+    const TracedPhotons traced = trace(paths, {.stored = 100});
+    std::uint64_t successes = 0;
+    std::uint64_t path = 0;
+    for (;; ++path) {
+        LightPathCounts counts;
+        if (paths(path, counts) && ++successes == 101) break;
+    }
+    EXPECT_EQ(traced.counts.emitted, path);
+}
+
+TEST(PhotonTracing, EmitsExactlyAsManyAsAsked) {
+    for (const std::uint64_t emitted : {1U, 64U, 1'000U, 100'003U}) {
+        const TracedPhotons traced = trace(synthetic_paths(0.25F), {.emitted = emitted}, 2);
+        EXPECT_EQ(traced.counts.emitted, emitted);
+        EXPECT_EQ(traced.counts.stored, traced.store.size());
+        EXPECT_EQ(traced.counts.stored + traced.counts.missed, emitted);
+    }
+}
+
+TEST(PhotonTracing, GivesTheSamePhotonsForAnyNumberOfThreads) {
+    for (const PhotonTarget& target :
+         {PhotonTarget{.stored = 30'000}, PhotonTarget{.emitted = 90'000}}) {
+        const TracedPhotons one = trace(synthetic_paths(0.4F), target, 1);
+        const TracedPhotons two = trace(synthetic_paths(0.4F), target, 2);
+        ASSERT_EQ(two.store.size(), one.store.size());
+        EXPECT_EQ(two.counts.emitted, one.counts.emitted);
+        EXPECT_EQ(std::memcmp(two.store.photons().data(), one.store.photons().data(),
+                              one.store.bytes()),
+                  0);
+    }
+}
+
+TEST(PhotonTracing, StoppingAtACountLeavesTheFluxUnbiased) {
+    constexpr float rate = 0.3F;
+    constexpr std::uint64_t runs = 4'000;
+    for (std::uint64_t stored = 1; stored <= 5; ++stored) {
+        double sum = 0, squares = 0;
+        for (std::uint64_t run = 0; run < runs; ++run) {
+            const TracedPhotons traced =
+                trace(synthetic_paths(rate, 1'000 * run + stored), {.stored = stored});
+            const double flux = static_cast<double>(traced.store.size()) /
+                                static_cast<double>(traced.counts.emitted);
+            sum += flux;
+            squares += flux * flux;
+        }
+        const double mean = sum / runs;
+        const double error = std::sqrt((squares / runs - mean * mean) / runs);
+        EXPECT_NEAR(mean, static_cast<double>(rate), 4 * error) << stored;
+        // Dividing by the paths up to the last photon itself would be far off.
+        EXPECT_LT(4 * error, 0.1 * static_cast<double>(rate));
+    }
+}
+
+TEST(PhotonTracing, KeepsFluxOverTwelveOrdersOfMagnitudeAndAnyColour) {
+    for (const float watts : {1e-6F, 1.0F, 1e6F}) {
+        const Spectrum flux = watts * Spectrum(1, 0.001F, 0);
+        const TracePath paths = [&](std::uint64_t path, LightPathCounts& counts) {
+            std::optional<Deposit> deposit = synthetic_paths(1)(path, counts);
+            deposit->flux = flux;
+            return deposit;
+        };
+        const TracedPhotons traced = trace_photons(paths, flux, {.stored = 10}, {});
+        const Spectrum kept =
+            decode_rgbe(traced.store.photons().front().energy) * traced.flux_unit;
+        EXPECT_NEAR(kept[0] / flux[0], 1, 1e-6);
+        EXPECT_NEAR(kept[1] / flux[1], 1, 1e-6);
+        EXPECT_EQ(kept[2], 0);
+    }
+}
+
+TEST(PhotonTracing, GivesUpAndSaysWhy) {
+    try {
+        trace(synthetic_paths(0.0001F), {.stored = 1'000, .patience = 20'000});
+        FAIL() << "expected UnsupportedScene";
+    } catch (const UnsupportedScene& e) {
+        const std::string message = e.what();
+        EXPECT_NE(message.find("of 1000 photons"), std::string::npos) << message;
+        EXPECT_NE(message.find("met no caster first"), std::string::npos) << message;
+        EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
+    }
+    EXPECT_EQ(trace(synthetic_paths(0.01F), {.stored = 1'000, .patience = 20'000}).store.size(),
+              1'000U);
+    EXPECT_EQ(trace(synthetic_paths(0), {.emitted = 1'000}).store.size(), 0U);
+}
+
+TEST(PhotonTracing, NamesThePathOfAPhotonThatIsNotFinite) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (int broken = 0; broken < 3; ++broken) {
+        const TracePath paths = [&](std::uint64_t path, LightPathCounts& counts) {
+            std::optional<Deposit> deposit = synthetic_paths(1)(path, counts);
+            if (path == 77 && broken == 0) deposit->position.y() = nan;
+            if (path == 77 && broken == 1) deposit->flux[2] = nan;
+            if (path == 77 && broken == 2) deposit->flux[0] = -1;
+            return deposit;
+        };
+        try {
+            trace(paths, {.emitted = 1'000}, 2);
+            FAIL() << "expected an error";
+        } catch (const std::runtime_error& e) {
+            EXPECT_NE(std::string(e.what()).find("path 77"), std::string::npos) << e.what();
+        }
+    }
+}
+
+TEST(PhotonTracing, ReportsGrowingProgressAndCanBeInterrupted) {
+    RunOptions options;
+    std::vector<double> shares;
+    options.progress = [&](double share) { shares.push_back(share); };
+    trace_photons(synthetic_paths(0.5F), Spectrum::Ones(), {.stored = 20'000}, options);
+    EXPECT_TRUE(std::ranges::is_sorted(shares));
+    EXPECT_GT(shares.size(), 2U);
+    EXPECT_EQ(shares.back(), 1);
+    options.progress = [](double) { throw Interrupted(); };
+    EXPECT_THROW(
+        trace_photons(synthetic_paths(0.5F), Spectrum::Ones(), {.stored = 20'000}, options),
+        Interrupted);
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,65 @@
+#include "photonmap/rgbe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/rng.h"
+
+namespace caustics {
+namespace {
+
+TEST(Rgbe, ErrsByAtMostA255thOfTheLargestChannelOverAllScales) {
+    Rng rng(1, Stage::test, 0);
+    for (int exponent = -120; exponent <= 120; exponent += 3) {
+        for (int i = 0; i < 200; ++i) {
+            const float r = rng.next(), g = rng.next(), b = rng.next();
+            const Spectrum value = Spectrum(r, g, b) * std::ldexp(1.0F, exponent);
+            const Spectrum error = (decode_rgbe(encode_rgbe(value)) - value).abs();
+            EXPECT_LE(error.maxCoeff(), value.maxCoeff() / 255) << value.transpose();
+        }
+    }
+}
+
+TEST(Rgbe, RoundsInsteadOfTruncating) {
+    double mean = 0;
+    constexpr int steps = 10'000;
+    for (int i = 0; i < steps; ++i) {
+        const float value = 0.5F + 0.5F * (static_cast<float>(i) + 0.5F) / steps;
+        mean += static_cast<double>(decode_rgbe(encode_rgbe(Spectrum::Constant(value)))[0] - value);
+    }
+    EXPECT_LT(std::abs(mean / steps), 1e-5);
+}
+
+TEST(Rgbe, KeepsZeroExactlyZero) {
+    EXPECT_EQ(encode_rgbe(black()), Rgbe{});
+    EXPECT_TRUE(is_black(decode_rgbe(Rgbe{})));
+    const Spectrum green = decode_rgbe(encode_rgbe({0, 0.7F, 0}));
+    EXPECT_EQ(green[0], 0);
+    EXPECT_EQ(green[2], 0);
+    EXPECT_GT(green[1], 0);
+}
+
+TEST(Rgbe, KeepsItsOwnValuesAndReads255AsTheFinest) {
+    const Spectrum value(255.0F / 256, 3.0F / 256, 0.5F);
+    EXPECT_TRUE((decode_rgbe(encode_rgbe(value)) == value).all());
+}
+
+TEST(Rgbe, CarriesIntoTheNextExponentWhenRoundingUp) {
+    const Spectrum value = Spectrum::Constant(255.75F / 256);
+    EXPECT_EQ(encode_rgbe(value).mantissa[0], 128);
+    EXPECT_TRUE((decode_rgbe(encode_rgbe(value)) == Spectrum::Ones()).all());
+}
+
+TEST(Rgbe, LosesWhatIsBelowItsRangeAndRefusesTheRest) {
+    EXPECT_EQ(encode_rgbe(Spectrum::Constant(1e-40F)), Rgbe{});
+    EXPECT_THROW(encode_rgbe(Spectrum::Constant(2e38F)), std::range_error);
+    EXPECT_THROW(encode_rgbe({1, -1, 1}), std::range_error);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(encode_rgbe({1, nan, 1}), std::range_error);
+    EXPECT_THROW(encode_rgbe({1, std::numeric_limits<float>::infinity(), 1}), std::range_error);
+}
+
+}  // namespace
+}  // namespace caustics
