@@ -104,10 +104,17 @@ function(caustics_test name)
         "CAUSTICS_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" ${arg_DEFINES})
     set_target_properties(${program} PROPERTIES
         RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
-    # The list of labels must reach set_tests_properties as one value.
-    string(REPLACE ";" "\\;" labels "${arg_LABELS}")
     gtest_discover_tests(${program}
         TEST_PREFIX "${name}."
+        TEST_LIST ${program}_tests
+        NO_PRETTY_VALUES
         DISCOVERY_TIMEOUT 120
-        PROPERTIES LABELS "${labels}" TIMEOUT ${arg_TIMEOUT})
+        PROPERTIES TIMEOUT ${arg_TIMEOUT})
+    # gtest_discover_tests would split a list of labels, so they are set on what it has found.
+    set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/${program}_labels.cmake")
+    file(WRITE "${labels_file}"
+        "if(${program}_tests)\n"
+        "  set_tests_properties(\${${program}_tests} PROPERTIES LABELS \"${arg_LABELS}\")\n"
+        "endif()\n")
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${labels_file}")
 endfunction()
