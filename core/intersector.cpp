@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core/exact_shape.h"
+#include "core/parallel.h"
 
 namespace caustics {
 namespace {
@@ -167,14 +168,14 @@ struct Intersector::Embree {
     std::vector<ExactGeometry> exact;  ///< one a shape, used by exact shapes
 
     explicit Embree(const std::vector<Shape>& shapes) : exact(shapes.size()) {
-        device = rtcNewDevice("threads=1");
+        device = rtcNewDevice(nullptr);
         if (device == nullptr) throw std::runtime_error("Embree: no device");
         rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
         scene = rtcNewScene(device);
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
         for (std::size_t i = 0; i < shapes.size(); ++i) attach(shapes[i], i);
-        rtcCommitScene(scene);
+        run_single_threaded([this] { rtcCommitScene(scene); });
     }
     ~Embree() {
         if (scene != nullptr) rtcReleaseScene(scene);

@@ -22,7 +22,8 @@ struct TriangleMesh {
 void flip(TriangleMesh& mesh);
 
 /// Applies an affine map to positions and, by the inverse transpose, to normals (kept unit);
-/// reverses the winding when the map mirrors, so that normals stay on their side.
+/// reverses the winding when the map mirrors, so that normals stay on their side. Throws
+/// InputError when the map is singular or not finite.
 void transform(TriangleMesh& mesh, const Transform& to_world);
 
 }  // namespace caustics

@@ -2,6 +2,8 @@
 
 #include <sched.h>
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 
 #ifdef CAUSTICS_STD_THREADS
@@ -21,6 +23,11 @@ int available_threads() {
     cpu_set_t set;
     if (sched_getaffinity(0, sizeof(set), &set) != 0) return 1;
     return std::max(1, CPU_COUNT(&set));
+}
+
+void run_single_threaded(const std::function<void()>& work) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    work();
 }
 
 #ifdef CAUSTICS_STD_THREADS

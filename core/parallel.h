@@ -12,6 +12,10 @@ namespace caustics {
 void parallel_for(int threads, std::size_t count,
                   const std::function<void(std::size_t index, std::size_t worker)>& body);
 
+/// Runs `work` while oneTBB, and with it Embree, may use one thread only, in the whole process.
+/// (Embree's own setting "threads=1" would stay in force for every later loop.)
+void run_single_threaded(const std::function<void()>& work);
+
 /// The number of threads to use by default: those the process may run on.
 int available_threads();
 
