@@ -1,0 +1,227 @@
+"""records.csv: its rows, checked, and grouped into cells.
+
+A *record* is one trial that is done. A *cell* is every record that differs only in seed and repeat; medians and ranges
+are always taken over a cell. The swept keys are the columns after `code_version`, the last of the fixed ones; an empty
+field means that a quantity does not apply to its row.
+"""
+import csv
+import dataclasses
+import math
+import statistics
+
+STATUSES = ("done", "failed", "timeout", "interrupted", "unsupported")
+FIXED_PARAMETERS = ("nearest", "alpha", "mesh_resolution", "threads", "isa", "code_version")
+# The first of these that a row has says how many photons were asked for.
+PHOTON_PARAMETERS = ("photons", "emitted", "photons_stored")
+REQUIRED = ("trial", "status", "scene", "method", "seed", "repeat", "photons_stored", "total_s",
+            "rmse", "relmse", "mean_ratio", "reference_stderr") + FIXED_PARAMETERS
+MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "balance_s", "render_s", "total_s",
+            "cpu_s", "rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "beauty_rmse",
+            "unreached_fraction", "reference_stderr")
+NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads") + MEASURES
+LABELS = ("isa", "code_version")  # never numbers, whatever they look like
+NOT_NEGATIVE = ("photons_stored", "total_s", "rmse", "relmse", "reference_stderr")
+
+# What each metric is, as captions and axes say it: x the picture, r the reference, over all reached pixels and channels
+# of the caustic layer; radiance is in linear sRGB.
+FORMULAS = {
+    "rmse": "rmse = √ mean (x − r)²",
+    "relmse": "relmse = mean (x − r)² / (r² + ε),  ε = 0.01 mean(r)²",
+    "mean_ratio": "mean_ratio = mean(x) / mean(r)",
+}
+UNITS = {"rmse": "W m⁻² sr⁻¹", "relmse": "1", "mean_ratio": "1", "total_s": "s"}
+
+
+class RecordsError(Exception):
+    """One line for the user: the place, the reason, what would be right."""
+
+
+@dataclasses.dataclass
+class Spread:
+    """Median and range of one quantity over the records of a cell."""
+    median: float
+    low: float
+    high: float
+
+
+@dataclasses.dataclass
+class Cell:
+    """The records of one scene, method and set of parameters; `parameters` has only those that apply."""
+    scene: str
+    method: str
+    parameters: dict
+    records: list = dataclasses.field(default_factory=list)
+
+    def spread(self, column):
+        """The spread of a measure, or None where it does not apply to any record of the cell."""
+        values = [float(record[column]) for record in self.records if record.get(column)]
+        return Spread(statistics.median(values), min(values), max(values)) if values else None
+
+    def seeds(self):
+        return len({record["seed"] for record in self.records})
+
+    def photon_parameter(self):
+        """(name, value) of the number of photons asked for, or None for a method without photons."""
+        return next(((name, self.parameters[name]) for name in PHOTON_PARAMETERS if name in self.parameters), None)
+
+
+@dataclasses.dataclass
+class Records:
+    """A whole table: its cells in a natural order, its parameters in the table's order, and what was left out."""
+    cells: list
+    parameters: list
+    left_out: dict
+
+    def scenes(self):
+        return sorted({cell.scene for cell in self.cells}, key=natural)
+
+
+def natural(text):
+    """Sort key: numbers by value, before words by letter."""
+    number = as_number(text)
+    return (1, 0.0, str(text)) if number is None else (0, number, "")
+
+
+def as_number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def read(path):
+    """Reads and groups the table at `path`; raises RecordsError."""
+    header, rows = read_rows(path)
+    left_out = {}
+    done = []
+    for line, row in rows:
+        check(path, line, row)
+        if row["status"] == "done":
+            done.append((line, row))
+        else:
+            left_out[row["status"]] = left_out.get(row["status"], 0) + 1
+    if not done:
+        counts = ", ".join(f"{count} {status}" for status, count in left_out.items())
+        raise RecordsError(f"{path}: no row has the status done ({counts})")
+    swept = [name for name in header[header.index("code_version") + 1:] if name not in FIXED_PARAMETERS]
+    parameters = [name for name in ("photons", "emitted") if name in swept] + list(FIXED_PARAMETERS[:3])
+    parameters += [name for name in swept if name not in parameters] + list(FIXED_PARAMETERS[3:])
+    cells, photons_counted = group(path, done, parameters)
+    if photons_counted:
+        parameters.insert(0, "photons_stored")
+    present = [name for name in parameters if any(name in cell.parameters for cell in cells)]
+    order = lambda cell: [natural(cell.scene), natural(cell.method)] + [
+        natural(cell.parameters.get(name, "-inf")) for name in present]
+    return Records(sorted(cells, key=order), present, left_out)
+
+
+def read_rows(path):
+    """The header, and (line number, {column: text}) for each row."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            reader = csv.reader(file, strict=True)
+            header = next(reader, None)
+            if not header:
+                raise RecordsError(f"{path}: the file is empty, expected a header and one row per trial")
+            check_header(path, header)
+            rows = []
+            for fields in reader:
+                if len(fields) != len(header):
+                    raise RecordsError(f"{path}: line {reader.line_num} has {len(fields)} fields, "
+                                       f"the header has {len(header)}")
+                rows.append((reader.line_num, dict(zip(header, fields))))
+    except OSError as error:
+        raise RecordsError(f"{path}: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise RecordsError(f"{path}: not UTF-8 text ({error.reason} at byte {error.start})") from error
+    except csv.Error as error:
+        raise RecordsError(f"{path}: line {reader.line_num}: {error}") from error
+    if not rows:
+        raise RecordsError(f"{path}: a header without rows, expected one row per trial")
+    return header, rows
+
+
+def check_header(path, header):
+    missing = [name for name in REQUIRED if name not in header]
+    if missing:
+        raise RecordsError(f"{path}: missing column{'s' * (len(missing) > 1)} {', '.join(missing)} "
+                           f"(it has: {', '.join(header)})")
+    twice = sorted({name for name in header if header.count(name) > 1})
+    if twice:
+        raise RecordsError(f"{path}: column {twice[0]} is there twice")
+
+
+def check(path, line, row):
+    """Refuses a row that cannot be trusted; a number that is not finite is named, never skipped."""
+    place = f"{path}: line {line} (trial {row['trial'] or 'without a name'})"
+    if row["status"] not in STATUSES:
+        raise RecordsError(f'{place}: unknown status "{row["status"]}" (known: {", ".join(STATUSES)})')
+    if row["status"] != "done":
+        return
+    for name in ("scene", "method", "seed"):
+        if not row[name]:
+            raise RecordsError(f"{place}: column {name} is empty")
+    for name in NUMBERS:
+        text = row.get(name)
+        if not text:
+            continue
+        number = as_number(text)
+        if number is None or not math.isfinite(number):
+            raise RecordsError(f'{place}: column {name} is "{text}", expected a finite number or nothing')
+        if number < 0 and name in NOT_NEGATIVE:
+            raise RecordsError(f'{place}: column {name} is "{text}", expected a number ≥ 0')
+
+
+def group(path, rows, parameters):
+    """The cells of the rows, and whether the stored photons had to serve as a parameter.
+
+    Stored photons vary from seed to seed where emitted ones were asked for, so they tell cells apart only where
+    nothing else does: rows of one cell may not repeat a seed.
+    """
+    cells = {}
+    for line, row in rows:
+        own = {name: row[name] if name in LABELS else canonical(row[name]) for name in parameters if row[name]}
+        key = (row["scene"], row["method"], tuple(own.items()))
+        cells.setdefault(key, (Cell(row["scene"], row["method"], own), []))[1].append((line, row))
+    result = []
+    photons_counted = False
+    for cell, members in cells.values():
+        if repeated(members) and cell.photon_parameter() is None and all(row["photons_stored"] for _, row in members):
+            photons_counted = True
+            result += split_by_photons(cell, members)
+        else:
+            result.append((cell, members))
+    for cell, members in result:
+        same = repeated(members)
+        if same:
+            raise RecordsError(f"{path}: lines {same[0]} and {same[1]} have the same scene, method, parameters, seed "
+                               "and repeat; a column that tells them apart is missing after code_version")
+        cell.records = [row for _, row in members]
+    return [cell for cell, _ in result], photons_counted
+
+
+def split_by_photons(cell, members):
+    parts = {}
+    for line, row in members:
+        parts.setdefault(canonical(row["photons_stored"]), []).append((line, row))
+    return [(Cell(cell.scene, cell.method, {"photons_stored": count, **cell.parameters}), part)
+            for count, part in parts.items()]
+
+
+def repeated(members):
+    """The lines of the first two rows with the same seed and repeat, or None."""
+    first = {}
+    for line, row in members:
+        key = (row["seed"], row["repeat"])
+        if key in first:
+            return first[key], line
+        first[key] = line
+    return None
+
+
+def canonical(text):
+    """One spelling per value, so that 0.10 and 0.1, or 1e5 and 100000, are the same cell."""
+    number = as_number(text)
+    if number is None or not math.isfinite(number):
+        return text
+    return str(int(number)) if number == int(number) and abs(number) < 1e15 else repr(number)
