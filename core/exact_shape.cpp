@@ -78,7 +78,7 @@ std::optional<Interval> clip_to_box(const SineHeightfield& field, const Vec3d& o
             continue;
         }
         const auto [enter, leave] =
-            std::minmax((-half[axis] - o[axis]) / d[axis], (half[axis] - o[axis]) / d[axis]);
+            std::minmax({(-half[axis] - o[axis]) / d[axis], (half[axis] - o[axis]) / d[axis]});
         range.low = std::max(range.low, enter);
         range.high = std::min(range.high, leave);
     }
