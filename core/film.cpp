@@ -1,0 +1,120 @@
+#include "core/film.h"
+
+#include <OpenImageIO/imageio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/error.h"
+
+namespace caustics {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::array<std::string, 3> rgb_channels(const std::string& layer) {
+    const std::string prefix = layer.empty() ? "" : layer + ".";
+    return {prefix + "R", prefix + "G", prefix + "B"};
+}
+
+[[noreturn]] void fail(const fs::path& file, const std::string& doing, const std::string& why) {
+    std::string line = why;
+    std::ranges::replace(line, '\n', ' ');
+    throw InputError(file.string() + ": cannot be " + doing + " (" + line + ")");
+}
+
+// Writes through a temporary name, so that the file is whole or absent.
+void write_whole(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
+                 const fs::path& file) {
+    fs::path temporary = file;
+    temporary.replace_filename("." + file.stem().string() + ".tmp-" + std::to_string(getpid()) +
+                               file.extension().string());
+    const auto output = OIIO::ImageOutput::create(file.string());
+    if (!output) fail(file, "written", OIIO::geterror());
+    const bool done = output->open(temporary.string(), spec) &&
+                      output->write_image(type, pixels) && output->close();
+    std::error_code error;
+    if (done) fs::rename(temporary, file, error);
+    if (done && !error) return;
+    const std::string why = done ? error.message() : output->geterror();
+    fs::remove(temporary, error);
+    fail(file, "written", why);
+}
+
+}  // namespace
+
+std::vector<float>& Film::plane(const std::string& channel) {
+    for (Plane& plane : planes_)
+        if (plane.channel == channel) return plane.values;
+    planes_.push_back({channel, std::vector<float>(pixel_count(), 0.0F)});
+    return planes_.back().values;
+}
+
+const std::vector<float>* Film::find(const std::string& channel) const {
+    for (const Plane& plane : planes_)
+        if (plane.channel == channel) return &plane.values;
+    return nullptr;
+}
+
+bool Film::has_layer(const std::string& layer) const {
+    return std::ranges::all_of(rgb_channels(layer),
+                               [this](const std::string& name) { return find(name) != nullptr; });
+}
+
+Spectrum Film::rgb(const std::string& layer, std::size_t pixel) const {
+    Spectrum value;
+    Eigen::Index c = 0;
+    for (const std::string& name : rgb_channels(layer)) value[c++] = find(name)->at(pixel);
+    return value;
+}
+
+void Film::set_rgb(const std::string& layer, std::size_t pixel, const Spectrum& value) {
+    Eigen::Index c = 0;
+    for (const std::string& name : rgb_channels(layer)) plane(name)[pixel] = value[c++];
+}
+
+void write_exr(const Film& film, const fs::path& file) {
+    OIIO::ImageSpec spec(film.width(), film.height(), static_cast<int>(film.planes().size()),
+                         OIIO::TypeDesc::FLOAT);
+    spec.channelnames.clear();
+    for (const Plane& plane : film.planes()) spec.channelnames.push_back(plane.channel);
+    spec.attribute("compression", "zip");
+    for (const auto& [name, value] : film.metadata) spec.attribute("causticbench." + name, value);
+    std::vector<float> pixels(film.pixel_count() * film.planes().size());
+    for (std::size_t c = 0; c < film.planes().size(); ++c)
+        for (std::size_t i = 0; i < film.pixel_count(); ++i)
+            pixels[i * film.planes().size() + c] = film.planes()[c].values[i];
+    write_whole(spec, OIIO::TypeDesc::FLOAT, pixels.data(), file);
+}
+
+Film read_exr(const fs::path& file) {
+    if (!fs::exists(file)) fail(file, "read", "no such file");
+    const auto input = OIIO::ImageInput::open(file.string());
+    if (!input) fail(file, "read", OIIO::geterror());
+    const OIIO::ImageSpec& spec = input->spec();
+    Film film(spec.width, spec.height);
+    const auto channels = static_cast<std::size_t>(spec.nchannels);
+    std::vector<float> pixels(film.pixel_count() * channels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
+        fail(file, "read", input->geterror());
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::vector<float>& plane = film.plane(spec.channelnames[c]);
+        for (std::size_t i = 0; i < film.pixel_count(); ++i) plane[i] = pixels[i * channels + c];
+    }
+    const std::string prefix = "causticbench.";
+    for (const auto& attribute : spec.extra_attribs) {
+        const std::string name = attribute.name().string();
+        if (name.starts_with(prefix))
+            film.metadata[name.substr(prefix.size())] = attribute.get_string();
+    }
+    return film;
+}
+
+void write_png(int width, int height, const std::vector<unsigned char>& rgb,
+               const fs::path& file) {
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    write_whole(spec, OIIO::TypeDesc::UINT8, rgb.data(), file);
+}
+
+}  // namespace caustics

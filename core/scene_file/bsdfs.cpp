@@ -1,0 +1,115 @@
+#include "core/scene_file/bsdfs.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace caustics::scene_file {
+namespace {
+
+const std::vector<std::string> known_types{"diffuse", "schlick", "dielectric", "conductor",
+                                           "twosided"};
+const std::vector<std::string> later_types{"phong",          "blendbsdf", "roughconductor",
+                                           "roughdielectric", "plastic",   "thindielectric",
+                                           "mask",           "principled", "ref"};
+
+// Refractive indices by name, with Mitsuba 3's constants.
+constexpr std::array<std::pair<const char*, float>, 23> named_iors{{
+    {"vacuum", 1.0F},
+    {"helium", 1.000036F},
+    {"hydrogen", 1.000132F},
+    {"air", 1.000277F},
+    {"carbon dioxide", 1.00045F},
+    {"water", 1.3330F},
+    {"acetone", 1.36F},
+    {"ethanol", 1.361F},
+    {"carbon tetrachloride", 1.461F},
+    {"glycerol", 1.4729F},
+    {"benzene", 1.501F},
+    {"silicone oil", 1.52045F},
+    {"bromine", 1.661F},
+    {"water ice", 1.31F},
+    {"fused quartz", 1.458F},
+    {"pyrex", 1.470F},
+    {"acrylic glass", 1.49F},
+    {"polypropylene", 1.49F},
+    {"bk7", 1.5046F},
+    {"sodium chloride", 1.544F},
+    {"amber", 1.55F},
+    {"pet", 1.5750F},
+    {"diamond", 2.419F},
+}};
+
+float read_ior(const JsonNode& parent, const std::string& key, float fallback) {
+    const auto node = parent.find(key);
+    if (!node) return fallback;
+    if (node->is_object()) node->fail("dispersion is not supported (yet); give a number or a name");
+    if (node->is_number()) return static_cast<float>(node->as_number_in(0.1, 10));
+    std::vector<std::string> names;
+    for (const auto& [name, ior] : named_iors) names.emplace_back(name);
+    return named_iors[node->as_choice(names)].second;
+}
+
+Dielectric read_dielectric(const JsonNode& node) {
+    constexpr double unlimited = 1e30;
+    Dielectric glass;
+    glass.int_ior = read_ior(node, "int_ior", glass.int_ior);
+    glass.ext_ior = read_ior(node, "ext_ior", glass.ext_ior);
+    glass.absorption = read_colour(node, "absorption", 0, unlimited);
+    glass.ext_absorption = read_colour(node, "ext_absorption", 0, unlimited);
+    glass.specular_reflectance = read_colour(node, "specular_reflectance", 1, 1);
+    glass.specular_transmittance = read_colour(node, "specular_transmittance", 1, 1);
+    return glass;
+}
+
+Conductor read_conductor(const JsonNode& node) {
+    if (const auto material = node.find("material"))
+        if (material->as_string() != "none")
+            material->fail("material \"" + material->as_string() +
+                           "\" is not supported (yet) (known: none)");
+    return {read_colour(node, "specular_reflectance", 1, 1)};
+}
+
+Schlick read_schlick(const JsonNode& node, Assets& assets) {
+    Schlick schlick;
+    schlick.reflectance = read_texture(node, "reflectance", 0.5, assets);
+    if (const auto alpha = node.find("alpha")) {
+        schlick.alpha = static_cast<float>(alpha->as_number_in(0, 1));
+        if (schlick.alpha < 1e-6F)
+            alpha->fail("must be above 0 (at 0 the model is a mirror; use a conductor)");
+    }
+    return schlick;
+}
+
+Bsdf read_twosided(const JsonNode& node, Assets& assets) {
+    const auto children = node.others();
+    if (children.size() != 1 || !children.front().second.is_object())
+        node.fail("twosided takes exactly one nested bsdf");
+    Bsdf inner = read_bsdf(children.front().second, assets);
+    if (inner.twosided || std::holds_alternative<Dielectric>(inner.model))
+        children.front().second.fail(
+            "only one-sided bsdfs can be made twosided (diffuse, schlick, conductor)");
+    inner.twosided = true;
+    return inner;
+}
+
+}  // namespace
+
+bool is_bsdf_type(const std::string& type) {
+    return std::ranges::find(known_types, type) != known_types.end() ||
+           std::ranges::find(later_types, type) != later_types.end();
+}
+
+Bsdf read_bsdf(const JsonNode& node, Assets& assets) {
+    const std::string type = read_type(node, "bsdf", known_types, later_types);
+    Bsdf bsdf;
+    if (type == "twosided") bsdf = read_twosided(node, assets);
+    if (type == "diffuse") bsdf.model = Diffuse{read_texture(node, "reflectance", 0.5, assets)};
+    if (type == "schlick") bsdf.model = read_schlick(node, assets);
+    if (type == "dielectric") bsdf.model = read_dielectric(node);
+    if (type == "conductor") bsdf.model = read_conductor(node);
+    node.finish();
+    return bsdf;
+}
+
+}  // namespace caustics::scene_file

@@ -1,0 +1,214 @@
+#include "core/scene_file/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/mesh_io.h"
+#include "core/scene_file/bsdfs.h"
+#include "core/tessellate.h"
+
+namespace caustics::scene_file {
+namespace {
+
+constexpr double far_away = 1e30;
+
+double read_radius(const JsonNode& node) {
+    const auto radius = node.find("radius");
+    if (!radius) return 1;
+    const double value = radius->as_number_in(0, far_away);
+    if (value == 0) radius->fail("must be above 0");
+    return value;
+}
+
+// The unit sphere -> centre and radius.
+Transform read_sphere_placement(const JsonNode& node) {
+    const auto centre = node.find("center");
+    const double radius = read_radius(node);
+    return Eigen::Translation3d(centre ? read_vector(*centre) : Vec3d::Zero().eval()) *
+           Eigen::Scaling(radius);
+}
+
+// The unit cylinder along z in [0, 1] -> p0 to p1.
+Transform read_cylinder_placement(const JsonNode& node) {
+    const auto p0 = node.find("p0");
+    const auto p1 = node.find("p1");
+    const Vec3d from = p0 ? read_vector(*p0) : Vec3d::Zero().eval();
+    const Vec3d axis = (p1 ? read_vector(*p1) : Vec3d::UnitZ().eval()) - from;
+    if (axis.norm() == 0) node.fail("p0 and p1 of a cylinder must differ");
+    const double radius = read_radius(node);
+    return Eigen::Translation3d(from) *
+           Eigen::Quaterniond::FromTwoVectors(Vec3d::UnitZ(), axis.normalized()) *
+           Eigen::Scaling(radius, radius, axis.norm());
+}
+
+SineWave read_wave(const JsonNode& node) {
+    SineWave wave;
+    wave.amplitude = node.at("amplitude").as_number();
+    const std::vector<double> k = node.at("wave_vector").as_numbers(2);
+    wave.wave_vector = {k[0], k[1]};
+    if (const auto phase = node.find("phase")) wave.phase = phase->as_number();
+    node.finish();
+    return wave;
+}
+
+SineHeightfield read_heightfield(const JsonNode& node) {
+    for (const char* later : {"fractal", "filename"})
+        if (const auto key = node.find(later))
+            key->fail(std::string("heightfield by ") + later +
+                      " is not supported (yet) (known: waves)");
+    SineHeightfield field;
+    for (const JsonNode& wave : node.at("waves").as_array()) field.waves.push_back(read_wave(wave));
+    if (const auto half_size = node.find("half_size")) {
+        const std::vector<double> half = half_size->as_numbers(2);
+        if (half[0] <= 0 || half[1] <= 0) half_size->fail("must be above 0");
+        field.half_size = {half[0], half[1]};
+    }
+    return field;
+}
+
+bool is_similarity(const Transform& transform) {
+    const Eigen::Matrix3d square = transform.linear().transpose() * transform.linear();
+    const double scale = square.trace() / 3;
+    return (square - scale * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-6 * scale;
+}
+
+TriangleMesh tessellate(Primitive primitive, const SineHeightfield& field, int n) {
+    switch (primitive) {
+        case Primitive::rectangle: return tessellate_rectangle(n);
+        case Primitive::disk: return tessellate_disk(n);
+        case Primitive::sphere: return tessellate_sphere(n);
+        case Primitive::cylinder: return tessellate_cylinder(n);
+        default: return tessellate_heightfield(field, n);
+    }
+}
+
+// Keys that every shape has.
+struct CommonKeys {
+    std::optional<JsonNode> transform_node, resolution;
+    Transform to_world = Transform::Identity();
+    bool flip_normals = false;
+    bool face_normals = false;
+
+    CommonKeys(const JsonNode& node, const std::string& type) {
+        transform_node = node.find("to_world");
+        if (transform_node) to_world = read_transform(*transform_node);
+        if (const auto flip = node.find("flip_normals")) flip_normals = flip->as_bool();
+        const bool file = type == "obj" || type == "ply";
+        resolution = node.find("resolution");
+        if (resolution && file)
+            resolution->fail("a mesh file has its own resolution; only analytic shapes take one");
+        const auto faces = node.find("face_normals");
+        if (faces && !file && !resolution && type != "cube")
+            faces->fail("only a mesh has face normals; give the shape a `resolution`");
+        if (faces) face_normals = faces->as_bool();
+    }
+
+    int count(int least) const {
+        return static_cast<int>(resolution->as_integer_in(least, 16384));
+    }
+
+    void finish_mesh(TriangleMesh& mesh) const {
+        if (face_normals) mesh.normals.clear();
+        transform(mesh, to_world);
+        if (flip_normals) flip(mesh);
+    }
+};
+
+void read_mesh_file(const JsonNode& node, CommonKeys keys, Shape& shape, Assets& assets) {
+    shape.primitive = Primitive::mesh;
+    MeshLoadOptions options;
+    options.face_normals = keys.face_normals;
+    options.flip_normals = keys.flip_normals;
+    shape.mesh = load_mesh(read_file_name(node.at("filename"), assets), options);
+    transform(shape.mesh, keys.to_world);
+}
+
+void read_analytic(const JsonNode& node, const std::string& type, CommonKeys keys, Shape& shape) {
+    const std::vector<std::string> names{"rectangle", "disk", "sphere", "cylinder", "heightfield"};
+    const auto at = std::ranges::find(names, type) - names.begin();
+    shape.primitive = static_cast<Primitive>(at);
+    if (shape.primitive == Primitive::heightfield) shape.field = read_heightfield(node);
+    const bool round =
+        shape.primitive == Primitive::sphere || shape.primitive == Primitive::cylinder;
+    if (round && !keys.resolution && !is_similarity(keys.to_world))
+        keys.transform_node->fail("an exact " + type +
+                                  " takes rotations, translations and one scale only; give it a "
+                                  "`resolution` to stretch it");
+    if (shape.primitive == Primitive::sphere)
+        keys.to_world = keys.to_world * read_sphere_placement(node);
+    if (shape.primitive == Primitive::cylinder)
+        keys.to_world = keys.to_world * read_cylinder_placement(node);
+    if (!keys.resolution) {
+        shape.to_world = keys.to_world;
+        shape.flip_normals = keys.flip_normals;
+        return;
+    }
+    const int n = keys.count(shape.primitive == Primitive::sphere ? 2 : 1);
+    shape.mesh = tessellate(shape.primitive, shape.field, n);
+    shape.primitive = Primitive::mesh;
+    keys.finish_mesh(shape.mesh);
+}
+
+void read_cube(const CommonKeys& keys, Shape& shape) {
+    shape.primitive = Primitive::mesh;
+    shape.mesh = tessellate_cube(keys.resolution ? keys.count(1) : 1);
+    keys.finish_mesh(shape.mesh);
+}
+
+// What is nested in a shape under keys of the user's choice: a bsdf and an emitter.
+void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
+    bool has_bsdf = false;
+    for (const auto& [key, child] : node.others()) {
+        if (!child.is_object() || !child.find("type")) {
+            child.fail("unknown key of this shape (known: the shape's parameters, a nested bsdf, a "
+                       "nested emitter)");
+        }
+        const std::string type = child.at("type").as_string();
+        if (is_bsdf_type(type)) {
+            if (has_bsdf) child.fail("a shape takes one bsdf");
+            has_bsdf = true;
+            shape.bsdf = read_bsdf(child, assets);
+            continue;
+        }
+        read_type(child, "bsdf or emitter",
+                  {"area", "diffuse", "schlick", "dielectric", "conductor", "twosided"},
+                  {"homogeneous", "heterogeneous"});
+        if (shape.radiance) child.fail("a shape takes one emitter");
+        shape.radiance = read_colour(child, "radiance", 1, far_away);
+        child.finish();
+        if (shape.primitive == Primitive::heightfield)
+            child.fail("an exact heightfield cannot emit; give it a `resolution`");
+    }
+}
+
+}  // namespace
+
+const std::vector<std::string>& shape_types() {
+    static const std::vector<std::string> types{"rectangle", "disk", "sphere", "cylinder",
+                                                "cube",      "obj",  "ply",    "heightfield"};
+    return types;
+}
+
+const std::vector<std::string>& later_shape_types() {
+    static const std::vector<std::string> types{"lathe",        "instance", "shapegroup",
+                                                "bsplinecurve", "sdfgrid",  "serialized"};
+    return types;
+}
+
+Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) {
+    const std::string type = read_type(node, "shape", shape_types(), later_shape_types());
+    Shape shape;
+    shape.name = name;
+    const CommonKeys keys(node, type);
+    if (type == "obj" || type == "ply")
+        read_mesh_file(node, keys, shape, assets);
+    else if (type == "cube")
+        read_cube(keys, shape);
+    else
+        read_analytic(node, type, keys, shape);
+    read_nested(node, shape, assets);
+    node.finish();
+    return shape;
+}
+
+}  // namespace caustics::scene_file

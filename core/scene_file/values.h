@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/json_reader.h"
+#include "core/spectrum.h"
+#include "core/texture.h"
+#include "core/vec.h"
+
+namespace caustics::scene_file {
+
+/// What a scene file refers to: absolute file -> name as written.
+using Assets = std::vector<std::pair<std::filesystem::path, std::string>>;
+
+Vec3d read_vector(const JsonNode& node);
+/// A number, [r, g, b], or {"type": "rgb", "value": number or [r, g, b]}; 0 <= value <= `most`.
+Spectrum read_colour(const JsonNode& node, double most);
+Spectrum read_colour(const JsonNode& parent, const std::string& key, double fallback, double most);
+/// A colour, or a `bitmap` or `checkerboard` texture.
+Texture read_texture(const JsonNode& parent, const std::string& key, double fallback,
+                     Assets& assets);
+/// A 4x4 row-major matrix or a list of operations, applied in their order. Never singular.
+Transform read_transform(const JsonNode& node);
+/// The file named by the string node, relative to the file the node was written in; noted.
+std::filesystem::path read_file_name(const JsonNode& node, Assets& assets);
+/// The object's `type`, refused with the list of what is known unless it is in `known`; names of
+/// `later` are said to be not supported yet.
+std::string read_type(const JsonNode& node, const std::string& family,
+                      const std::vector<std::string>& known,
+                      const std::vector<std::string>& later = {});
+
+}  // namespace caustics::scene_file

@@ -1,0 +1,190 @@
+#include "core/scene_io.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "core/hash.h"
+#include "core/json_reader.h"
+#include "core/scene_file/bsdfs.h"
+#include "core/scene_file/shapes.h"
+#include "core/scene_file/values.h"
+
+namespace caustics {
+namespace {
+
+using scene_file::Assets;
+using scene_file::read_colour;
+using scene_file::read_type;
+using scene_file::read_vector;
+
+constexpr double unlimited = 1e30;
+
+void read_film(const JsonNode& node, Camera& camera) {
+    if (const auto width = node.find("width"))
+        camera.width = static_cast<int>(width->as_integer_in(1, 65536));
+    if (const auto height = node.find("height"))
+        camera.height = static_cast<int>(height->as_integer_in(1, 65536));
+    for (const auto& [key, child] : node.others()) {
+        if (!child.is_object())
+            child.fail("unknown key (known: width, height, rfilter)");
+        read_type(child, "reconstruction filter", {"box"},
+                  {"gaussian", "tent", "mitchell", "catmullrom", "lanczos"});
+        child.finish();
+    }
+    node.finish();
+}
+
+PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
+    PixelSampling sampling;
+    sampling.stratified = type == "stratified";
+    const auto count = node.find("sample_count");
+    if (count) sampling.sample_count = static_cast<int>(count->as_integer_in(1, 1 << 20));
+    if (sampling.stratified) {
+        if (const auto jitter = node.find("jitter")) sampling.jitter = jitter->as_bool();
+        const int root = static_cast<int>(std::floor(std::sqrt(sampling.sample_count)));
+        if (root * root != sampling.sample_count)
+            count->fail("a stratified sampler takes a square number of samples (" +
+                        std::to_string(root * root) + " or " +
+                        std::to_string((root + 1) * (root + 1)) + ")");
+    }
+    node.finish();
+    return sampling;
+}
+
+void read_sensor(const JsonNode& node, SceneDesc& desc) {
+    read_type(node, "sensor", {"perspective"},
+              {"thinlens", "orthographic", "radiancemeter", "irradiancemeter", "distant"});
+    Camera& camera = desc.camera;
+    if (const auto fov = node.find("fov")) {
+        camera.fov_degrees = fov->as_number_in(0, 180);
+        if (camera.fov_degrees < 1e-6 || camera.fov_degrees > 179.9999)
+            fov->fail("must lie between 0 and 180 degrees");
+    }
+    if (const auto axis = node.find("fov_axis"))
+        camera.fov_axis = static_cast<Camera::FovAxis>(
+            axis->as_choice({"x", "y", "diagonal", "smaller", "larger"}));
+    if (const auto to_world = node.find("to_world")) {
+        camera.to_world = scene_file::read_transform(*to_world);
+        // A view is a direction: a scale changes nothing, a shear or a mirror is a mistake.
+        const Eigen::Matrix3d linear = camera.to_world.linear();
+        const Eigen::Matrix3d square = linear.transpose() * linear;
+        const double scale = square.trace() / 3;
+        if ((square - scale * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 1e-6 * scale)
+            to_world->fail("a sensor takes rotations, translations and one scale only");
+        camera.to_world.linear() = linear / std::sqrt(scale);
+    }
+    bool has_film = false;
+    bool has_sampler = false;
+    for (const auto& [key, child] : node.others()) {
+        if (!child.is_object() || !child.find("type"))
+            child.fail("unknown key of this sensor (known: fov, fov_axis, to_world, a nested film, "
+                       "a nested sampler)");
+        const std::string type =
+            read_type(child, "film or sampler", {"hdrfilm", "independent", "stratified"},
+                      {"specfilm", "multijitter", "orthogonal", "ldsampler"});
+        bool& seen = type == "hdrfilm" ? has_film : has_sampler;
+        if (seen) child.fail("stands twice: a sensor takes one film and one sampler");
+        seen = true;
+        if (type == "hdrfilm")
+            read_film(child, camera);
+        else
+            desc.sampling = read_sampler(child, type);
+    }
+    node.finish();
+}
+
+void read_point_light(const JsonNode& node, SceneDesc& desc) {
+    PointLight light;
+    const auto position = node.find("position");
+    const auto to_world = node.find("to_world");
+    if (position && to_world) to_world->fail("give either position or to_world");
+    if (position) light.position = read_vector(*position).cast<float>();
+    if (to_world)
+        light.position =
+            Vec3d(scene_file::read_transform(*to_world).translation()).cast<float>();
+    light.intensity = read_colour(node, "intensity", 1, unlimited);
+    node.finish();
+    desc.point_lights.push_back(light);
+}
+
+void read_directional_light(const JsonNode& node, SceneDesc& desc) {
+    DirectionalLight light;
+    const auto direction = node.find("direction");
+    const auto to_world = node.find("to_world");
+    if (direction && to_world) to_world->fail("give either direction or to_world");
+    if (direction) {
+        const Vec3d towards = read_vector(*direction);
+        if (towards.norm() == 0) direction->fail("must not be zero");
+        light.direction = towards.normalized().cast<float>();
+    }
+    if (to_world)
+        light.direction = Vec3d(scene_file::read_transform(*to_world).linear().col(2))
+                              .normalized()
+                              .cast<float>();
+    light.irradiance = read_colour(node, "irradiance", 1, unlimited);
+    node.finish();
+    desc.directional_lights.push_back(light);
+}
+
+// The children of the scene are told apart by their types alone.
+void read_child(const std::string& key, const JsonNode& node, SceneDesc& desc, bool& has_sensor,
+                Assets& assets) {
+    if (!node.is_object() || !node.find("type"))
+        node.fail("unknown key of a scene (known: type, version, and named children that are "
+                  "objects with a type)");
+    const std::string type = node.at("type").as_string();
+    std::vector<std::string> known{"perspective", "point", "directional"};
+    std::vector<std::string> later{"constant", "spot",     "envmap",   "projector", "thinlens",
+                                   "path",     "ptracer",  "volpath",  "direct",    "aov",
+                                   "ref",      "directionalarea", "sunsky", "orthographic"};
+    std::ranges::copy(scene_file::shape_types(), std::back_inserter(known));
+    std::ranges::copy(scene_file::later_shape_types(), std::back_inserter(later));
+    if (type == "area") node.fail("an area emitter is nested in the shape that emits");
+    if (scene_file::is_bsdf_type(type) && type != "ref")
+        node.fail("a bsdf is nested in the shape that has it; share one by $include");
+    read_type(node, "scene object", known, later);
+    if (type == "point") return read_point_light(node, desc);
+    if (type == "directional") return read_directional_light(node, desc);
+    if (type != "perspective") {
+        desc.shapes.push_back(scene_file::read_shape(key, node, assets));
+        return;
+    }
+    if (has_sensor) node.fail("a scene takes one sensor");
+    has_sensor = true;
+    read_sensor(node, desc);
+}
+
+std::string hash_of_file(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << in.rdbuf();
+    return hex(fnv1a(bytes.str()));
+}
+
+}  // namespace
+
+SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrides) {
+    JsonNode root = JsonNode::parse_file(file);
+    for (const auto& [pointer, value] : overrides) root.set(pointer, value);
+    if (const auto type = root.find("type")) type->as_choice({"scene"});
+    if (const auto version = root.find("version")) version->as_integer_in(1, 1);
+    SceneFile scene;
+    Assets assets;
+    bool has_sensor = false;
+    for (const auto& [key, child] : root.others())
+        read_child(key, child, scene.desc, has_sensor, assets);
+    if (!has_sensor) root.fail("the scene has no sensor (known: perspective)");
+    if (scene.desc.shapes.empty()) root.fail("the scene has no shape");
+    scene.canonical = root.canonical();
+    std::uint64_t state = fnv1a(scene.canonical);
+    for (const auto& [path, name] : assets) {
+        scene.assets.emplace_back(name, hash_of_file(path));
+        state = fnv1a(name + scene.assets.back().second, state);
+    }
+    scene.hash = hex(state);
+    return scene;
+}
+
+}  // namespace caustics
