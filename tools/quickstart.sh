@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# From a fresh Debian to a table, plots and pictures in results/quickstart: sets up, builds, sweeps the
+# three quick-start scenes and plots. Arguments are handed to the sweep (--references rebuild, --force).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+results=results/quickstart
+
+fail() { echo "quickstart: $*" >&2; exit 1; }
+
+bash tools/build.sh release causticbench || fail "no program to run (see above)"
+
+sweeps=()
+for scene in ring pool ball; do
+    sweeps+=("experiments/sweeps/quickstart_$scene.json")
+done
+status=0
+build/release/bin/causticbench sweep "${sweeps[@]}" -o "$results" "$@" || status=$?
+[ "$status" = 0 ] || { echo "quickstart: the sweep ended with exit code $status (see above)" >&2; exit "$status"; }
+/usr/bin/python3 tools/plot_records.py "$results" || fail "plotting $results failed (see above)"
+
+echo "quickstart: done"
+echo "  table     $results/records.csv"
+echo "  plots     $results/report/*.svg"
+echo "  pictures  $results/report/figures/*.png"

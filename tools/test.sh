@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Sets up, builds the preset `ci` and runs all tests. Arguments are handed to ctest (-L unit, -R name).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+bash tools/build.sh ci || { echo "test: nothing to run (see above)" >&2; exit 1; }
+ctest --preset ci --parallel "$(nproc)" "$@" </dev/null
