@@ -1,0 +1,87 @@
+#include "experiments/cli_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "experiments/interrupt.h"
+
+namespace caustics {
+
+CLI::Option* add_repeatable(CLI::App& verb, const std::string& name,
+                            std::vector<std::string>& values, const std::string& help) {
+    return verb.add_option(name, values, help)->type_size(1)->allow_extra_args(false);
+}
+
+void SceneOptions::add_to(CLI::App& verb) {
+    verb.add_option("SCENE", file, "Scene file (JSON)")->required();
+    add_repeatable(verb, "--set", sets,
+                   "Change the scene: /json/pointer=value, JSON or else a string. Repeatable")
+        ->type_name("/POINTER=VALUE");
+}
+
+Overrides SceneOptions::overrides() const {
+    Overrides all;
+    for (const std::string& set : sets) {
+        const std::size_t equals = set.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw InputError(fmt::format("--set \"{}\": expected /json/pointer=value", set));
+        all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+    }
+    return all;
+}
+
+SceneFile SceneOptions::load() const { return load_scene(file, overrides()); }
+
+void MethodOptions::add_to(CLI::App& verb) {
+    std::string known;
+    for (const std::string& each : method_names()) known += (known.empty() ? "" : ", ") + each;
+    verb.add_option("--method", name, "Caustic method: " + known)->required()->type_name("NAME");
+    add_repeatable(verb, "--param", params, "Parameter of the method: key=value. Repeatable")
+        ->type_name("KEY=VALUE");
+}
+
+Method MethodOptions::parse() const { return parse_method(name, parameters_node(params)); }
+
+void RunFlags::add_threads(CLI::App& verb) {
+    verb.add_option("--threads", threads, "Number of threads (default: those available)")
+        ->check(CLI::Range(1, 4096));
+}
+
+void RunFlags::add_to(CLI::App& verb) {
+    verb.add_option("--seed", seed, "Seed of all random numbers (default 1)");
+    add_threads(verb);
+}
+
+RunOptions RunFlags::options(int samples_per_pixel) const {
+    RunOptions options;
+    options.seed = seed;
+    options.threads = threads > 0 ? threads : available_threads();
+    options.samples_per_pixel = samples_per_pixel;
+    options.progress = [](double) { throw_if_interrupted(); };
+    return options;
+}
+
+int samples_per_pixel(const PixelSampling& sampling, int asked) {
+    const int count = asked > 0 ? asked : sampling.sample_count;
+    const int root = static_cast<int>(std::lround(std::sqrt(count)));
+    if (sampling.stratified && root * root != count)
+        throw InputError(fmt::format(
+            "--spp {}: the scene's stratified sampler takes n^2 samples a pixel (nearest: {})",
+            count, root * root));
+    return count;
+}
+
+void require_writable_place(const std::filesystem::path& file) {
+    const std::filesystem::path folder =
+        file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    if (!std::filesystem::is_directory(folder))
+        throw InputError(
+            fmt::format("{}: the folder {} does not exist", file.string(), folder.string()));
+    if (std::filesystem::is_directory(file))
+        throw InputError(fmt::format("{}: is a folder, not a file", file.string()));
+}
+
+}  // namespace caustics

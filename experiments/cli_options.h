@@ -1,0 +1,53 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene_io.h"
+#include "experiments/methods.h"
+
+namespace caustics {
+
+/// Options that verbs share. Each adds itself to a verb and says what was given.
+struct SceneOptions {
+    std::string file;
+    std::vector<std::string> sets;
+
+    void add_to(CLI::App& verb);
+    /// `--set` as pairs; throws InputError without '='.
+    Overrides overrides() const;
+    SceneFile load() const;
+};
+
+struct MethodOptions {
+    std::string name;
+    std::vector<std::string> params;
+
+    void add_to(CLI::App& verb);
+    Method parse() const;
+};
+
+struct RunFlags {
+    std::uint64_t seed = 1;
+    int threads = 0;  ///< 0: those the process may run on
+
+    void add_to(CLI::App& verb);
+    void add_threads(CLI::App& verb);
+    RunOptions options(int samples_per_pixel) const;
+};
+
+/// Samples a pixel as asked for, or the scene's when `asked` is 0. Throws InputError when they do
+/// not fit the scene's sampler.
+int samples_per_pixel(const PixelSampling& sampling, int asked);
+
+/// Throws InputError unless `file` can be written to: its folder exists and it is no folder itself.
+void require_writable_place(const std::filesystem::path& file);
+
+/// An option that may be given many times, each time with one value.
+CLI::Option* add_repeatable(CLI::App& verb, const std::string& name,
+                            std::vector<std::string>& values, const std::string& help);
+
+}  // namespace caustics

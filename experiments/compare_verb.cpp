@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "experiments/cli_options.h"
+#include "experiments/csv.h"
+#include "experiments/files.h"
+#include "experiments/metrics.h"
+#include "experiments/pictures.h"
+#include "experiments/record.h"
+#include "experiments/verbs.h"
+
+namespace caustics {
+
+namespace {
+
+struct CompareOptions {
+    std::string picture;
+    std::string reference;
+    std::string mask;
+    std::string strip;
+    bool json = false;
+};
+
+PixelMask mask_from(const std::string& file, const Film& reference) {
+    const Film mask = read_exr(file);
+    if (mask.width() != reference.width() || mask.height() != reference.height())
+        throw InputError(fmt::format("{}: the mask is {}x{} pixels, the reference {}x{}", file,
+                                     mask.width(), mask.height(), reference.width(),
+                                     reference.height()));
+    PixelMask counted(mask.pixel_count(), false);
+    for (const Plane& plane : mask.planes())
+        for (std::size_t i = 0; i < counted.size(); ++i)
+            if (plane.values[i] != 0) counted[i] = true;
+    return counted;
+}
+
+void append_text(std::string& text, const char* title, const nlohmann::json& metrics) {
+    text += fmt::format("{}\n", title);
+    for (const auto& [name, value] : metrics.items())
+        text += fmt::format("  {:<12} {}\n", name,
+                            value.is_null()           ? "undefined"
+                            : value.is_number_float() ? shortest(value.get<double>())
+                                                      : value.dump());
+}
+
+int compare(const CompareOptions& options) {
+    if (!options.strip.empty()) require_writable_place(options.strip);
+    const Film picture = read_exr(options.picture);
+    const Film reference = read_exr(options.reference);
+    const std::string layer =
+        picture.has_layer("caustic") && reference.has_layer("caustic") ? "caustic" : "";
+    const PixelMask reached = reached_pixels(picture, reference);
+    const nlohmann::json whole = to_json(measure(picture, reference, layer, reached));
+    const PixelMask mask =
+        options.mask.empty()
+            ? bright_pixels(reference, layer, reached)
+            : intersection(reached, mask_from(options.mask, reference));
+    const nlohmann::json masked = to_json(measure(picture, reference, layer, mask));
+    if (!options.strip.empty()) write_png(strip(picture, reference, layer), options.strip);
+
+    const std::string name = layer.empty() ? "beauty" : layer;
+    const double unreached = 1 - fraction(reached);
+    if (options.json) {
+        const nlohmann::json all = {{"layer", name},
+                                    {"unreached_fraction", unreached},
+                                    {"mask_fraction", fraction(mask)},
+                                    {"metrics", whole},
+                                    {"mask_metrics", masked},
+                                    {"formulas", metric_formulas}};
+        write_stdout(all.dump(2) + "\n");
+        return 0;
+    }
+    std::string text = fmt::format(
+        "layer {}{}\nunreached pixels left out: {} of all\n", name,
+        layer.empty() ? " (RGB, because not both files have a layer \"caustic\")" : "",
+        shortest(unreached));
+    append_text(text, "all pixels", whole);
+    append_text(text,
+                options.mask.empty() ? "pixels whose reference is at least its mean"
+                                     : "pixels of the mask",
+                masked);
+    text += metric_formulas;
+    write_stdout(text);
+    return 0;
+}
+
+}  // namespace
+
+Verb add_compare(CLI::App& app) {
+    auto options = std::make_shared<CompareOptions>();
+    CLI::App* const verb =
+        app.add_subcommand("compare", "Errors of a picture against a reference");
+    verb->add_option("PICTURE", options->picture, "EXR to judge")->required();
+    verb->add_option("REFERENCE", options->reference, "EXR to judge it by")->required();
+    verb->add_flag("--json", options->json, "Print JSON");
+    verb->add_option("--mask", options->mask,
+                     "EXR whose pixels other than 0 are judged apart (default: pixels whose "
+                     "reference is at least its mean)")
+        ->type_name("FILE");
+    verb->add_option("--strip", options->strip,
+                     "PNG to write: reference | picture | signed error")
+        ->type_name("FILE");
+    verb->footer("Judges the layer \"caustic\", or RGB when not both files have it, leaving out "
+                 "unreached pixels.\n" +
+                 std::string(metric_formulas) +
+                 "Example:\n  causticbench compare photonmap.exr lighttrace.exr --strip strip.png");
+    return {verb, [options] { return compare(*options); }};
+}
+
+}  // namespace caustics

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "core/light_path.h"
+#include "experiments/cli_options.h"
+#include "experiments/files.h"
+#include "experiments/verbs.h"
+
+namespace caustics {
+
+namespace {
+
+const char* primitive_name(Primitive primitive) {
+    switch (primitive) {
+        case Primitive::rectangle: return "exact rectangle";
+        case Primitive::disk: return "exact disk";
+        case Primitive::sphere: return "exact sphere";
+        case Primitive::cylinder: return "exact cylinder";
+        case Primitive::heightfield: return "exact heightfield";
+        case Primitive::mesh: return "mesh";
+    }
+    return "";
+}
+
+std::string shape_line(const Shape& shape) {
+    std::string kind = primitive_name(shape.primitive);
+    if (shape.primitive == Primitive::mesh)
+        kind += fmt::format(" of {} triangles", triangle_count(shape));
+    const bool caster = is_caster(shape.bsdf);
+    const bool receiver = is_receiver(shape.bsdf);
+    return fmt::format("  {:<16} {:<28} {}{}\n", shape.name, kind,
+                       caster && receiver ? "caster and receiver" : caster ? "caster" : "receiver",
+                       shape.radiance ? ", area light" : "");
+}
+
+std::string rgb(const Spectrum& s) { return fmt::format("{:.6g} {:.6g} {:.6g}", s[0], s[1], s[2]); }
+
+struct LightLine {
+    const Scene& scene;
+    std::string operator()(const PointLight& light) const {
+        return fmt::format("  point at ({:.6g}, {:.6g}, {:.6g}), intensity {} W/sr\n",
+                           light.position.x(), light.position.y(), light.position.z(),
+                           rgb(light.intensity));
+    }
+    std::string operator()(const DirectionalLight& light) const {
+        return fmt::format("  directional along ({:.6g}, {:.6g}, {:.6g}), irradiance {} W/m^2\n",
+                           light.direction.x(), light.direction.y(), light.direction.z(),
+                           rgb(light.irradiance));
+    }
+    std::string operator()(const AreaLight& light) const {
+        return fmt::format("  area on {}, {:.6g} m^2, radiance {} W/(m^2 sr)\n",
+                           scene.shapes()[light.shape].name, light.sampler.area(),
+                           rgb(light.radiance));
+    }
+};
+
+std::string describe_scene(const SceneOptions& options, const SceneFile& file,
+                           const Scene& scene) {
+    std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
+    for (const auto& [name, hash] : file.assets)
+        text += fmt::format("asset    {} ({})\n", name, hash);
+    text += fmt::format("diameter {:.6g} m\n", scene.diameter());
+    const PixelSampling& sampling = scene.sampling();
+    text += fmt::format(
+        "film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
+        scene.camera().height, sampling.sample_count,
+        !sampling.stratified ? "independent" : sampling.jitter ? "stratified" : "regular");
+    text += "shapes\n";
+    for (const Shape& shape : scene.shapes()) text += shape_line(shape);
+    text += "lights\n";
+    for (const Light& light : scene.lights()) text += std::visit(LightLine{scene}, light);
+    const AimedEmission emission(scene);
+    text += fmt::format("  power aimed at the casters' bounds: {} W\n",
+                        rgb(emission.empty() ? black() : emission.total_power()));
+    text += "methods\n";
+    for (const std::string& name : method_names()) {
+        const auto reason = why_unsupported(scene, parse_method(name, parameters_node({})));
+        text += fmt::format("  {:<12} {}\n", name, reason ? "no: " + *reason : "yes");
+    }
+    return text;
+}
+
+}  // namespace
+
+Verb add_info(CLI::App& app) {
+    auto options = std::make_shared<SceneOptions>();
+    CLI::App* const verb =
+        app.add_subcommand("info", "What a scene holds, and which methods can serve it");
+    options->add_to(*verb);
+    verb->footer("Example:\n  causticbench info pool.json --set /water/resolution=64");
+    return {verb, [options] {
+                const SceneFile file = options->load();
+                const Scene scene(file.desc);
+                write_stdout(describe_scene(*options, file, scene));
+                return 0;
+            }};
+}
+
+}  // namespace caustics

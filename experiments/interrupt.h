@@ -1,0 +1,12 @@
+#pragma once
+
+namespace caustics {
+
+/// From now on the first SIGINT or SIGTERM only asks the program to stop; the second one ends it.
+void catch_interrupts();
+/// Whether somebody asked.
+bool interrupt_requested();
+/// Throws Interrupted when somebody did. For RunOptions::progress.
+void throw_if_interrupted();
+
+}  // namespace caustics

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <clocale>
+#include <cstdio>
+#include <new>
+#include <vector>
+
+#include "core/error.h"
+#include "experiments/environment.h"
+#include "experiments/interrupt.h"
+#include "experiments/verbs.h"
+
+namespace caustics {
+
+namespace {
+
+enum ExitCode { done = 0, failed = 1, bad_input = 2, unsupported = 3, interrupted = 130 };
+
+std::string one_line(std::string text) {
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+int report(const std::string& message, ExitCode code) {
+    fmt::print(stderr, "causticbench: error: {}\n", one_line(message));
+    return code;
+}
+
+std::string verb_names(const std::vector<Verb>& verbs) {
+    std::string names;
+    for (const Verb& verb : verbs) names += (names.empty() ? "" : ", ") + verb.app->get_name();
+    return names;
+}
+
+std::string option_names(const CLI::App& app) {
+    std::string names;
+    for (const CLI::Option* option : app.get_options())
+        if (!option->get_positional())
+            names += (names.empty() ? "" : ", ") + option->get_name(false, true);
+    return names;
+}
+
+/// The parser's own messages name no alternatives, and it complains of what is missing before what
+/// is misspelt; so unknown words are looked for first.
+void require_known_words(const CLI::App& app, const std::vector<Verb>& verbs,
+                         const std::vector<std::string>& words) {
+    if (words.empty()) throw InputError("no verb given (known: " + verb_names(verbs) + ")");
+    const CLI::App* scope = &app;
+    if (words[0][0] != '-') {
+        const auto verb = std::ranges::find_if(
+            verbs, [&](const Verb& each) { return each.app->get_name() == words[0]; });
+        if (verb == verbs.end())
+            throw InputError(
+                fmt::format("unknown verb \"{}\" (known: {})", words[0], verb_names(verbs)));
+        scope = verb->app;
+    }
+    for (const std::string& word : words) {
+        if (word.size() < 3 || word.compare(0, 2, "--") != 0) continue;
+        const std::string name = word.substr(0, word.find('='));
+        if (scope->get_option_no_throw(name) == nullptr)
+            throw InputError(
+                fmt::format("unknown option {} (known: {})", name, option_names(*scope)));
+    }
+}
+
+int run_verb(const std::vector<Verb>& verbs) {
+    for (const Verb& verb : verbs)
+        if (verb.app->parsed()) return verb.run();
+    throw InputError("no verb given (known: " + verb_names(verbs) + ")");
+}
+
+int parse_and_run(int argc, char** argv) {
+    CLI::App app("Caustics by photon maps and their rivals: pictures, probes, sweeps with errors "
+                 "against references.",
+                 "causticbench");
+    app.set_version_flag("--version", "causticbench " + code_version());
+    app.footer("Exit codes: 0 done, 1 some trials failed, 2 bad input or usage, 3 the method cannot "
+               "serve the scene, 130 interrupted.\nExample:\n  causticbench VERB --help");
+    const std::vector<Verb> verbs = {add_render(app), add_probe(app), add_sweep(app),
+                                     add_compare(app), add_info(app)};
+    require_known_words(app, verbs, std::vector<std::string>(argv + 1, argv + argc));
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        throw InputError(one_line(error.what()) + " (see --help)");
+    }
+    return run_verb(verbs);
+}
+
+}  // namespace
+
+}  // namespace caustics
+
+int main(int argc, char** argv) {
+    using namespace caustics;
+    std::setlocale(LC_ALL, "C");
+    catch_interrupts();
+    try {
+        return parse_and_run(argc, argv);
+    } catch (const InputError& error) {
+        return report(error.what(), bad_input);
+    } catch (const UnsupportedScene& error) {
+        return report(error.what(), unsupported);
+    } catch (const Interrupted& error) {
+        return report(error.what(), interrupted);
+    } catch (const std::bad_alloc&) {
+        return report("out of memory", failed);
+    } catch (const std::exception& error) {
+        return report(error.what(), failed);
+    }
+}

@@ -1,0 +1,135 @@
+#include "experiments/methods.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+
+void read(const JsonNode& node, NoneParams&) { node.finish(); }
+
+json describe_params(const NoneParams&) { return json::object(); }
+
+json describe_params(const PathTraceParams& p) {
+    return {{"spp", p.spp}, {"max_bounces", p.max_bounces}};
+}
+
+json describe_params(const LightTraceParams& p) {
+    json all = {{"paths", p.paths}, {"max_bounces", p.max_bounces}};
+    if (p.radius > 0) all["radius"] = p.radius;
+    return all;
+}
+
+json describe_params(const PhotonMapParams& p) {
+    const bool unbiased = p.estimator == PhotonMapParams::Estimator::unbiased;
+    json all = {{"nearest", p.nearest},
+                {"estimator", unbiased ? "unbiased" : "raw"},
+                {"max_bounces", p.max_bounces},
+                {"emission", "random"},
+                {"interaction", "roulette"},
+                {"tree", "balanced"}};
+    if (p.photons > 0) all["photons"] = p.photons;
+    if (p.emitted > 0) all["emitted"] = p.emitted;
+    if (p.max_radius > 0) all["max_radius"] = p.max_radius;
+    return all;
+}
+
+template <typename Params>
+MethodParams read_params(const JsonNode& node) {
+    Params params;
+    read(node, params);
+    return params;
+}
+
+struct Entry {
+    const char* name;
+    MethodParams (*read)(const JsonNode&);
+};
+constexpr Entry entries[] = {{"none", read_params<NoneParams>},
+                             {"pathtrace", read_params<PathTraceParams>},
+                             {"lighttrace", read_params<LightTraceParams>},
+                             {"photonmap", read_params<PhotonMapParams>}};
+static_assert(std::size(entries) == std::variant_size_v<MethodParams>);
+
+/// The same method where building it costs next to nothing: what it can serve does not depend on
+/// how much work it is given.
+MethodParams with_least_work(MethodParams params) {
+    if (auto* const map = std::get_if<PhotonMapParams>(&params)) {
+        map->photons = std::min<std::uint64_t>(map->photons, 1);
+        map->emitted = std::min<std::uint64_t>(map->emitted, 1);
+    }
+    return params;
+}
+
+}  // namespace
+
+const std::vector<std::string>& method_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const Entry& entry : entries) all.emplace_back(entry.name);
+        return all;
+    }();
+    return names;
+}
+
+Method parse_method(const std::string& name, const JsonNode& params) {
+    for (const Entry& entry : entries)
+        if (name == entry.name) return {name, entry.read(params)};
+    throw InputError(fmt::format("unknown method \"{}\" (known: {})", name,
+                                 fmt::join(method_names(), ", ")));
+}
+
+JsonNode parameters_node(const std::vector<std::string>& assignments) {
+    json object = json::object();
+    for (const std::string& assignment : assignments) {
+        const std::size_t equals = assignment.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw InputError(
+                fmt::format("--param \"{}\": expected key=value", assignment));
+        const std::string key = assignment.substr(0, equals);
+        const std::string text = assignment.substr(equals + 1);
+        if (object.contains(key))
+            throw InputError(fmt::format("--param \"{}\": given twice", key));
+        json value = json::parse(text, nullptr, false);
+        object[key] = value.is_discarded() ? json(text) : std::move(value);
+    }
+    return JsonNode::parse_text(object.dump(), "--param");
+}
+
+json describe(const Method& method) {
+    return std::visit([](const auto& params) { return describe_params(params); }, method.params);
+}
+
+std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& method,
+                                              const RunOptions& options) {
+    return std::visit([&](const auto& params) { return build(scene, params, options); },
+                      method.params);
+}
+
+std::optional<std::string> why_unsupported(const Scene& scene, const Method& method) {
+    try {
+        build(scene, {method.name, with_least_work(method.params)}, RunOptions{});
+        return {};
+    } catch (const UnsupportedScene& unsupported) {
+        return unsupported.what();
+    }
+}
+
+bool gathers_over_discs(const Method& method) {
+    return std::holds_alternative<LightTraceParams>(method.params);
+}
+
+double disc_radius(const Method& method) {
+    const auto* const params = std::get_if<LightTraceParams>(&method.params);
+    return params == nullptr ? 0 : params->radius;
+}
+
+}  // namespace caustics

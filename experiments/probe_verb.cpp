@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "experiments/cli_options.h"
+#include "experiments/files.h"
+#include "experiments/probe.h"
+#include "experiments/verbs.h"
+
+namespace caustics {
+
+namespace {
+
+struct ProbeOptions {
+    SceneOptions scene;
+    MethodOptions method;
+    RunFlags run;
+    std::string points;
+    std::string output;
+};
+
+int probe_points(const ProbeOptions& options) {
+    if (!options.output.empty()) require_writable_place(options.output);
+    const SceneFile file = options.scene.load();
+    const Method method = options.method.parse();
+    const ProbeList list = read_probe_list(options.points);
+    const Scene scene(file.desc);
+    const std::string table =
+        probe_table(list, probe(scene, method, list, options.run.options(1)));
+    if (options.output.empty())
+        write_stdout(table);
+    else
+        write_whole_file(options.output, table);
+    return 0;
+}
+
+}  // namespace
+
+Verb add_probe(CLI::App& app) {
+    auto options = std::make_shared<ProbeOptions>();
+    CLI::App* const verb =
+        app.add_subcommand("probe", "Caustic irradiance and radiance at a list of points");
+    options->scene.add_to(*verb);
+    options->method.add_to(*verb);
+    options->run.add_to(*verb);
+    verb->add_option("--points", options->points,
+                     "CSV with columns x,y,z,nx,ny,nz and optionally wx,wy,wz (towards the viewer) "
+                     "and radius [m]")
+        ->required()
+        ->type_name("FILE");
+    verb->add_option("-o,--output", options->output, "CSV to write (default: standard output)")
+        ->type_name("FILE");
+    verb->footer(
+        "Writes the rows as they are plus irradiance_r,g,b [W/m^2] on the side of the normal, with "
+        "a viewer\nradiance_r,g,b [W/(m^2 sr)], and for statistical methods stderr_*. The side of "
+        "a one-sided material\nthat scatters no light reads 0.\n"
+        "Example:\n  causticbench probe pool.json --method lighttrace --param paths=1000000 "
+        "--param radius=0.01 --points floor.csv -o out.csv");
+    return {verb, [options] { return probe_points(*options); }};
+}
+
+}  // namespace caustics

@@ -1,0 +1,123 @@
+#include "experiments/record.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "experiments/csv.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+
+struct Column {
+    const char* name;
+    const char* pointer;  ///< into record.json
+};
+
+constexpr Column columns_of_all[] = {
+    {"trial", "/trial"},
+    {"status", "/status"},
+    {"scene", "/scene/name"},
+    {"method", "/method/name"},
+    {"seed", "/seed"},
+    {"repeat", "/repeat"},
+    {"threads", "/threads"},
+    {"isa", "/isa"},
+    {"photons_emitted", "/counters/photons_emitted"},
+    {"photons_stored", "/counters/photons_stored"},
+    {"nearest", "/method/parameters/nearest"},
+    {"alpha", "/swept/alpha"},
+    {"mesh_resolution", "/swept/mesh_resolution"},
+    {"polygons", "/scene/polygons"},
+    {"beams", "/counters/beams"},
+    {"cone_point_tests", "/counters/cone_point_tests"},
+    {"beam_point_tests", "/counters/beam_point_tests"},
+    {"beam_point_hits", "/counters/beam_point_hits"},
+    {"map_bytes", "/memory/map_bytes"},
+    {"rss_start_bytes", "/memory/rss_start_bytes"},
+    {"peak_rss_bytes", "/memory/peak_rss_bytes"},
+    {"parse_s", "/seconds/parse/wall"},
+    {"precompute_s", "/seconds/precompute/wall"},
+    {"balance_s", "/seconds/balance/wall"},
+    {"render_s", "/seconds/render/wall"},
+    {"total_s", "/seconds/total/wall"},
+    {"cpu_s", "/seconds/total/cpu"},
+    {"rmse", "/metrics/rmse"},
+    {"relmse", "/metrics/relmse"},
+    {"bias", "/metrics/bias"},
+    {"variance", "/variance"},
+    {"mean_ratio", "/metrics/mean_ratio"},
+    {"leak_energy", "/metrics/leak_energy"},
+    {"beauty_rmse", "/beauty_rmse"},
+    {"unreached_fraction", "/unreached_fraction"},
+    {"reference", "/reference/name"},
+    {"reference_stderr", "/reference/stderr"},
+    {"config_hash", "/config_hash"},
+    {"code_version", "/code_version"},
+    {"mask_rmse", "/mask_metrics/rmse"},
+    {"mask_relmse", "/mask_metrics/relmse"},
+    {"mask_mean_ratio", "/mask_metrics/mean_ratio"},
+    {"mask_fraction", "/mask_fraction"},
+    {"parse_cpu_s", "/seconds/parse/cpu"},
+    {"precompute_cpu_s", "/seconds/precompute/cpu"},
+    {"balance_cpu_s", "/seconds/balance/cpu"},
+    {"render_cpu_s", "/seconds/render/cpu"},
+    {"spp", "/spp"},
+    {"message", "/message"},
+};
+
+std::string cell(const json& record, const std::string& pointer) {
+    const json::json_pointer place(pointer);
+    if (!record.contains(place)) return {};
+    const json& value = record.at(place);
+    if (value.is_null()) return {};
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return shortest(value.get<double>());
+    return value.dump();
+}
+
+}  // namespace
+
+json to_json(const Metrics& metrics) {
+    const auto or_null = [](const std::optional<double>& value) {
+        return value ? json(*value) : json();
+    };
+    return {{"rmse", or_null(metrics.rmse)},
+            {"relmse", or_null(metrics.relmse)},
+            {"bias", or_null(metrics.bias)},
+            {"mean_ratio", or_null(metrics.mean_ratio)},
+            {"leak_energy", or_null(metrics.leak_energy)},
+            {"pixels", metrics.pixels}};
+}
+
+bool is_record_column(const std::string& name) {
+    return std::ranges::any_of(columns_of_all,
+                               [&](const Column& column) { return name == column.name; });
+}
+
+bool is_swept_column(const std::string& name) {
+    return name == "alpha" || name == "mesh_resolution";
+}
+
+std::vector<std::string> record_columns(const std::vector<std::string>& swept) {
+    std::vector<std::string> names;
+    for (const Column& column : columns_of_all) names.emplace_back(column.name);
+    for (const std::string& name : swept)
+        if (std::ranges::count(names, name) == 0) names.push_back(name);
+    return names;
+}
+
+std::vector<std::string> record_row(const json& record, const std::vector<std::string>& columns) {
+    std::vector<std::string> row;
+    for (const std::string& name : columns) {
+        const auto known = std::ranges::find_if(
+            columns_of_all, [&](const Column& column) { return name == column.name; });
+        row.push_back(
+            cell(record, known == std::end(columns_of_all) ? "/swept/" + name : known->pointer));
+    }
+    return row;
+}
+
+}  // namespace caustics

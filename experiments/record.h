@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/metrics.h"
+
+namespace caustics {
+
+/// Of record.json; part of every trial's identity.
+inline constexpr int record_version = 1;
+
+/// Metrics by name; null where a formula has no value.
+nlohmann::json to_json(const Metrics& metrics);
+
+/// Whether records.csv has a column of that name of its own.
+bool is_record_column(const std::string& name);
+/// Whether a swept scene value may fill that column (alpha, mesh_resolution).
+bool is_swept_column(const std::string& name);
+
+/// The columns of records.csv: those of every trial, then the swept keys that are not among them.
+std::vector<std::string> record_columns(const std::vector<std::string>& swept);
+
+/// One row: the cells of a record under those columns. Empty = not applicable.
+std::vector<std::string> record_row(const nlohmann::json& record,
+                                    const std::vector<std::string>& columns);
+
+}  // namespace caustics

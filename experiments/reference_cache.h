@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "core/film.h"
+#include "core/scene_io.h"
+#include "experiments/sweep_plan.h"
+
+namespace caustics {
+
+/// Of the files; part of every key.
+inline constexpr int reference_version = 1;
+
+/// Hash of everything a reference picture depends on: scene (film and sampler included), method,
+/// parameters in force, samples a pixel, seed, format.
+std::string reference_key(const RunRequest& request, const SceneFile& scene);
+
+/// A picture that trials are judged by: layers caustic, R G B (beauty), stderr.Y (root mean square
+/// over the channels) and, where it applies, unreached.
+struct Reference {
+    std::string key;
+    Film film;
+    std::optional<double> standard_error;  ///< sqrt(mean s^2) / mean(r) of the caustic layer
+};
+
+/// References as files KEY.exr: looked for in the folder kept beside the sweep files, then in the
+/// sweep's own, else rendered and written there.
+class ReferenceCache {
+public:
+    ReferenceCache(std::filesystem::path own_folder, bool rebuild)
+        : own_folder_(std::move(own_folder)), rebuild_(rebuild) {}
+
+    /// Whether get() would have to render.
+    bool must_render(const ReferenceRequest& request) const;
+    /// `options` brings threads and progress of a render. The last few stay in memory.
+    std::shared_ptr<const Reference> get(const ReferenceRequest& request,
+                                         const RunOptions& options);
+
+private:
+    std::filesystem::path file_of(const ReferenceRequest& request) const;
+    void make(const ReferenceRequest& request, const RunOptions& options) const;
+
+    std::filesystem::path own_folder_;
+    bool rebuild_;
+    std::set<std::string> rebuilt_;
+    std::shared_ptr<const Reference> last_;
+};
+
+}  // namespace caustics

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "core/error.h"
+#include "experiments/cli_options.h"
+#include "experiments/csv.h"
+#include "experiments/metrics.h"
+#include "experiments/pictures.h"
+#include "experiments/run.h"
+#include "experiments/verbs.h"
+
+namespace caustics {
+
+namespace {
+
+struct RenderOptions {
+    SceneOptions scene;
+    MethodOptions method;
+    RunFlags run;
+    int spp = 0;
+    std::optional<double> exposure;
+    std::vector<std::string> outputs;
+};
+
+void check_outputs(const std::vector<std::string>& outputs) {
+    for (const std::string& output : outputs) {
+        const std::string ending = std::filesystem::path(output).extension().string();
+        if (ending != ".exr" && ending != ".png")
+            throw InputError(
+                fmt::format("-o {}: unknown kind of picture \"{}\" (known: .exr, .png)", output,
+                            ending));
+        require_writable_place(output);
+    }
+}
+
+int render_picture(const RenderOptions& options) {
+    check_outputs(options.outputs);
+    const SceneFile file = options.scene.load();
+    const RunRequest request{options.scene.file, options.scene.overrides(), options.method.parse(),
+                             options.run.seed,
+                             samples_per_pixel(file.desc.sampling, options.spp)};
+    const Scene scene(file.desc);
+    Stopwatch stopwatch;
+    RunResult result =
+        run(scene, request, options.run.options(request.samples_per_pixel), stopwatch);
+
+    for (const auto& layer : {"", "caustic"})
+        require_finite(result.film, layer, "the picture");
+    const double exposure = options.exposure.value_or(auto_exposure(result.film, ""));
+    result.film.metadata = picture_metadata(request, file);
+    result.film.metadata["caustics:tone_mapping"] = tone_mapping_rule;
+    result.film.metadata["caustics:exposure"] = shortest(exposure);
+    for (const std::string& output : options.outputs) {
+        if (std::filesystem::path(output).extension() == ".exr")
+            write_exr(result.film, output);
+        else
+            write_png(tone_map(result.film, "", exposure), output);
+        fmt::print(stderr, "{}: {}x{} pixels, {} samples a pixel, exposure {:.2f} stops, {:.1f} s\n",
+                   output, result.film.width(), result.film.height(), request.samples_per_pixel,
+                   exposure, stopwatch.total().wall);
+    }
+    return 0;
+}
+
+}  // namespace
+
+Verb add_render(CLI::App& app) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* const verb = app.add_subcommand("render", "Render one picture of a scene");
+    options->scene.add_to(*verb);
+    options->method.add_to(*verb);
+    options->run.add_to(*verb);
+    verb->add_option("--spp", options->spp, "Samples a pixel (default: the scene's)")
+        ->check(CLI::Range(1, 1'000'000));
+    verb->add_option("--exposure", options->exposure,
+                     std::string("Exposure of a .png in stops: ") + tone_mapping_rule);
+    add_repeatable(*verb, "-o,--output", options->outputs,
+                   "Picture to write: .exr (float32, all layers) or .png (tone-mapped). Repeatable")
+        ->required()
+        ->type_name("FILE");
+    verb->footer(
+        "Example:\n  causticbench render pool.json --method photonmap --param photons=200000 "
+        "--param nearest=80 -o pool.exr -o pool.png");
+    return {verb, [options] { return render_picture(*options); }};
+}
+
+}  // namespace caustics

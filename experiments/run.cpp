@@ -1,0 +1,79 @@
+#include "experiments/run.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/environment.h"
+
+namespace caustics {
+
+namespace {
+
+std::string shell_word(const std::string& text) {
+    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                               "_-./=:,+") == std::string::npos)
+        return text;
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string command(const RunRequest& request) {
+    std::string line = fmt::format("causticbench render {} --method {}",
+                                   shell_word(request.scene_file.string()), request.method.name);
+    for (const auto& [pointer, value] : request.overrides)
+        line += " --set " + shell_word(pointer + "=" + value);
+    const nlohmann::json parameters = describe(request.method);
+    for (const auto& [key, value] : parameters.items())
+        line += " --param " +
+                shell_word(key + "=" +
+                           (value.is_string() ? value.get<std::string>() : value.dump()));
+    return line + fmt::format(" --spp {} --seed {}", request.samples_per_pixel, request.seed);
+}
+
+}  // namespace
+
+std::map<std::string, std::string> picture_metadata(const RunRequest& request,
+                                                    const SceneFile& scene) {
+    nlohmann::json assets = nlohmann::json::object();
+    for (const auto& [name, hash] : scene.assets) assets[name] = hash;
+    return {{"caustics:scene", scene.canonical},
+            {"caustics:scene_assets", assets.dump()},
+            {"caustics:scene_hash", scene.hash},
+            {"caustics:method", request.method.name},
+            {"caustics:parameters", describe(request.method).dump()},
+            {"caustics:seed", fmt::format("{}", request.seed)},
+            {"caustics:spp", fmt::format("{}", request.samples_per_pixel)},
+            {"caustics:code_version", code_version()},
+            {"caustics:command", command(request)}};
+}
+
+RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
+              Stopwatch& stopwatch) {
+    options.seed = request.seed;
+    options.samples_per_pixel = request.samples_per_pixel;
+    std::string stage;
+    const auto begin_stage = [&](const char* name) {
+        stage = name;
+        stopwatch.begin(stage);
+    };
+    const auto on_phase = options.begin_phase;
+    options.begin_phase = [&](std::string_view phase) {
+        stopwatch.begin(fmt::format("{}/{}", stage, phase));
+        if (on_phase) on_phase(phase);
+    };
+
+    begin_stage("precompute");
+    const std::unique_ptr<const CausticEstimator> method = build(scene, request.method, options);
+    begin_stage("render");
+    Rendering rendering = render(scene, *method, options);
+    stopwatch.stop();
+
+    RunResult result{std::move(rendering.film), method->build_report(), {}};
+    result.counters = result.report.counters;
+    for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
+    return result;
+}
+
+}  // namespace caustics

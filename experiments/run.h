@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/renderer.h"
+#include "core/scene_io.h"
+#include "experiments/methods.h"
+#include "experiments/stopwatch.h"
+
+namespace caustics {
+
+/// A picture to make: what a trial, a reference and the verb `render` have in common.
+struct RunRequest {
+    std::filesystem::path scene_file;
+    Overrides overrides;
+    Method method;
+    std::uint64_t seed = 1;
+    int samples_per_pixel = 1;
+};
+
+/// The resolved configuration as attributes of a picture: scene, method with every parameter in
+/// force, seed, samples, code version, and the command that makes it. The same request gives the
+/// same text, whatever the number of threads.
+std::map<std::string, std::string> picture_metadata(const RunRequest& request,
+                                                    const SceneFile& scene);
+
+/// Values in a record's JSON: what the method counted and chose.
+struct RunResult {
+    Film film;
+    BuildReport report;
+    Counters counters;  ///< of build and queries
+};
+
+/// Builds the method and renders, cutting the time into "precompute", "precompute/PHASE", "render"
+/// and "render/PHASE" by the phases the method names. `options` brings threads and progress.
+RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
+              Stopwatch& stopwatch);
+
+}  // namespace caustics

@@ -1,0 +1,130 @@
+#include "experiments/sweep_file.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "experiments/record.h"
+
+namespace caustics {
+
+namespace {
+
+constexpr std::int64_t most = 1'000'000'000;
+
+std::vector<JsonNode> list(const JsonNode& node) {
+    std::vector<JsonNode> elements = node.as_array();
+    if (elements.empty()) node.fail("an empty list makes no trials (give at least one value)");
+    return elements;
+}
+
+int integer(const JsonNode& node, const std::string& key, std::int64_t low, int otherwise) {
+    const std::optional<JsonNode> child = node.find(key);
+    return child ? static_cast<int>(child->as_integer_in(low, most)) : otherwise;
+}
+
+std::vector<std::filesystem::path> read_scenes(const JsonNode& node) {
+    std::vector<std::filesystem::path> scenes;
+    for (const JsonNode& scene : list(node)) {
+        const std::filesystem::path file =
+            (scene.file().parent_path() / scene.as_string()).lexically_normal();
+        if (!std::filesystem::is_regular_file(file))
+            scene.fail(fmt::format("no such scene file: {}", file.string()));
+        scenes.push_back(file);
+    }
+    return scenes;
+}
+
+SweepFile::Axis read_axis(const std::string& name, const JsonNode& node) {
+    const bool letters =
+        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+    if (name.empty() || !letters)
+        node.fail("becomes a column: use small letters, digits and underscores for its name");
+    if (is_record_column(name) && !is_swept_column(name))
+        node.fail(fmt::format("\"{}\" is a column of every trial: choose another name", name));
+    SweepFile::Axis axis;
+    axis.name = name;
+    axis.pointer = node.at("pointer").as_string();
+    for (const JsonNode& value : list(node.at("values"))) axis.values.push_back(value.canonical());
+    node.finish();
+    return axis;
+}
+
+/// A JSON object of the chosen parameters.
+std::string object_text(const std::vector<std::pair<std::string, std::string>>& params) {
+    std::string text = "{";
+    for (const auto& [key, value] : params)
+        text += fmt::format("{}\"{}\": {}", text.size() > 1 ? ", " : "", key, value);
+    return text + "}";
+}
+
+/// All combinations of a method's parameter lists, the last key varying fastest.
+std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
+    const JsonNode name_node = node.at("method");
+    const std::string name = method_names()[name_node.as_choice(method_names())];
+    std::vector<SweepFile::MethodCase> cases(1);
+    std::string place = node.place();
+    if (const std::optional<JsonNode> params = node.find("param")) {
+        place = params->place();
+        for (const auto& [key, value] : params->others()) {
+            const std::vector<JsonNode> choices =
+                value.is_array() ? list(value) : std::vector<JsonNode>{value};
+            std::vector<SweepFile::MethodCase> product;
+            for (const SweepFile::MethodCase& so_far : cases)
+                for (const JsonNode& choice : choices) {
+                    product.push_back(so_far);
+                    product.back().params.emplace_back(key, choice.canonical());
+                }
+            cases = std::move(product);
+        }
+    }
+    node.finish();
+    for (SweepFile::MethodCase& each : cases)
+        each.method = parse_method(name, JsonNode::parse_text(object_text(each.params), place));
+    return cases;
+}
+
+SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
+    SweepFile::Reference reference;
+    const std::string name = method_names()[node.at("method").as_choice(method_names())];
+    const std::optional<JsonNode> params = node.find("param");
+    reference.method = parse_method(
+        name, JsonNode::parse_text(params ? params->canonical() : "{}",
+                                   params ? params->place() : node.place()));
+    if (params) params->others();
+    reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp));
+    reference.seed = static_cast<std::uint64_t>(integer(node, "seed", 0, 1));
+    node.finish();
+    return reference;
+}
+
+}  // namespace
+
+SweepFile read_sweep_file(const std::filesystem::path& file) {
+    const JsonNode node = JsonNode::parse_file(file);
+    SweepFile sweep;
+    sweep.file = file;
+    node.at("version").as_integer_in(1, 1);
+    sweep.scenes = read_scenes(node.at("scenes"));
+    if (const std::optional<JsonNode> set = node.find("set"))
+        for (const auto& [name, axis] : set->others()) sweep.axes.push_back(read_axis(name, axis));
+    for (const JsonNode& method : list(node.at("methods")))
+        for (SweepFile::MethodCase& each : read_method(method))
+            sweep.methods.push_back(std::move(each));
+    if (const std::optional<JsonNode> seeds = node.find("seeds")) {
+        for (const JsonNode& seed : list(*seeds))
+            sweep.seeds.push_back(
+                static_cast<std::uint64_t>(seed.as_integer_in(0, 1'000'000'000'000'000)));
+    } else {
+        sweep.seeds = {1};
+    }
+    sweep.repeats = integer(node, "repeats", 1, 1);
+    sweep.spp = integer(node, "spp", 1, 16);
+    sweep.threads = integer(node, "threads", 1, 1);
+    if (const std::optional<JsonNode> reference = node.find("reference"))
+        sweep.reference = read_reference(*reference, sweep.spp);
+    node.finish();
+    return sweep;
+}
+
+}  // namespace caustics

@@ -1,0 +1,150 @@
+#include "experiments/sweep_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "experiments/cli_options.h"
+#include "experiments/record.h"
+#include "experiments/reference_cache.h"
+#include "experiments/sweep_file.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+using Assignments = std::vector<std::pair<std::string, std::string>>;
+
+/// A scene under one combination of the swept values.
+struct SceneVariant {
+    std::filesystem::path file;
+    Overrides overrides;
+    Assignments swept;
+    std::string hash;
+    std::optional<ReferenceRequest> reference;
+};
+
+std::vector<SceneVariant> variants(const SweepFile& sweep) {
+    std::vector<SceneVariant> all;
+    for (const std::filesystem::path& scene : sweep.scenes) all.push_back({scene, {}, {}, {}, {}});
+    for (const SweepFile::Axis& axis : sweep.axes) {
+        std::vector<SceneVariant> product;
+        for (const SceneVariant& so_far : all)
+            for (const std::string& value : axis.values) {
+                product.push_back(so_far);
+                product.back().overrides.emplace_back(axis.pointer, value);
+                product.back().swept.emplace_back(axis.name, value);
+            }
+        all = std::move(product);
+    }
+    return all;
+}
+
+/// Loads the variant as trials will, so that whatever is wrong shows before anything runs.
+void resolve(const SweepFile& sweep, SceneVariant& variant) {
+    const SceneFile file = load_scene(variant.file, variant.overrides);
+    variant.hash = file.hash;
+    samples_per_pixel(file.desc.sampling, sweep.spp);
+    if (!sweep.reference) return;
+    samples_per_pixel(file.desc.sampling, sweep.reference->spp);
+    const Scene scene(file.desc);
+    if (const auto reason = why_unsupported(scene, sweep.reference->method))
+        throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),
+                                           variant.file.string(), *reason));
+    ReferenceRequest reference;
+    reference.request = {variant.file, variant.overrides, sweep.reference->method,
+                         sweep.reference->seed, sweep.reference->spp};
+    reference.key = reference_key(reference.request, file);
+    reference.kept_folder =
+        (std::filesystem::absolute(sweep.file).parent_path().parent_path() / "references")
+            .lexically_normal();
+    variant.reference = reference;
+}
+
+std::string slug_word(const std::string& text) {
+    std::string word;
+    for (const char c : text)
+        if (c != '"') word += std::isalnum(static_cast<unsigned char>(c)) || c == '.' ? c : '_';
+    return word;
+}
+
+/// For people to read; what tells trials apart is the hash behind it.
+std::string slug(const Trial& trial) {
+    constexpr std::size_t longest = 100;
+    std::string words = slug_word(trial.scene_name) + "-" + trial.request.method.name;
+    for (const auto& [key, value] : trial.swept)
+        words += fmt::format("-{}{}", slug_word(key), slug_word(value));
+    words.resize(std::min(words.size(), longest));
+    words += fmt::format("-s{}", trial.request.seed);
+    if (trial.repeat > 1) words += fmt::format("-r{}", trial.repeat);
+    return words;
+}
+
+void identify(Trial& trial) {
+    json configuration = {{"record_version", record_version},
+                          {"scene", trial.scene_hash},
+                          {"method", trial.request.method.name},
+                          {"parameters", describe(trial.request.method)},
+                          {"spp", trial.request.samples_per_pixel},
+                          {"reference", trial.reference ? trial.reference->key : ""}};
+    trial.cell = hex(fnv1a(configuration.dump()));
+    configuration["seed"] = trial.request.seed;
+    configuration["repeat"] = trial.repeat;
+    trial.config_hash = hex(fnv1a(configuration.dump()));
+    trial.id = slug(trial) + "-" + trial.config_hash;
+}
+
+Trial make_trial(const SweepFile& sweep, const SceneVariant& variant,
+                 const SweepFile::MethodCase& method) {
+    Trial trial;
+    trial.request = {variant.file, variant.overrides, method.method, 1, sweep.spp};
+    trial.threads = sweep.threads;
+    trial.scene_name = variant.file.stem().string();
+    trial.scene_hash = variant.hash;
+    trial.swept = variant.swept;
+    trial.swept.insert(trial.swept.end(), method.params.begin(), method.params.end());
+    trial.reference = variant.reference;
+    return trial;
+}
+
+void add_trials(const SweepFile& sweep, SweepPlan& plan, std::set<std::string>& known) {
+    std::vector<SceneVariant> scenes = variants(sweep);
+    for (SceneVariant& variant : scenes) resolve(sweep, variant);
+    for (const SceneVariant& variant : scenes)
+        for (const SweepFile::MethodCase& method : sweep.methods)
+            for (const std::uint64_t seed : sweep.seeds)
+                for (int repeat = 1; repeat <= sweep.repeats; ++repeat) {
+                    Trial trial = make_trial(sweep, variant, method);
+                    trial.request.seed = seed;
+                    trial.repeat = repeat;
+                    identify(trial);
+                    if (known.insert(trial.config_hash).second)
+                        plan.trials.push_back(std::move(trial));
+                    else
+                        ++plan.duplicates;
+                }
+}
+
+void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {
+    for (const Trial& trial : plan.trials)
+        for (const auto& [key, value] : trial.swept)
+            if (std::ranges::count(columns, key) == 0) columns.push_back(key);
+}
+
+}  // namespace
+
+SweepPlan read_plan(const std::vector<std::filesystem::path>& files) {
+    SweepPlan plan;
+    std::set<std::string> known;
+    for (const std::filesystem::path& file : files) add_trials(read_sweep_file(file), plan, known);
+    add_columns(plan, plan.swept);
+    return plan;
+}
+
+}  // namespace caustics

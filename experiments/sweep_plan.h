@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/run.h"
+
+namespace caustics {
+
+/// What the trials of a scene are judged by.
+struct ReferenceRequest {
+    RunRequest request;
+    std::string key;  ///< hash of scene, method, parameters, samples, seed, film and format
+    std::filesystem::path kept_folder;  ///< where references may be kept beside the sweep files
+};
+
+/// One element of the product of a sweep file's lists.
+struct Trial {
+    std::string id;           ///< readable words, then the configuration's hash
+    std::string config_hash;  ///< of scene, method, parameters, seed, samples, repeat, reference
+    std::string cell;         ///< the same without seed and repeat: trials that average
+    RunRequest request;
+    int repeat = 1;
+    int threads = 1;
+    std::string scene_name;
+    std::string scene_hash;
+    /// Swept keys with their values as text: scene values under their names, method parameters
+    /// under theirs.
+    std::vector<std::pair<std::string, std::string>> swept;
+    std::optional<ReferenceRequest> reference;
+};
+
+/// All trials of some sweep files, each once, in the order of the files.
+struct SweepPlan {
+    std::vector<Trial> trials;
+    std::vector<std::string> swept;  ///< the swept keys of all files
+    std::size_t duplicates = 0;      ///< trials named more than once
+};
+
+/// Reads sweep files and everything they name: scenes under every combination of values, methods
+/// with their parameters, references. Throws InputError for what does not fit, and
+/// UnsupportedScene for a reference that cannot serve a scene, before anything runs.
+SweepPlan read_plan(const std::vector<std::filesystem::path>& files);
+
+}  // namespace caustics

@@ -1,0 +1,165 @@
+#include "experiments/trial.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "experiments/environment.h"
+#include "experiments/metrics.h"
+#include "experiments/record.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+
+json seconds_json(const Seconds& seconds) {
+    return {{"wall", seconds.wall}, {"cpu", seconds.cpu}};
+}
+
+bool starts_with(const std::string& text, const std::string& start) {
+    return text.compare(0, start.size(), start) == 0;
+}
+
+/// Stages that follow each other and add up to the total: parse, precompute (without balance),
+/// balance, render; beside them every phase as the method named it.
+void record_seconds(json& record, const Stopwatch& stopwatch) {
+    Seconds precompute;
+    Seconds render;
+    Seconds total;
+    json phases = json::object();
+    for (const auto& [name, seconds] : stopwatch.phases()) {
+        total += seconds;
+        phases[name] = seconds_json(seconds);
+        if (name == "precompute/balance") continue;
+        if (starts_with(name, "precompute")) precompute += seconds;
+        if (starts_with(name, "render")) render += seconds;
+    }
+    json stages = {{"parse", seconds_json(stopwatch.of("parse"))},
+                   {"precompute", seconds_json(precompute)},
+                   {"render", seconds_json(render)},
+                   {"total", seconds_json(total)}};
+    if (stopwatch.phases().contains("precompute/balance"))
+        stages["balance"] = seconds_json(stopwatch.of("precompute/balance"));
+    record["seconds"] = std::move(stages);
+    record["phases"] = std::move(phases);
+}
+
+void record_scene(json& record, const SceneFile& file, const Scene& scene) {
+    std::size_t polygons = 0;
+    for (const std::uint32_t caster : scene.casters())
+        polygons += triangle_count(scene.shapes()[caster]);
+    if (polygons > 0) record["scene"]["polygons"] = polygons;
+    record["scene"]["resolved"] = json::parse(file.canonical);
+    for (const auto& [name, hash] : file.assets) record["scene"]["assets"][name] = hash;
+}
+
+void record_report(json& record, const RunResult& result) {
+    for (const auto& [name, count] : result.counters) record["counters"][name] = count;
+    for (const auto& [name, value] : result.report.resolved)
+        record["method"]["resolved"][name] = value;
+    if (result.report.bytes > 0) record["memory"]["map_bytes"] = result.report.bytes;
+}
+
+void record_errors(json& record, const Film& film, const Reference& reference) {
+    const PixelMask reached = reached_pixels(film, reference.film);
+    const PixelMask bright = bright_pixels(reference.film, "caustic", reached);
+    record["metrics"] = to_json(measure(film, reference.film, "caustic", reached));
+    record["mask_metrics"] = to_json(measure(film, reference.film, "caustic", bright));
+    record["mask_fraction"] = fraction(bright);
+    record["beauty_rmse"] = to_json(measure(film, reference.film, "", reached))["rmse"];
+    record["unreached_fraction"] = 1 - fraction(reached);
+    if (reference.standard_error) record["reference"]["stderr"] = *reference.standard_error;
+}
+
+/// The trial itself; what it knows when it throws is in the record and the log.
+void execute(const Trial& trial, const Reference* reference, RunOptions options,
+             TrialOutcome& outcome) {
+    json& record = outcome.record;
+    Stopwatch stopwatch;
+    const auto log = [&](std::string_view what) {
+        outcome.log += fmt::format("{:10.3f} s  {}\n", stopwatch.total().wall, what);
+    };
+    options.begin_phase = [&](std::string_view phase) { log(phase); };
+
+    reset_peak_resident_bytes();
+    record["memory"]["rss_start_bytes"] = resident_bytes();
+    log("parse");
+    stopwatch.begin("parse");
+    const SceneFile file = load_scene(trial.request.scene_file, trial.request.overrides);
+    if (file.hash != trial.scene_hash)
+        throw InputError(fmt::format("{}: changed while the sweep runs",
+                                     trial.request.scene_file.string()));
+    const Scene scene(file.desc);
+    record_scene(record, file, scene);
+    log("precompute and render");
+    RunResult result = run(scene, trial.request, options, stopwatch);
+    record["memory"]["peak_rss_bytes"] = peak_resident_bytes();
+    record_seconds(record, stopwatch);
+    record_report(record, result);
+
+    log("measure");
+    for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
+    if (reference != nullptr) record_errors(record, result.film, *reference);
+    result.film.metadata = picture_metadata(trial.request, file);
+    outcome.film = std::move(result.film);
+    record["status"] = "done";
+    log("done");
+}
+
+}  // namespace
+
+json trial_record(const Trial& trial, const std::string& status) {
+    json record = {{"version", record_version},
+                   {"trial", trial.id},
+                   {"status", status},
+                   {"seed", trial.request.seed},
+                   {"repeat", trial.repeat},
+                   {"threads", trial.threads},
+                   {"spp", trial.request.samples_per_pixel},
+                   {"isa", "generic"},
+                   {"config_hash", trial.config_hash},
+                   {"code_version", code_version()}};
+    record["scene"] = {{"name", trial.scene_name},
+                       {"file", trial.request.scene_file.string()},
+                       {"hash", trial.scene_hash}};
+    for (const auto& [pointer, value] : trial.request.overrides)
+        record["scene"]["set"][pointer] = value;
+    record["method"] = {{"name", trial.request.method.name},
+                        {"parameters", describe(trial.request.method)}};
+    record["swept"] = json::object();
+    for (const auto& [key, value] : trial.swept) record["swept"][key] = json::parse(value);
+    if (!trial.reference) return record;
+    const ReferenceRequest& reference = *trial.reference;
+    record["reference"] = {
+        {"name", fmt::format("{}:{}", reference.request.method.name, reference.key)},
+        {"key", reference.key},
+        {"parameters", describe(reference.request.method)},
+        {"spp", reference.request.samples_per_pixel},
+        {"seed", reference.request.seed}};
+    return record;
+}
+
+TrialOutcome run_trial(const Trial& trial, const Reference* reference, const RunOptions& options) {
+    TrialOutcome outcome{trial_record(trial, "failed"), {}, {}};
+    outcome.record["threads"] = options.threads;
+    const auto end_with = [&](const char* status, const char* message) {
+        outcome.record["status"] = status;
+        outcome.record["message"] = message;
+        outcome.log += fmt::format("{}: {}\n", status, message);
+    };
+    try {
+        execute(trial, reference, options, outcome);
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const UnsupportedScene& error) {
+        end_with("unsupported", error.what());
+    } catch (const std::bad_alloc&) {
+        end_with("failed", "out of memory");
+    } catch (const std::exception& error) {
+        end_with("failed", error.what());
+    }
+    return outcome;
+}
+
+}  // namespace caustics
