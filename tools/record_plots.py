@@ -22,9 +22,10 @@ PANELS_PER_PAGE = 20
 LEFT, RIGHT, TOP, BOTTOM = 0.66, 0.10, 0.52, 0.42  # inches round the axes, the legend apart
 LEGEND_ROW = 0.14
 GREY = "0.4"
-STYLE = {"font.family": "DejaVu Sans", "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "xtick.labelsize": 7.5,
-         "ytick.labelsize": 7.5, "legend.fontsize": 7.5, "legend.frameon": False, "axes.spines.top": False,
-         "axes.spines.right": False, "axes.linewidth": 0.7, "xtick.minor.pad": 5, "ytick.minor.pad": 5, "lines.linewidth": 1.2, "lines.markersize": 3.5,
+STYLE = {"font.family": "DejaVu Sans", "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8,
+         "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "legend.fontsize": 7.5, "legend.frameon": False,
+         "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7,
+         "xtick.minor.pad": 5, "ytick.minor.pad": 5, "lines.linewidth": 1.2, "lines.markersize": 3.5,
          "axes.titley": 1.0, "svg.fonttype": "path", "svg.hashsalt": "causticbench"}
 X_LABELS = {"photons": "stored photons [1]", "time": "total_s: wall time of the whole trial [s]",
             "alpha": "alpha [1]", "mesh_resolution": "mesh_resolution [1]"}
@@ -75,7 +76,8 @@ def draw(kind, scene, panels, series):
         ax.tick_params(labelbottom=not below, labelleft=i % columns == 0, which="both")
         if i % columns == 0:
             ax.set_ylabel(f"{kind.y} [{UNITS[kind.y]}]")
-    label_figure(figure, f"{scene}: {note(cells)}", FORMULAS[kind.y], X_LABELS[kind.x], foot, LEFT)
+    formula = FORMULAS[kind.y] + (trust(cells) if kind.y == "rmse" else "")
+    label_figure(figure, f"{scene}: {note(cells)}", formula, X_LABELS[kind.x], foot, LEFT)
     legends(figure, groups)
     return figure
 
@@ -158,13 +160,21 @@ def draw_panel(kind, ax, cells, series):
         ax.axhline(1, color=GREY, linewidth=0.7, zorder=0)
 
 
+def trust(cells):
+    """How well the reference is known, as words for the line under the title."""
+    shares = [spread.median for spread in (cell.spread("reference_stderr") for cell in cells) if spread]
+    if not shares:
+        return ""
+    ends = dict.fromkeys(f"{100 * share:.2g}" for share in (min(shares), max(shares)))
+    return f";  stderr(r) = {'–'.join(ends)} % of mean(r)"
+
+
 def draw_reference_error(kind, ax, cells):
     """The reference's own standard error: below it differences mean nothing."""
     at = {}
     for cell in cells:
-        spread = cell.spread("reference_stderr")
-        if spread and spread.median > 0:
-            at.setdefault(kind.x_of(cell), []).append(spread.median)
+        if cell.reference_error():
+            at.setdefault(kind.x_of(cell), []).append(cell.reference_error())
     levels = {level for several in at.values() for level in several}
     if len(levels) == 1 or kind.x in ("photons", "time"):
         for level in sorted(levels):
@@ -203,7 +213,7 @@ def legend_groups(kind, cells, series):
             ends = dict.fromkeys((counted(min(counts)), counted(max(counts))))
             marked.append(Line2D([], [], color=GREY, marker=marker, markersize=size, linestyle="none",
                                  label=f"{'–'.join(ends)} photons"))
-    if kind.y == "rmse" and any(s and s.median > 0 for s in (cell.spread("reference_stderr") for cell in cells)):
+    if kind.y == "rmse" and any(cell.reference_error() for cell in cells):
         dotted.append(Line2D([], [], color=GREY, linestyle=":", linewidth=1, label="standard error of the reference"))
     return [group for group in (handles, marked, dotted) if group]
 
@@ -270,7 +280,8 @@ def draw_energy(cells, series):
     ax.set_yticks(ticks, scenes)
     ax.tick_params(axis="y", length=0)
     ax.ticklabel_format(axis="x", useOffset=False)
-    label_figure(figure, "energy: range and median over all trials", FORMULAS["mean_ratio"], "mean_ratio [1]", foot, left)
+    label_figure(figure, "energy: range and median over all trials", FORMULAS["mean_ratio"], "mean_ratio [1]", foot,
+                 left)
     legends(figure, [handles])
     return figure
 

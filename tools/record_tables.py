@@ -7,12 +7,13 @@ import urllib.parse
 
 from records import FORMULAS, UNITS
 
-SUMMARISED = ("rmse", "relmse", "mean_ratio", "total_s", "precompute_s", "render_s", "photons_stored")
+SUMMARISED = ("rmse", "relmse", "mean_ratio", "total_s", "precompute_s", "render_s", "photons_stored",
+              "reference_stderr")
 PRINTED = ("rmse", "relmse", "mean_ratio", "total_s")
 TEX_UNITS = {**UNITS, "rmse": r"$\mathrm{W\,m^{-2}\,sr^{-1}}$"}
 CAPTION = ("Median [min, max] over seeds and repeats; x the picture, r the reference, over all reached pixels and "
            "channels of the caustic layer; " + "; ".join(FORMULAS.values()) + "; total_s: wall time of the whole "
-           "trial [s]. An empty field does not apply.")
+           "trial [s]. In summary.csv reference_stderr is a share of mean(r). An empty field does not apply.")
 TEX_CAPTION = (r"Median [min, max] over seeds and repeats; $x$ the picture, $r$ the reference, over all reached pixels "
                r"and channels of the caustic layer; $\mathrm{rmse}=\sqrt{\mathrm{mean}\,(x-r)^2}$; "
                r"$\mathrm{relmse}=\mathrm{mean}\,\frac{(x-r)^2}{r^2+\varepsilon}$ with "
@@ -57,7 +58,8 @@ tbody tr:last-child td {{ border-bottom: 2px solid; }}
 def shown_parameters(records):
     """The parameters worth a column: all but what is the same for every cell and says nothing of the experiment."""
     constant = lambda name: len({cell.parameters.get(name) for cell in records.cells}) == 1
-    return [name for name in records.parameters if name not in ("threads", "isa", "code_version") or not constant(name)]
+    settings = ("spp", "threads", "isa", "code_version")
+    return [name for name in records.parameters if name not in settings or not constant(name)]
 
 
 def summary_csv(records):

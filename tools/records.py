@@ -1,8 +1,8 @@
 """records.csv: its rows, checked, and grouped into cells.
 
 A *record* is one trial that is done. A *cell* is every record that differs only in seed and repeat; medians and ranges
-are always taken over a cell. The swept keys are the columns after `code_version`, the last of the fixed ones; an empty
-field means that a quantity does not apply to its row.
+are always taken over a cell. The swept keys are the columns after `code_version` that are not known below as
+something else; an empty field means that a quantity does not apply to its row.
 """
 import csv
 import dataclasses
@@ -11,13 +11,16 @@ import statistics
 
 STATUSES = ("done", "failed", "timeout", "interrupted", "unsupported")
 FIXED_PARAMETERS = ("nearest", "alpha", "mesh_resolution", "threads", "isa", "code_version")
+OPTIONAL_PARAMETERS = ("spp",)
 # The first of these that a row has says how many photons were asked for.
 PHOTON_PARAMETERS = ("photons", "emitted", "photons_stored")
 REQUIRED = ("trial", "status", "scene", "method", "seed", "repeat", "photons_stored", "total_s",
             "rmse", "relmse", "mean_ratio", "reference_stderr") + FIXED_PARAMETERS
 MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "balance_s", "render_s", "total_s",
             "cpu_s", "rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "beauty_rmse",
-            "unreached_fraction", "reference_stderr")
+            "unreached_fraction", "reference_stderr", "reference_mean", "mask_rmse", "mask_relmse", "mask_mean_ratio",
+            "mask_fraction", "parse_cpu_s", "precompute_cpu_s", "balance_cpu_s", "render_cpu_s")
+NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + ("message",)
 NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads") + MEASURES
 LABELS = ("isa", "code_version")  # never numbers, whatever they look like
 NOT_NEGATIVE = ("photons_stored", "total_s", "rmse", "relmse", "reference_stderr")
@@ -56,6 +59,12 @@ class Cell:
         """The spread of a measure, or None where it does not apply to any record of the cell."""
         values = [float(record[column]) for record in self.records if record.get(column)]
         return Spread(statistics.median(values), min(values), max(values)) if values else None
+
+    def reference_error(self):
+        """The reference's own standard error [W m⁻² sr⁻¹], or None: the table has it as a share of the mean radiance of
+        the reference, and that mean only where there is a column reference_mean."""
+        share, mean = self.spread("reference_stderr"), self.spread("reference_mean")
+        return share.median * mean.median if share and mean and share.median * mean.median > 0 else None
 
     def seeds(self):
         return len({record["seed"] for record in self.records})
@@ -103,9 +112,10 @@ def read(path):
     if not done:
         counts = ", ".join(f"{count} {status}" for status, count in left_out.items())
         raise RecordsError(f"{path}: no row has the status done ({counts})")
-    swept = [name for name in header[header.index("code_version") + 1:] if name not in FIXED_PARAMETERS]
+    swept = [name for name in header[header.index("code_version") + 1:] if name not in NOT_SWEPT]
     parameters = [name for name in ("photons", "emitted") if name in swept] + list(FIXED_PARAMETERS[:3])
-    parameters += [name for name in swept if name not in parameters] + list(FIXED_PARAMETERS[3:])
+    parameters += [name for name in swept if name not in parameters]
+    parameters += [name for name in OPTIONAL_PARAMETERS if name in header] + list(FIXED_PARAMETERS[3:])
     cells, photons_counted = group(path, done, parameters)
     if photons_counted:
         parameters.insert(0, "photons_stored")
@@ -180,7 +190,8 @@ def group(path, rows, parameters):
     """
     cells = {}
     for line, row in rows:
-        own = {name: row[name] if name in LABELS else canonical(row[name]) for name in parameters if row[name]}
+        own = {name: row[name] if name in LABELS else canonical(row[name])
+               for name in parameters if row[name]}
         key = (row["scene"], row["method"], tuple(own.items()))
         cells.setdefault(key, (Cell(row["scene"], row["method"], own), []))[1].append((line, row))
     result = []

@@ -128,6 +128,26 @@ class Plots(unittest.TestCase):
         self.succeeds()
         self.assertEqual(len(self.summary()), 1)
 
+    def test_other_fixed_columns_are_no_parameters(self):
+        header = (*FIXED, "mask_rmse", "render_cpu_s", "spp", "message", "reference_mean", "photons")
+        self.table([record(seed=s, mask_rmse=s, render_cpu_s=s, message=f"line\n{s}", spp=4, reference_mean=0.5)
+                    for s in (1, 2)], header)
+        self.succeeds()
+        cell, = self.summary()
+        self.assertEqual((cell["seeds"], cell["spp"]), ("2", "4"))
+        self.assertNotIn("message", cell)
+
+    def test_the_reference_error_is_drawn_where_its_scale_is_known(self):
+        rows = [record(photons=p, reference_mean=0.5) for p in (1000, 10000)]
+        self.table(rows)
+        self.succeeds()
+        name = self.report / "plots" / "rmse_vs_photons-pool.svg"
+        without = name.read_text(encoding="utf-8")
+        self.table(rows, (*FIXED, "reference_mean", "photons"))
+        self.succeeds()
+        self.assertEqual(without.count("stroke-dasharray"), 0)
+        self.assertEqual(name.read_text(encoding="utf-8").count("stroke-dasharray"), 2)  # the line and its legend
+
     def test_one_seed_is_enough(self):
         self.table([record(photons=p, mesh_resolution="") for p in (1000, 10000)])
         output = self.succeeds()
@@ -204,7 +224,8 @@ class Plots(unittest.TestCase):
         text = (self.report / "summary.tex").read_text(encoding="utf-8")
         self.assertIn(r"pool\_50\%", text)
         self.assertIn(r"\varepsilon=0.01\,\mathrm{mean}(r)^2", text)
-        self.assertEqual(len({line.count("&") for line in text.splitlines() if line.endswith(r"\\") and "&" in line}), 1)
+        rows = [line for line in text.splitlines() if "&" in line]
+        self.assertEqual(len({row.count(" & ") for row in rows}), 1)
 
     def test_a_missing_table(self):
         self.refuses("No such file")
