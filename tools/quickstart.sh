@@ -15,10 +15,14 @@ for scene in ring pool ball; do
 done
 status=0
 build/release/bin/causticbench sweep "${sweeps[@]}" -o "$results" "$@" || status=$?
-[ "$status" = 0 ] || { echo "quickstart: the sweep ended with exit code $status (see above)" >&2; exit "$status"; }
+if [ "$status" != 0 ]; then
+    echo "quickstart: the sweep ended with exit code $status (see above)" >&2
+    exit "$status"
+fi
 /usr/bin/python3 tools/plot_records.py "$results" || fail "plotting $results failed (see above)"
 
 echo "quickstart: done"
-echo "  table     $results/records.csv"
-echo "  plots     $results/report/*.svg"
-echo "  pictures  $results/report/figures/*.png"
+echo "  table     $results/records.csv, medians and ranges in $results/report/summary.md"
+echo "  plots     $results/report/plots/*.svg"
+echo "  pictures  $results/report/figures/"
+echo "  page      $results/report/index.html"
