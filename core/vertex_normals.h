@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/mesh.h"
+
+namespace caustics {
+
+/// Makes every normal of the mesh unit, and gives each vertex that has none (mesh.normals empty,
+/// or zero there) the sum of its triangles' unit normals weighted by their angles at it [Thürmer
+/// and Wüthrich 1998]. Vertices at the same position share their triangles. Degenerate triangles
+/// weigh nothing; a vertex whose sum vanishes takes the normal of its first triangle that is not
+/// degenerate, or else +z.
+void complete_normals(TriangleMesh& mesh);
+
+}  // namespace caustics
