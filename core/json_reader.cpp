@@ -1,328 +1,254 @@
 #include "core/json_reader.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
+
+#include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/json_document.h"
 
 namespace caustics {
 namespace {
 
-using Json = nlohmann::json;
-namespace fs = std::filesystem;
+using nlohmann::json;
 
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text.empty() ? "none" : text;
-}
-
-std::string escaped(std::string key) {
-    const auto replace_all = [&key](char from, const char* to) {
-        for (std::size_t at = 0; (at = key.find(from, at)) != std::string::npos; at += 2)
-            key.replace(at, 1, to);
-    };
-    replace_all('~', "~0");
-    replace_all('/', "~1");
-    return key;
-}
-
-// Where a byte of a text stands, for people.
-std::string line_and_column(const std::string& text, std::size_t byte) {
-    std::size_t line = 1;
-    std::size_t column = 1;
-    for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
-        column = text[i] == '\n' ? 1 : column + 1;
-        line += text[i] == '\n' ? 1 : 0;
-    }
-    return "line " + std::to_string(line) + ", column " + std::to_string(column);
-}
-
-// nlohmann keeps the last of two equal keys in silence; this names the first such key.
-class DuplicateKeys {
-public:
-    bool operator()(int, Json::parse_event_t event, Json& value) {
-        if (event == Json::parse_event_t::object_start) open_.emplace_back();
-        if (event == Json::parse_event_t::object_end) open_.pop_back();
-        if (event == Json::parse_event_t::key &&
-            !open_.back().insert(value.get<std::string>()).second && first_.empty())
-            first_ = value.get<std::string>();
-        return true;
-    }
-    const std::string& first() const { return first_; }
-
-private:
-    std::vector<std::set<std::string>> open_;
-    std::string first_;
-};
-
-Json parse(const std::string& text, const std::string& origin) {
-    DuplicateKeys duplicates;
-    Json json;
+/// The tokens of a JSON pointer; empty when it is not one.
+std::vector<std::string> pointer_tokens(const std::string& pointer) {
     try {
-        json = Json::parse(text, std::ref(duplicates));
-    } catch (const Json::parse_error& error) {
-        throw InputError(origin + ": not JSON at " + line_and_column(text, error.byte));
-    } catch (const Json::exception&) {
-        throw InputError(origin + ": a number is out of range");
-    }
-    if (!duplicates.first().empty())
-        throw InputError(origin + ": key \"" + duplicates.first() + "\" stands twice in one object");
-    return json;
-}
-
-// Replaces every {"$include": "file"} by that file's content and notes where it came from.
-class Includer {
-public:
-    explicit Includer(std::map<std::string, fs::path>& files) : files_(files) {}
-
-    Json load(const fs::path& file, const std::string& pointer) {
-        if (std::ranges::find(open_, file) != open_.end())
-            throw InputError(file.string() + ": $include comes back to this file");
-        std::ifstream in(file, std::ios::binary);
-        std::ostringstream text;
-        if (!in || fs::is_directory(file) || !(text << in.rdbuf()))
-            throw InputError(file.string() + ": cannot be read" + including());
-        Json json = parse(text.str(), file.string());
-        open_.push_back(file);
-        files_[pointer] = file;
-        resolve(json, pointer);
-        open_.pop_back();
-        return json;
-    }
-
-private:
-    std::string including() const {
-        return open_.empty() ? "" : " (included by " + open_.back().string() + ")";
-    }
-
-    void resolve(Json& json, const std::string& pointer) {
-        if (json.is_array())
-            for (std::size_t i = 0; i < json.size(); ++i)
-                resolve(json[i], pointer + "/" + std::to_string(i));
-        if (!json.is_object()) return;
-        if (const auto include = json.find("$include"); include != json.end()) {
-            const std::string place = open_.back().string() + ": " + pointer;
-            if (!include->is_string()) throw InputError(place + ": $include takes a file's name");
-            if (json.size() > 1)
-                throw InputError(place + ": no other key may stand beside $include");
-            json = load(open_.back().parent_path() / include->get<std::string>(), pointer);
-            return;
-        }
-        for (auto& [key, child] : json.items()) resolve(child, pointer + "/" + escaped(key));
-    }
-
-    std::map<std::string, fs::path>& files_;
-    std::vector<fs::path> open_;
-};
-
-const char* kind_of(const Json& json) {
-    switch (json.type()) {
-        case Json::value_t::object: return "an object";
-        case Json::value_t::array: return "a list";
-        case Json::value_t::string: return "a string";
-        case Json::value_t::boolean: return "true or false";
-        case Json::value_t::null: return "null";
-        default: return "a number";
+        json::json_pointer rest(pointer);
+        std::vector<std::string> tokens;
+        for (; !rest.empty(); rest.pop_back()) tokens.push_back(rest.back());
+        std::reverse(tokens.begin(), tokens.end());
+        return tokens;
+    } catch (const json::exception&) {
+        return {};
     }
 }
 
-std::vector<std::string> keys_of(const Json& json) {
-    std::vector<std::string> keys;
-    for (const auto& [key, child] : json.items()) keys.push_back(key);
-    return keys;
+/// The element of an array that a pointer's token names, or nullptr.
+json* element(json& array, const std::string& token) {
+    std::size_t index = 0;
+    const char* end = token.data() + token.size();
+    const auto parsed = std::from_chars(token.data(), end, index);
+    const bool leading_zero = token.size() > 1 && token[0] == '0';
+    if (parsed.ec != std::errc() || parsed.ptr != end || leading_zero || index >= array.size())
+        return nullptr;
+    return &array[index];
 }
 
-std::string number_text(double value) {
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << value;
-    return text.str();
+std::string contents(const json& value) {
+    if (value.is_object()) return "is an object with the keys: " + key_list(value);
+    if (value.is_array()) return fmt::format("is an array of {} elements", value.size());
+    return "is " + shown(value);
+}
+
+json value_or_string(const std::string& text, const std::string& place) {
+    if (json::accept(text)) return parse_json(text, place);
+    json string = text;
+    try {
+        static_cast<void>(string.dump());
+    } catch (const json::exception&) {
+        throw InputError(place + ": the value is not valid UTF-8");
+    }
+    return string;
+}
+
+template <class Value>
+void erase_at_or_below(std::map<std::string, Value>& map, const std::string& pointer) {
+    std::erase_if(map, [&](const auto& entry) {
+        return entry.first == pointer || entry.first.starts_with(pointer + "/");
+    });
 }
 
 }  // namespace
 
-struct JsonNode::Document {
-    Json root;
-    std::map<std::string, fs::path> files;               ///< pointer -> file written there
-    std::map<std::string, std::set<std::string>> known;  ///< pointer of an object -> keys asked for
-
-    const Json& at(const std::string& pointer) const { return root.at(Json::json_pointer(pointer)); }
-};
-
 JsonNode::JsonNode(std::shared_ptr<Document> document, std::string pointer)
     : document_(std::move(document)), pointer_(std::move(pointer)) {}
 
-JsonNode JsonNode::parse_file(const fs::path& file) {
-    auto document = std::make_shared<Document>();
-    document->root = Includer(document->files).load(file, "");
+JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
+    const auto document = std::make_shared<Document>();
+    document->file = file;
+    document->root = parse_json(read_text(file), file.string());
+    resolve_includes(document->root, "", file, document->included);
     return {document, ""};
 }
 
 JsonNode JsonNode::parse_text(const std::string& text, const std::string& origin) {
-    auto document = std::make_shared<Document>();
-    document->files[""] = origin;
-    document->root = parse(text, origin);
+    const auto document = std::make_shared<Document>();
+    document->file = origin;
+    document->root = parse_json(text, origin);
     return {document, ""};
 }
 
 void JsonNode::set(const std::string& pointer, const std::string& value) {
-    const auto refuse = [&](const std::string& reason) {
-        throw InputError(file().string() + ": " + pointer + ": " + reason);
-    };
-    if (pointer.empty() || pointer.front() != '/')
-        refuse("not a JSON pointer: it starts with / (as in /water/resolution)");
-    const Json parsed = Json::parse(value, nullptr, false);
-    const Json replacement = parsed.is_discarded() ? Json(value) : parsed;
-    try {
-        Json::json_pointer path(pointer);
-        const std::string last = path.back();
-        std::string reached;
-        Json* parent = &document_->root;
-        std::istringstream parts(pointer.substr(1, pointer.rfind('/') > 0 ? pointer.rfind('/') - 1
-                                                                          : 0));
-        for (std::string part; std::getline(parts, part, '/');) {
-            const Json::json_pointer next("/" + part);
-            if (!parent->contains(next))
-                refuse("points into nothing: " + (reached.empty() ? "the root" : reached) +
-                       " has no \"" + part + "\" (it has: " + joined(keys_of(*parent)) + ")");
-            parent = &parent->at(next);
-            reached += "/" + part;
+    const std::string what = fmt::format("{}: setting {}", document_->file.string(), pointer);
+    const std::vector<std::string> tokens = pointer_tokens(pointer);
+    if (tokens.empty())
+        throw InputError(what + ": not a JSON pointer, which looks like /water/resolution");
+    json* target = &document_->root;
+    std::string reached;
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+        json* next = nullptr;
+        if (target->is_array()) {
+            next = element(*target, tokens[i]);
+        } else if (target->is_object()) {
+            if (target->contains(tokens[i]) || i + 1 == tokens.size())
+                next = &(*target)[tokens[i]];
         }
-        const bool fits = parent->is_object() ||
-                          (parent->is_array() && parent->contains(Json::json_pointer("/" + last)));
-        if (!fits)
-            refuse("points into nothing: " + (reached.empty() ? "the root" : reached) + " is " +
-                   kind_of(*parent));
-        document_->root[path] = replacement;
-    } catch (const Json::exception&) {
-        refuse("not a JSON pointer into this file");
+        if (next == nullptr)
+            throw InputError(fmt::format("{}: there is nothing of that name; {} {}", what,
+                                         reached.empty() ? "/" : reached, contents(*target)));
+        target = next;
+        reached = child_pointer(reached, tokens[i]);
     }
+    erase_at_or_below(document_->included, reached);
+    erase_at_or_below(document_->keys, reached);
+    *target = value_or_string(value, what);
+    resolve_includes(*target, reached, JsonNode(document_, reached).file(), document_->included);
 }
 
-bool JsonNode::is_object() const { return document_->at(pointer_).is_object(); }
-bool JsonNode::is_array() const { return document_->at(pointer_).is_array(); }
-bool JsonNode::is_number() const { return document_->at(pointer_).is_number(); }
-bool JsonNode::is_string() const { return document_->at(pointer_).is_string(); }
-bool JsonNode::is_bool() const { return document_->at(pointer_).is_boolean(); }
+bool JsonNode::is_object() const { return document_->value(pointer_).is_object(); }
+bool JsonNode::is_array() const { return document_->value(pointer_).is_array(); }
+bool JsonNode::is_number() const { return document_->value(pointer_).is_number(); }
+bool JsonNode::is_string() const { return document_->value(pointer_).is_string(); }
+bool JsonNode::is_bool() const { return document_->value(pointer_).is_boolean(); }
 
 double JsonNode::as_number() const {
-    const Json& json = document_->at(pointer_);
-    if (!json.is_number()) fail(std::string("must be a number, is ") + kind_of(json));
-    const double value = json.get<double>();
-    if (!std::isfinite(value)) fail("must be finite");
-    return value;
+    const json& value = document_->value(pointer_);
+    if (!value.is_number()) fail("expected a number, got " + shown(value));
+    const double number = value.get<double>();
+    if (!std::isfinite(number)) fail("expected a finite number");
+    return number;
 }
 
 double JsonNode::as_number_in(double low, double high) const {
-    const double value = as_number();
-    if (value < low || value > high)
-        fail("must be from " + number_text(low) + " to " + number_text(high) + ", is " +
-             number_text(value));
-    return value;
+    const double number = as_number();
+    if (number < low || number > high)
+        fail(fmt::format("{} is out of range (from {} to {})", number, low, high));
+    return number;
 }
 
 std::int64_t JsonNode::as_integer_in(std::int64_t low, std::int64_t high) const {
-    const double value = as_number();
-    if (value != std::floor(value)) fail("must be a whole number, is " + number_text(value));
-    if (value < static_cast<double>(low) || value > static_cast<double>(high))
-        fail("must be from " + std::to_string(low) + " to " + std::to_string(high) + ", is " +
-             number_text(value));
-    return static_cast<std::int64_t>(value);
+    const json& value = document_->value(pointer_);
+    if (!value.is_number()) fail("expected a whole number, got " + shown(value));
+    const std::string range = fmt::format("is out of range (from {} to {})", low, high);
+    if (value.is_number_float()) {
+        // 1e6 is a whole number too; beyond 2^53 a double no longer says which one.
+        const double number = value.get<double>();
+        if (std::trunc(number) != number) fail("expected a whole number, got " + shown(value));
+        if (std::abs(number) > 9007199254740992.0) fail(shown(value) + " " + range);
+        const auto integer = static_cast<std::int64_t>(number);
+        if (integer < low || integer > high) fail(shown(value) + " " + range);
+        return integer;
+    }
+    const bool too_big =
+        value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{INT64_MAX};
+    if (too_big || value.get<std::int64_t>() < low || value.get<std::int64_t>() > high)
+        fail(shown(value) + " " + range);
+    return value.get<std::int64_t>();
 }
 
 bool JsonNode::as_bool() const {
-    const Json& json = document_->at(pointer_);
-    if (!json.is_boolean()) fail(std::string("must be true or false, is ") + kind_of(json));
-    return json.get<bool>();
+    if (!is_bool()) fail("expected true or false, got " + shown(document_->value(pointer_)));
+    return document_->value(pointer_).get<bool>();
 }
 
 std::string JsonNode::as_string() const {
-    const Json& json = document_->at(pointer_);
-    if (!json.is_string()) fail(std::string("must be a string, is ") + kind_of(json));
-    return json.get<std::string>();
+    if (!is_string()) fail("expected a string, got " + shown(document_->value(pointer_)));
+    return document_->value(pointer_).get<std::string>();
 }
 
 std::size_t JsonNode::as_choice(const std::vector<std::string>& choices) const {
-    const std::string value = as_string();
-    const auto at = std::ranges::find(choices, value);
-    if (at == choices.end()) fail("unknown \"" + value + "\" (known: " + joined(choices) + ")");
-    return static_cast<std::size_t>(at - choices.begin());
+    const json& value = document_->value(pointer_);
+    const auto found = value.is_string() ? std::find(choices.begin(), choices.end(),
+                                                     value.get_ref<const std::string&>())
+                                         : choices.end();
+    if (found == choices.end())
+        fail(fmt::format("{} is none of the choices ({})", shown(value), join(choices)));
+    return static_cast<std::size_t>(found - choices.begin());
 }
 
 std::vector<double> JsonNode::as_numbers(std::size_t count) const {
-    const Json& json = document_->at(pointer_);
-    if (!json.is_array() || json.size() != count)
-        fail("must be a list of " + std::to_string(count) + " numbers");
-    std::vector<double> values;
-    for (const JsonNode& child : as_array()) values.push_back(child.as_number());
-    return values;
+    const json& value = document_->value(pointer_);
+    if (!value.is_array() || value.size() != count)
+        fail(fmt::format("expected an array of {} numbers, got {}", count, shown(value)));
+    std::vector<double> numbers;
+    for (const JsonNode& node : as_array()) numbers.push_back(node.as_number());
+    return numbers;
 }
 
 std::vector<JsonNode> JsonNode::as_array() const {
-    const Json& json = document_->at(pointer_);
-    if (!json.is_array()) fail(std::string("must be a list, is ") + kind_of(json));
-    std::vector<JsonNode> children;
-    for (std::size_t i = 0; i < json.size(); ++i)
-        children.push_back(JsonNode(document_, pointer_ + "/" + std::to_string(i)));
-    return children;
+    const json& value = document_->value(pointer_);
+    if (!value.is_array()) fail("expected an array, got " + shown(value));
+    std::vector<JsonNode> nodes;
+    for (std::size_t i = 0; i < value.size(); ++i)
+        nodes.push_back(JsonNode(document_, child_pointer(pointer_, std::to_string(i))));
+    return nodes;
 }
 
 std::optional<JsonNode> JsonNode::find(const std::string& key) const {
-    const Json& json = document_->at(pointer_);
-    if (!json.is_object()) fail(std::string("must be an object, is ") + kind_of(json));
-    document_->known[pointer_].insert(key);
-    if (!json.contains(key)) return {};
-    return JsonNode(document_, pointer_ + "/" + escaped(key));
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    std::vector<std::string>& known = document_->keys[pointer_].known;
+    if (std::find(known.begin(), known.end(), key) == known.end()) known.push_back(key);
+    if (!value.contains(key)) return std::nullopt;
+    return JsonNode(document_, child_pointer(pointer_, key));
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
     const std::optional<JsonNode> child = find(key);
-    if (!child) fail("needs the key \"" + key + "\"");
+    if (!child)
+        fail(fmt::format("key {} is missing (present: {})", shown(key),
+                         key_list(document_->value(pointer_))));
     return *child;
 }
 
 std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {
-    const Json& json = document_->at(pointer_);
-    if (!json.is_object()) fail(std::string("must be an object, is ") + kind_of(json));
-    std::vector<std::pair<std::string, JsonNode>> children;
-    std::set<std::string>& known = document_->known[pointer_];
-    for (const std::string& key : keys_of(json))
-        if (known.insert(key).second)
-            children.emplace_back(key, JsonNode(document_, pointer_ + "/" + escaped(key)));
-    return children;
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    Document::Keys& keys = document_->keys[pointer_];
+    std::vector<std::pair<std::string, JsonNode>> nodes;
+    for (const auto& [key, child] : value.items()) {
+        if (std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end()) continue;
+        if (!keys.taken.insert(key).second) continue;
+        nodes.emplace_back(key, JsonNode(document_, child_pointer(pointer_, key)));
+    }
+    return nodes;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
+    std::vector<std::pair<std::string, JsonNode>> nodes = others();
+    Document::Keys& keys = document_->keys[pointer_];
+    std::erase_if(nodes, [&](const auto& entry) {
+        if (entry.second.is_object()) return false;
+        keys.taken.erase(entry.first);
+        return true;
+    });
+    return nodes;
 }
 
 void JsonNode::finish() const {
-    const std::set<std::string>& known = document_->known[pointer_];
-    for (const std::string& key : keys_of(document_->at(pointer_)))
-        if (!known.contains(key))
-            fail("unknown key \"" + key + "\" (known: " +
-                 joined({known.begin(), known.end()}) + ")");
-}
-
-void JsonNode::fail(const std::string& reason) const { throw InputError(place() + ": " + reason); }
-
-std::string JsonNode::place() const {
-    return file().string() + ": " + (pointer_.empty() ? "/" : pointer_);
-}
-
-fs::path JsonNode::file() const {
-    // The longest noted pointer that this one starts with.
-    std::string prefix = pointer_;
-    for (;;) {
-        const auto at = document_->files.find(prefix);
-        if (at != document_->files.end()) return at->second;
-        const std::size_t slash = prefix.rfind('/');
-        prefix.resize(slash == std::string::npos ? 0 : slash);
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    const Document::Keys& keys = document_->keys[pointer_];
+    for (const auto& [key, child] : value.items()) {
+        const bool known = std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end();
+        if (!known && !keys.taken.contains(key))
+            fail(fmt::format("unknown key {} (known: {})", shown(key), join(keys.known)));
     }
 }
 
-std::string JsonNode::canonical() const { return document_->at(pointer_).dump(); }
+void JsonNode::fail(const std::string& reason) const { document_->fail(pointer_, reason); }
+
+std::string JsonNode::place() const { return document_->place(pointer_); }
+
+std::filesystem::path JsonNode::file() const {
+    const auto inclusion = document_->inclusion(pointer_);
+    return inclusion == document_->included.end() ? document_->file : inclusion->second;
+}
+
+std::string JsonNode::canonical() const { return canonical_json(document_->value(pointer_)); }
 
 }  // namespace caustics

@@ -21,8 +21,9 @@ public:
     /// Parses text that did not come from a file; `origin` stands for the file in messages.
     static JsonNode parse_text(const std::string& text, const std::string& origin);
 
-    /// Replaces the value at a JSON pointer ("/water/resolution"), or adds the last key of it to
-    /// an existing object. `value` is JSON, or else taken as a string.
+    /// Replaces the value at a JSON pointer of RFC 6901 ("/water/resolution"), or adds its last key
+    /// to an existing object. `value` is JSON, or else taken as a string. Of the whole document,
+    /// whatever node it is called on; call it before reading.
     void set(const std::string& pointer, const std::string& value);
 
     bool is_object() const;
@@ -38,7 +39,7 @@ public:
     std::string as_string() const;
     /// The index of the string among the choices.
     std::size_t as_choice(const std::vector<std::string>& choices) const;
-    std::vector<double> as_numbers(std::size_t count) const;
+    std::vector<double> as_numbers(std::size_t count) const;  ///< an array of so many numbers
     std::vector<JsonNode> as_array() const;
 
     /// The child of an object; marks the key as known whether present or not.
@@ -47,11 +48,13 @@ public:
     JsonNode at(const std::string& key) const;
     /// The children not yet asked for, in the order of their keys; marks them.
     std::vector<std::pair<std::string, JsonNode>> others() const;
-    /// Throws unless every key was asked for.
+    /// As others, but only the children that are objects; the rest is left to be asked for.
+    std::vector<std::pair<std::string, JsonNode>> children() const;
+    /// Throws unless every key was asked for, listing those that are known.
     void finish() const;
 
     [[noreturn]] void fail(const std::string& reason) const;
-    /// "file: /pointer"
+    /// "file: /pointer", where the pointer is that inside the file.
     std::string place() const;
     /// The file this value was written in; relative names inside are relative to its folder.
     std::filesystem::path file() const;

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/json_reader.h"
+
+namespace caustics {
+
+/// What the JsonNodes of one document share. Only json_reader.cpp and json_document.cpp see it.
+struct JsonNode::Document {
+    /// The keys of one object that its reader asked for.
+    struct Keys {
+        std::vector<std::string> known;  ///< by name, in the order of asking
+        std::set<std::string> taken;     ///< as children of any name
+    };
+
+    nlohmann::json root;
+    std::filesystem::path file;
+    /// Where a value came from another file: its pointer -> that file.
+    std::map<std::string, std::filesystem::path> included;
+    mutable std::map<std::string, Keys> keys;  ///< by the pointer of the object
+
+    const nlohmann::json& value(const std::string& pointer) const {
+        return root.at(nlohmann::json::json_pointer(pointer));
+    }
+    /// The entry of `included` at or above a pointer, nearest first; end() for the main file.
+    std::map<std::string, std::filesystem::path>::const_iterator
+    inclusion(const std::string& pointer) const;
+    /// "file: /pointer", with the pointer inside that file and, when included, the whole one.
+    std::string place(const std::string& pointer) const;
+    [[noreturn]] void fail(const std::string& pointer, const std::string& reason) const;
+};
+
+/// Appends a key to a pointer, escaped as RFC 6901 says.
+std::string child_pointer(const std::string& pointer, const std::string& key);
+/// A key or value as JSON text on one line, cut to a readable length.
+std::string shown(const nlohmann::json& value);
+/// `"a", "b"`, or a word for none.
+std::string key_list(const nlohmann::json& object);
+std::string join(const std::vector<std::string>& words);
+
+/// Parses text strictly: one value, no duplicate keys, bounded nesting. Throws InputError naming
+/// `origin` and the line and column or the pointer.
+nlohmann::json parse_json(const std::string& text, const std::string& origin);
+/// Replaces every `{"$include": ...}` in `value`, which stands at `pointer` of the document and was
+/// written in `file`, and notes where the replacements came from.
+void resolve_includes(nlohmann::json& value, const std::string& pointer,
+                      const std::filesystem::path& file,
+                      std::map<std::string, std::filesystem::path>& included);
+/// Reads a whole file. Throws InputError.
+std::string read_text(const std::filesystem::path& file);
+/// Text that is the same for the same values: sorted keys, shortest round-trip numbers, 1.0 as 1.
+std::string canonical_json(const nlohmann::json& value);
+
+}  // namespace caustics
