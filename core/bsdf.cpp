@@ -1,5 +1,6 @@
 #include "core/bsdf.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/frame.h"
@@ -17,10 +18,11 @@ float schlick_lobe(float t2, float alpha) {
     return alpha / (denominator * denominator);
 }
 
-// (n.h)^2 with the normalised half vector h, from cosines alone.
+// (n.h)^2 with the normalised half vector h. wo + wi itself, not 1 + wo.wi, which cancels for
+// opposite grazing directions.
 float half_vector_cosine_squared(float v, float v_in, const Vec3& wo, const Vec3& wi) {
     const float sum = v + v_in;
-    return std::min(1.0F, sum * sum / (2 + 2 * wo.dot(wi)));
+    return std::min(1.0F, sum * sum / Vec3(wo + wi).squaredNorm());
 }
 
 float schlick_value(float alpha, const Vec3& n, const Vec3& wo, const Vec3& wi) {
@@ -87,7 +89,7 @@ float direction_pdf(const Bsdf& bsdf, const Vec3& n, const Vec3& wo, const Vec3&
     const auto* schlick = std::get_if<Schlick>(&bsdf.model);
     if (schlick == nullptr) return cosine_pdf;
     const float t2 = half_vector_cosine_squared(n.dot(wo), cosine, wo, wi);
-    const float wo_half = std::sqrt((1 + wo.dot(wi)) / 2);
+    const float wo_half = Vec3(wo + wi).norm() / 2;
     const float lobe_pdf =
         schlick_lobe(t2, schlick->alpha) * std::sqrt(t2) / pi / (4 * wo_half);
     return 0.5F * (cosine_pdf + lobe_pdf);
