@@ -88,7 +88,8 @@ std::optional<Interval> clip_to_box(const SineHeightfield& field, const Vec3d& o
 
 // Marches g(t) = z(t) - h(x(t), y(t)) to its first zero. |g''| <= C bounds how soon g can vanish
 // after t: not before the smaller positive root of |g| + s g' sign - C s^2 / 2 = 0, so no step
-// passes a zero, and near a simple zero the steps are Newton's.
+// passes a zero, and near a simple zero the steps are Newton's. Where rounding does carry the last
+// step past the zero, the sign changes. Rays that skim fine ripples take thousands of steps.
 Hit intersect_heightfield(const SineHeightfield& field, const Vec3d& o, const Vec3d& d,
                           Interval range) {
     const std::optional<Interval> inside = clip_to_box(field, o, d, range);
@@ -96,17 +97,23 @@ Hit intersect_heightfield(const SineHeightfield& field, const Vec3d& o, const Ve
     const Vec2d d2 = d.head<2>();
     const double curvature = field.max_curvature() * d2.squaredNorm() + 1e-300;
     const double close = 1e-13 * (1 + o.norm() + field.max_height());
+    const double least_advance = 1e-15 / d.norm();
+    constexpr int max_steps = 1'000'000;
     double t = inside->low;
-    for (int step = 0; step < 1000 && t <= inside->high; ++step) {
+    bool was_below = false;
+    for (int step = 0; step < max_steps && t <= inside->high; ++step) {
         const Vec2d xy = o.head<2>() + t * d2;
         const double g = o.z() + t * d.z() - field.height(xy);
-        const double slope = (d.z() - field.gradient(xy).dot(d2)) * (g < 0 ? -1 : 1);
-        if (std::abs(g) <= close && range.holds(t))
+        const bool below = g < 0;
+        const double slope = (d.z() - field.gradient(xy).dot(d2)) * (below ? -1 : 1);
+        const bool passed = step > 0 && below != was_below;
+        if ((std::abs(g) <= close || passed) && range.holds(t))
             return ExactHit{t, Vec3d(xy.x(), xy.y(), field.height(xy))};
         const double root = std::sqrt(slope * slope + 2 * curvature * std::abs(g));
         const double advance =
             slope < 0 ? 2 * std::abs(g) / (root - slope) : (slope + root) / curvature;
-        t += std::max(advance, 1e-14 * (1 + std::abs(t)));
+        t += std::max({advance, least_advance, 4e-16 * std::abs(t)});
+        was_below = below;
     }
     return {};
 }
