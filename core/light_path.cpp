@@ -10,42 +10,40 @@
 namespace caustics {
 namespace {
 
-constexpr float whole_sphere = -1;
-
 // The narrowest cone round the direction to the bounding sphere's centre that holds a caster as
 // seen from a point: exact for spheres, by the hull's vertices for all others (a cone of less
 // than a right angle is convex, so it holds what its vertices span).
-std::pair<Vec3, float> cone_from_point(const Shape& caster, const Vec3& from) {
+DirectionCone cone_from_point(const Shape& caster, const Vec3& from) {
     const BoundingSphere sphere = bounding_sphere(caster);
     const Vec3 to_centre = sphere.centre - from;
     const float distance = to_centre.norm();
-    if (distance == 0) return {Vec3::UnitZ(), whole_sphere};
+    if (distance == 0) return {};
     const Vec3 axis = to_centre / distance;
     if (caster.primitive == Primitive::sphere) {
         const float sine = sphere.radius / distance * (1 + 1e-5F);
-        return {axis, sine < 1 ? std::sqrt(1 - sine * sine) : whole_sphere};
+        return sine < 1 ? DirectionCone::from_sine(axis, sine) : DirectionCone{};
     }
-    float cos_angle = 1;
+    float one_minus_cos = 0;
     for (const Vec3& p : hull_points(caster))
-        cos_angle = std::min(cos_angle, axis.dot((p - from).normalized()));
-    return {axis, cos_angle > 0.01F ? cos_angle - 1e-5F : whole_sphere};
+        one_minus_cos = std::max(one_minus_cos, ((p - from).normalized() - axis).squaredNorm() / 2);
+    // Unit vectors are good to 1e-7: widened by that angle and a little more.
+    const float widened = one_minus_cos * (1 + 1e-5F) + 4e-7F * std::sqrt(2 * one_minus_cos);
+    return widened < 0.99F ? DirectionCone{axis, widened} : DirectionCone{};
 }
 
 // All directions from any point of one sphere to any point of another.
-std::pair<Vec3, float> cone_between(const BoundingSphere& from, const BoundingSphere& to) {
+DirectionCone cone_between(const BoundingSphere& from, const BoundingSphere& to) {
     const Vec3 towards = to.centre - from.centre;
     const float distance = towards.norm();
     const float reach = (from.radius + to.radius) * (1 + 1e-5F);
-    if (distance <= reach) return {Vec3::UnitZ(), whole_sphere};
-    const float sine = reach / distance;
-    return {towards / distance, std::sqrt(1 - sine * sine)};
+    if (distance <= reach) return {};
+    return DirectionCone::from_sine(towards / distance, reach / distance);
 }
 
 // Bound of n . w over a cone of directions.
-float max_cosine_in_cone(const Vec3& n, const Vec3& axis, float cos_angle) {
-    const float to_axis = std::acos(std::clamp(n.dot(axis), -1.0F, 1.0F));
-    const float half_angle = std::acos(std::clamp(cos_angle, -1.0F, 1.0F));
-    return std::cos(std::max(0.0F, to_axis - half_angle));
+float max_cosine_in_cone(const Vec3& n, const DirectionCone& cone) {
+    const float to_axis = std::acos(std::clamp(n.dot(cone.axis), -1.0F, 1.0F));
+    return std::cos(std::max(0.0F, to_axis - cone.angle()));
 }
 
 bool is_flat(const Shape& shape) {
@@ -120,15 +118,15 @@ double AimedEmission::aim_cones(Source& source, const BoundingSphere& from, cons
             : Vec3::UnitZ();
     for (const std::uint32_t caster : scene_.casters()) {
         const Shape& shape = scene_.shapes()[caster];
-        const auto [axis, cos_angle] = emitter == nullptr ? cone_from_point(shape, from.centre)
-                                                          : cone_between(from, bounding_sphere(shape));
-        max_cosine = std::max(max_cosine, max_cosine_in_cone(normal, axis, cos_angle));
-        source.cones.push_back({axis, cos_angle});
-        measures.push_back(cone_solid_angle(cos_angle));
-        if (cos_angle > whole_sphere) continue;
+        const DirectionCone cone = emitter == nullptr ? cone_from_point(shape, from.centre)
+                                                      : cone_between(from, bounding_sphere(shape));
+        max_cosine = std::max(max_cosine, max_cosine_in_cone(normal, cone));
+        source.cones.push_back(cone);
+        measures.push_back(cone.solid_angle());
+        if (!cone.is_whole_sphere()) continue;
         // All directions hold every other cone: it alone is the union.
-        source.cones = {{axis, cos_angle}};
-        measures = {cone_solid_angle(cos_angle)};
+        source.cones = {cone};
+        measures = {cone.solid_angle()};
         max_cosine = 1;
         break;
     }
@@ -177,15 +175,15 @@ std::optional<LightParticle> AimedEmission::emit(Rng& rng) const {
 
 std::optional<Vec3> AimedEmission::direction_in_union(const Source& source, Rng& rng) {
     const float u = rng.next();
-    const Cone& cone = source.cones[source.cones.size() == 1 ? 0 : pick(source.cumulative, u)];
+    const DirectionCone& cone = source.cones[source.cones.size() == 1 ? 0 : pick(source.cumulative, u)];
     const float u0 = rng.next();
     const float u1 = rng.next();
-    const Vec3 direction = Frame(cone.axis).to_world(uniform_cone(cone.cos_angle, u0, u1));
+    const Vec3 direction = cone.sample(u0, u1);
     if (source.cones.size() == 1) return direction;
     // Thinning by the number of cones that hold the direction makes the union uniform.
     int holding = 0;
-    for (const Cone& other : source.cones)
-        holding += &other == &cone || other.axis.dot(direction) >= other.cos_angle ? 1 : 0;
+    for (const DirectionCone& other : source.cones)
+        holding += &other == &cone || other.contains(direction) ? 1 : 0;
     if (rng.next() * static_cast<float>(holding) >= 1) return {};
     return direction;
 }

@@ -6,6 +6,7 @@
 
 #include "core/caustic_estimator.h"
 #include "core/rng.h"
+#include "core/sampling.h"
 #include "core/scene.h"
 #include "core/spectrum.h"
 
@@ -30,7 +31,7 @@ struct Deposit {
     int bounces = 0;
 };
 
-/// What became of emitted particles; the ends add up to `emitted`.
+/// What became of emitted particles; the ends (missed to stored) add up to `aimed`.
 struct LightPathCounts {
     std::uint64_t emitted = 0;   ///< drawn, including those thinned out at the light
     std::uint64_t aimed = 0;     ///< sent on their way
@@ -61,10 +62,6 @@ public:
     bool empty() const { return sources_.empty(); }
 
 private:
-    struct Cone {
-        Vec3 axis;
-        float cos_angle;  ///< -1: all directions
-    };
     struct Disc {
         Vec3 centre;
         float radius;
@@ -73,7 +70,7 @@ private:
         std::uint32_t light = 0;
         Spectrum power = black();        ///< of the whole aimed measure [W]
         double share = 0;                ///< probability of this light
-        std::vector<Cone> cones;         ///< point and area lights
+        std::vector<DirectionCone> cones;  ///< point and area lights
         std::vector<Disc> discs;         ///< directional lights, on a plane before the scene
         std::vector<double> cumulative;  ///< of their measures, normalised
         float max_cosine = 1;            ///< area lights: bound of the cosine over the cones

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/frame.h"
 #include "core/vec.h"
 
 namespace caustics {
@@ -17,19 +18,36 @@ inline Vec3 cosine_hemisphere(float u0, float u1) {
     return {r * std::cos(angle), r * std::sin(angle), std::sqrt(std::max(0.0F, 1 - u0))};
 }
 
-/// Uniform direction within `cos_angle` of +z, pdf_w = 1 / cone_solid_angle.
-inline Vec3 uniform_cone(float cos_angle, float u0, float u1) {
-    // 1 - z in double-free form keeps narrow cones exact where z itself rounds to 1.
-    const float height = (1 - cos_angle) * u0;
+/// Uniform direction within an angle of +z, given as 1 - cos (2 = the whole sphere), pdf_w = 1 over
+/// the solid angle 2 pi (1 - cos).
+inline Vec3 uniform_cap(float one_minus_cos, float u0, float u1) {
+    const float height = one_minus_cos * u0;
     const float sine = std::sqrt(height * (2 - height));
     const float angle = 2 * pi * u1;
     return {sine * std::cos(angle), sine * std::sin(angle), 1 - height};
 }
 
-/// [sr]
-inline double cone_solid_angle(float cos_angle) {
-    return 2 * pi_d * (1 - static_cast<double>(cos_angle));
-}
+/// The directions within an angle of a unit axis. The angle is kept as 1 - cos, which still tells
+/// narrow cones apart where cos itself rounds to 1 (below 3e-4 rad in float).
+struct DirectionCone {
+    Vec3 axis = Vec3::UnitZ();
+    float one_minus_cos = 2;
+
+    /// By the sine of an angle below a right one.
+    static DirectionCone from_sine(const Vec3& axis, float sine) {
+        return {axis, sine * sine / (1 + std::sqrt(1 - sine * sine))};
+    }
+    bool is_whole_sphere() const { return one_minus_cos >= 2; }
+    double solid_angle() const { return 2 * pi_d * static_cast<double>(one_minus_cos); }  ///< [sr]
+    float angle() const { return 2 * std::asin(std::sqrt(std::min(1.0F, one_minus_cos / 2))); }
+    bool contains(const Vec3& w) const {
+        return is_whole_sphere() || (w - axis).squaredNorm() <= 2 * one_minus_cos;
+    }
+    /// Uniform by solid angle.
+    Vec3 sample(float u0, float u1) const {
+        return Frame(axis).to_world(uniform_cap(one_minus_cos, u0, u1)).normalized();
+    }
+};
 
 /// Uniform point of the unit disc.
 inline Vec2 uniform_disc(float u0, float u1) {

@@ -49,7 +49,7 @@ std::pair<Vec3d, Vec3d> sample_local(Primitive primitive, float u0, float u1) {
                     Vec3d::UnitZ()};
         }
         case Primitive::sphere: {
-            const Vec3d n = uniform_cone(-1, u0, u1).cast<double>().normalized();
+            const Vec3d n = uniform_cap(2, u0, u1).cast<double>().normalized();
             return {n, n};
         }
         case Primitive::cylinder: {

@@ -16,14 +16,14 @@ namespace {
 // bounding sphere, combined by the balance heuristic of one sample (Veach & Guibas 1995).
 class DirectionMixture {
 public:
-    DirectionMixture(const Scene& scene, const ReceiverPoint& point) : point_(point) {
-        for (const std::uint32_t index : scene.casters()) {
-            const BoundingSphere sphere = bounding_sphere(scene.shapes()[index]);
+    DirectionMixture(const std::vector<BoundingSphere>& casters, const ReceiverPoint& point)
+        : point_(point) {
+        for (const BoundingSphere& sphere : casters) {
             const Vec3 towards = sphere.centre - point.position;
             const float distance = towards.norm();
             const float sine = sphere.radius * (1 + 1e-5F) / distance;
             // Seen from inside its bounds a caster may lie in every direction.
-            if (sine < 1) cones_.push_back({towards / distance, std::sqrt(1 - sine * sine)});
+            if (sine < 1) cones_.push_back(DirectionCone::from_sine(towards / distance, sine));
         }
     }
 
@@ -36,29 +36,23 @@ public:
             return sample_direction(bsdf(), point_.shading_normal, point_.wo, u0, u1, rest);
         }
         const auto at = static_cast<std::size_t>((2 * u2 - 1) * static_cast<float>(cones_.size()));
-        const Cone& cone = cones_[std::min(at, cones_.size() - 1)];
-        return Frame(cone.axis).to_world(uniform_cone(cone.cos_angle, u0, u1)).normalized();
+        return cones_[std::min(at, cones_.size() - 1)].sample(u0, u1);
     }
 
     float pdf_w(const Vec3& wi) const {
         const float bsdf_pdf = direction_pdf(bsdf(), point_.shading_normal, point_.wo, wi);
         if (cones_.empty()) return bsdf_pdf;
         float cone_pdf = 0;
-        for (const Cone& cone : cones_)
-            if (cone.axis.dot(wi) >= cone.cos_angle)
-                cone_pdf += static_cast<float>(1 / cone_solid_angle(cone.cos_angle));
+        for (const DirectionCone& cone : cones_)
+            if (cone.contains(wi)) cone_pdf += static_cast<float>(1 / cone.solid_angle());
         return 0.5F * bsdf_pdf + 0.5F * cone_pdf / static_cast<float>(cones_.size());
     }
 
 private:
     const Bsdf& bsdf() const { return *point_.bsdf; }
 
-    struct Cone {
-        Vec3 axis;
-        float cos_angle;
-    };
     const ReceiverPoint& point_;
-    std::vector<Cone> cones_;
+    std::vector<DirectionCone> cones_;
 };
 
 // Factor on radiance for one specular vertex of a path traced against the light, so that it
@@ -120,7 +114,10 @@ public:
           seed_(options.seed),
           max_bounces_(params.max_bounces),
           paths_per_point_(std::max(1, (params.spp + options.samples_per_pixel - 1) /
-                                           options.samples_per_pixel)) {}
+                                           options.samples_per_pixel)) {
+        for (const std::uint32_t index : scene.casters())
+            caster_bounds_.push_back(bounding_sphere(scene.shapes()[index]));
+    }
 
     void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                   QueryContext&) const override {
@@ -141,7 +138,7 @@ private:
             receiver.bsdf = &lambert;
             receiver.shading_normal = receiver.wo = point.geometric_normal;
         }
-        const DirectionMixture mixture(scene_, receiver);
+        const DirectionMixture mixture(caster_bounds_, receiver);
         Rng rng(seed_, Stage::path_trace, point.id);
         SpectrumSum sum = SpectrumSum::Zero();
         SpectrumSum squares = SpectrumSum::Zero();
@@ -177,6 +174,7 @@ private:
     std::uint64_t seed_;
     int max_bounces_;
     int paths_per_point_;
+    std::vector<BoundingSphere> caster_bounds_;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 std::optional<LightParticle> emit_unaimed(const Scene&, const PointLight& light, Rng& rng) {
     const float u0 = rng.next();
     const float u1 = rng.next();
-    const Vec3 direction = uniform_cone(-1, u0, u1).normalized();
+    const Vec3 direction = uniform_cap(2, u0, u1).normalized();
     return LightParticle{spawn_ray({light.position}, direction), light.intensity * 4 * pi};
 }
 
