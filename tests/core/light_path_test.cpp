@@ -1,0 +1,246 @@
+#include "core/light_path.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/build_scene.h"
+#include "tests/support/statistics.h"
+
+namespace caustics {
+namespace {
+
+constexpr std::uint64_t paths = 40'000;
+
+// Sends every path and calls sent(particle) for those that leave; the mean flux they carry.
+template <typename Sent>
+support::Moments send(const AimedEmission& emission, const Sent& sent, std::uint64_t seed = 1) {
+    support::Moments flux;
+    for (std::uint64_t path = 0; path < paths; ++path) {
+        Rng rng(seed, Stage::test, path);
+        const auto particle = emission.emit(rng);
+        flux.add(particle ? static_cast<double>(particle->flux[0]) : 0.0);
+        if (particle) sent(*particle, rng);
+    }
+    return flux;
+}
+
+SceneDesc ball_lit_from_a_point(double radius, double distance) {
+    SceneDesc desc;
+    desc.shapes.push_back(support::sphere("ball", {0, 0, 0}, radius, support::glass(1.5F)));
+    desc.point_lights.push_back(support::point_light(Vec3d(1, 2, 2) / 3 * distance, 1));
+    return desc;
+}
+
+// The cone round a sphere holds the whole sphere and hardly anything else, however small.
+TEST(AimedEmission, AimsAtSmallDistantSpheres) {
+    for (const double angle : {0.5, 1e-2, 1e-3, 1e-4, 1e-5}) {
+        const Scene scene(ball_lit_from_a_point(1, 1 / std::sin(angle)));
+        const AimedEmission emission(scene);
+        const double solid_angle = 4 * pi_d * std::pow(std::sin(angle / 2), 2);
+        ASSERT_FALSE(emission.empty()) << angle;
+        EXPECT_NEAR(static_cast<double>(emission.total_power()[0]) / solid_angle, 1, 1e-4) << angle;
+        if (angle < 1e-3) continue;  // below, the directions themselves are rounded
+        int hits = 0, sent = 0;
+        send(emission, [&](const LightParticle& particle, Rng&) {
+            ++sent;
+            hits += scene.intersect(particle.ray) ? 1 : 0;
+        });
+        EXPECT_EQ(sent, static_cast<int>(paths));
+        EXPECT_GT(hits, sent * 0.997) << angle;
+    }
+}
+
+// Overlapping cones: every direction of the union equally often, none twice.
+TEST(AimedEmission, IsUniformOverTheUnionOfTheCasters) {
+    SceneDesc desc;
+    desc.point_lights.push_back(support::point_light({0, 0, 0}, 3));
+    const std::vector<Vec3> centres = {{0, 0, 4}, {1, 0, 5}, {-4, 1, 1}};
+    const std::vector<float> radii = {1.2F, 1.5F, 0.5F};
+    for (std::size_t i = 0; i < centres.size(); ++i)
+        desc.shapes.push_back(support::sphere("ball", centres[i].cast<double>(),
+                                              static_cast<double>(radii[i]),
+                                              support::glass(1.5F)));
+    const Scene scene(std::move(desc));
+    const auto cell = [&](const Vec3& d) {
+        std::size_t which = 0;
+        for (std::size_t i = 0; i < centres.size(); ++i) {
+            const float along = d.dot(centres[i]);
+            const bool held = along > 0 && (centres[i] - along * d).norm() <= radii[i];
+            which |= held ? std::size_t{1} << i : 0U;
+        }
+        return which;
+    };
+    std::vector<double> solid_angle(8);
+    constexpr int steps = 1500;
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j) {
+            const double z = 2 * (i + 0.5) / steps - 1;
+            const double a = 2 * pi_d * (j + 0.5) / steps;
+            const double r = std::sqrt(1 - z * z);
+            solid_angle[cell(Vec3d(r * std::cos(a), r * std::sin(a), z).cast<float>())] +=
+                4 * pi_d / (double{steps} * steps);
+        }
+    std::vector<double> counts(8);
+    double sent = 0;
+    const support::Moments flux =
+        send(AimedEmission(scene), [&](const LightParticle& particle, Rng&) {
+            counts[cell(particle.ray.direction)] += 1;
+            ++sent;
+        });
+    EXPECT_LT(counts[0], 1e-3 * sent);
+    solid_angle[0] = counts[0] = 0;
+    double in_union = 0;
+    for (const double share : solid_angle) in_union += share;
+    EXPECT_NEAR(flux.mean(), 3 * in_union, 4 * flux.standard_error() + 1e-3 * in_union);
+    for (std::size_t i = 1; i < 8; ++i) {
+        const double expected = sent * solid_angle[i] / in_union;
+        EXPECT_NEAR(counts[i], expected, 4 * std::sqrt(expected) + 1e-3 * sent) << i;
+    }
+}
+
+TEST(AimedEmission, SendsNothingWithoutACasterOrALightThatSeesOne) {
+    SceneDesc plain;
+    plain.point_lights.push_back(support::point_light({0, 0, 1}, 1));
+    plain.directional_lights.push_back(support::directional_light({0, 0, -1}, 1));
+    plain.shapes.push_back(support::horizontal("floor", 0, 1, true, support::diffuse(0.5F)));
+    const Scene without_caster(std::move(plain));
+    EXPECT_TRUE(AimedEmission(without_caster).empty());
+    Rng rng(1, Stage::test, 0);
+    EXPECT_FALSE(AimedEmission(without_caster).emit(rng));
+
+    SceneDesc behind;
+    behind.shapes.push_back(support::horizontal("lamp", 0, 1, true, support::diffuse(0.5F)));
+    behind.shapes.back().radiance = Spectrum(Spectrum::Ones());
+    behind.shapes.push_back(support::sphere("ball", {0, 0, -5}, 0.5, support::glass(1.5F)));
+    const Scene caster_behind(std::move(behind));
+    EXPECT_TRUE(AimedEmission(caster_behind).empty());
+
+    const Scene dark{SceneDesc{}};
+    EXPECT_TRUE(AimedEmission(dark).empty());
+}
+
+TEST(AimedEmission, ALampInsideACasterSendsAllItsPower) {
+    SceneDesc desc;
+    desc.shapes.push_back(support::sphere("shell", {0, 0, 0}, 5, support::glass(1.5F)));
+    desc.shapes.push_back(support::horizontal("lamp", 0.5, 0.5, true, support::diffuse(0.5F)));
+    desc.shapes.back().radiance = Spectrum(Spectrum::Constant(2));
+    const Scene area(std::move(desc));
+    const support::Moments by_area =
+        send(AimedEmission(area), [](const LightParticle& particle, Rng&) {
+            EXPECT_GE(particle.ray.direction.z(), 0);
+        });
+    EXPECT_NEAR(by_area.mean(), 2 * pi_d * 1, 4 * by_area.standard_error());
+
+    SceneDesc inside = ball_lit_from_a_point(1, 0.2);
+    const Scene point(std::move(inside));
+    const support::Moments by_point = send(AimedEmission(point), [](const LightParticle&, Rng&) {});
+    EXPECT_NEAR(by_point.mean(), 4 * pi_d, 1e-4);
+}
+
+TEST(AimedEmission, DirectionalLightFillsTheUnionOfTheShadows) {
+    SceneDesc desc;
+    desc.directional_lights.push_back(support::directional_light({1, 0, -1}, 2));
+    desc.shapes.push_back(support::sphere("near", {0, 0, 0}, 1, support::glass(1.5F)));
+    // In the first one's shadow: their union is the larger disc.
+    desc.shapes.push_back(support::sphere("far", {3, 0, -3}, 0.5, support::glass(1.5F)));
+    const Scene scene(std::move(desc));
+    int misses = 0;
+    const support::Moments flux =
+        send(AimedEmission(scene), [&](const LightParticle& particle, Rng&) {
+            const auto hit = scene.intersect(particle.ray);
+            misses += hit && hit->shape == 0 ? 0 : 1;
+        });
+    EXPECT_LT(misses, 20);
+    EXPECT_NEAR(flux.mean(), 2 * pi_d, 4 * flux.standard_error());
+}
+
+TEST(AimedEmission, SharesParticlesByPower) {
+    SceneDesc desc = ball_lit_from_a_point(1, 5);
+    desc.point_lights.push_back(support::point_light(Vec3d(-5, 0, 0), 3));
+    const Scene scene(std::move(desc));
+    support::Moments from_first;
+    const support::Moments flux =
+        send(AimedEmission(scene), [&](const LightParticle& particle, Rng&) {
+            from_first.add(particle.ray.origin.x() > 0 ? 1 : 0);
+        });
+    EXPECT_NEAR(from_first.mean(), 0.25, 4 * from_first.standard_error());
+    EXPECT_LT(flux.deviation(), 1e-4 * flux.mean());  // every particle carries the same
+}
+
+TEST(LightPath, EveryPathHasOneEnd) {
+    SceneDesc desc = ball_lit_from_a_point(1, 4);
+    desc.point_lights.push_back(support::point_light({-3, 1, 2}, 1));
+    desc.shapes.push_back(support::sphere("inner", {0.2, 0, 0}, 0.5, support::glass(1.2F, 1.5F)));
+    desc.shapes.push_back(support::horizontal("floor", -1.5, 2, true, support::diffuse(0.5F)));
+    desc.shapes.push_back(
+        support::rectangle("mirror", {2, 0, 0}, {0, 1, 0}, {0, 0, 1}, support::mirror(0.5F)));
+    desc.shapes.back().bsdf.twosided = false;
+    desc.shapes.push_back(support::horizontal("screen", 1.4, 0.3, true, support::diffuse(0.5F)));
+    const Scene scene(std::move(desc));
+    const AimedEmission emission(scene);
+    for (const int max_bounces : {1, 2, 16}) {
+        LightPathCounts counts;
+        counts.emitted = paths;
+        std::uint64_t deposits = 0;
+        send(emission, [&](const LightParticle& particle, Rng& rng) {
+            ++counts.aimed;
+            const auto deposit = trace_light_path(scene, particle, max_bounces, rng, counts);
+            if (!deposit) return;
+            ++deposits;
+            ASSERT_TRUE(is_finite(deposit->flux));
+            ASSERT_GT(deposit->flux.maxCoeff(), 0);
+            ASSERT_GE(deposit->bounces, 1);
+            ASSERT_LE(deposit->bounces, max_bounces);
+            ASSERT_GT(deposit->geometric_normal.dot(deposit->wi), 0);
+            ASSERT_TRUE(is_receiver(scene.shapes()[deposit->shape].bsdf));
+        });
+        EXPECT_EQ(counts.missed + counts.escaped + counts.absorbed + counts.depth_limited +
+                      counts.stored,
+                  counts.aimed);
+        EXPECT_EQ(counts.stored, deposits);
+        EXPECT_GT(counts.stored, 0U);
+        EXPECT_GT(counts.depth_limited, 0U);
+    }
+}
+
+TEST(LightPath, RouletteKeepsTheMeanOfEveryChannel) {
+    SceneDesc desc;
+    desc.shapes.push_back(support::horizontal("mirror", 0, 1, true, support::mirror()));
+    std::get<Conductor>(desc.shapes.back().bsdf.model).specular_reflectance =
+        Spectrum(0.9F, 0.4F, 0);
+    desc.shapes.push_back(support::horizontal("roof", 2, 1, false, support::diffuse(0.5F)));
+    const Scene scene(std::move(desc));
+    const LightParticle particle{{Vec3(0, 0, 1), -Vec3::UnitZ()}, Spectrum(1, 2, 3)};
+    std::array<support::Moments, 3> flux;
+    LightPathCounts counts;
+    for (std::uint64_t path = 0; path < paths; ++path) {
+        Rng rng(1, Stage::test, path);
+        const auto deposit = trace_light_path(scene, particle, 16, rng, counts);
+        for (int channel = 0; channel < 3; ++channel)
+            flux[static_cast<std::size_t>(channel)].add(
+                deposit ? static_cast<double>(deposit->flux[channel]) : 0.0);
+    }
+    EXPECT_NEAR(flux[0].mean(), 0.9, 4 * flux[0].standard_error());
+    EXPECT_NEAR(flux[1].mean(), 0.8, 4 * flux[1].standard_error());
+    EXPECT_EQ(flux[2].mean(), 0);
+    EXPECT_EQ(counts.absorbed + counts.stored, paths);
+}
+
+TEST(LightPath, BlackParticlesAndDeepChainsEnd) {
+    SceneDesc desc;
+    desc.shapes.push_back(support::horizontal("low", 0, 1, true, support::mirror()));
+    desc.shapes.push_back(support::horizontal("high", 1, 1, false, support::mirror()));
+    const Scene scene(std::move(desc));
+    Rng rng(1, Stage::test, 0);
+    LightPathCounts counts;
+    const Ray ray{Vec3(0, 0, 0.5F), Vec3::UnitZ()};
+    EXPECT_FALSE(trace_light_path(scene, {ray, Spectrum(Spectrum::Ones())}, 100, rng, counts));
+    EXPECT_EQ(counts.depth_limited, 1U);
+    EXPECT_FALSE(trace_light_path(scene, {ray, black()}, 100, rng, counts));
+    EXPECT_EQ(counts.absorbed, 1U);
+}
+
+}  // namespace
+}  // namespace caustics
