@@ -1,10 +1,14 @@
 #include "core/film.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
 
 #include "core/error.h"
 
@@ -24,22 +28,35 @@ std::array<std::string, 3> rgb_channels(const std::string& layer) {
     throw InputError(file.string() + ": cannot be " + doing + " (" + line + ")");
 }
 
-// Writes through a temporary name, so that the file is whole or absent.
-void write_whole(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
-                 const fs::path& file) {
+// OpenImageIO encodes to memory, and this writes: its own writers do not report a full disk, and a
+// temporary name would hide the extension they choose the format by.
+void write_whole(const std::vector<unsigned char>& bytes, const fs::path& file) {
     fs::path temporary = file;
-    temporary.replace_filename("." + file.stem().string() + ".tmp-" + std::to_string(getpid()) +
-                               file.extension().string());
-    const auto output = OIIO::ImageOutput::create(file.string());
+    temporary += ".tmp-" + std::to_string(getpid());
+    errno = 0;
+    std::FILE* out = std::fopen(temporary.c_str(), "wb");
+    if (out == nullptr) fail(file, "written", std::generic_category().message(errno));
+    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
+    int error = written ? 0 : errno;
+    if (std::fclose(out) != 0 && error == 0) error = errno;
+    std::error_code failed(error, std::generic_category());
+    if (!failed) fs::rename(temporary, file, failed);
+    if (!failed) return;
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    fail(file, "written", failed.message());
+}
+
+void encode_and_write(const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                      const void* pixels, const fs::path& file) {
+    const auto output = OIIO::ImageOutput::create(format);
     if (!output) fail(file, "written", OIIO::geterror());
-    const bool done = output->open(temporary.string(), spec) &&
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const bool done = output->set_ioproxy(&memory) && output->open(file.filename().string(), spec) &&
                       output->write_image(type, pixels) && output->close();
-    std::error_code error;
-    if (done) fs::rename(temporary, file, error);
-    if (done && !error) return;
-    const std::string why = done ? error.message() : output->geterror();
-    fs::remove(temporary, error);
-    fail(file, "written", why);
+    if (!done) fail(file, "written", output->geterror());
+    write_whole(bytes, file);
 }
 
 }  // namespace
@@ -80,19 +97,25 @@ void write_exr(const Film& film, const fs::path& file) {
     spec.channelnames.clear();
     for (const Plane& plane : film.planes()) spec.channelnames.push_back(plane.channel);
     spec.attribute("compression", "zip");
+    // Without it the writer puts the hour of writing here, and the bytes differ.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
     for (const auto& [name, value] : film.metadata) spec.attribute("causticbench." + name, value);
     std::vector<float> pixels(film.pixel_count() * film.planes().size());
     for (std::size_t c = 0; c < film.planes().size(); ++c)
         for (std::size_t i = 0; i < film.pixel_count(); ++i)
             pixels[i * film.planes().size() + c] = film.planes()[c].values[i];
-    write_whole(spec, OIIO::TypeDesc::FLOAT, pixels.data(), file);
+    encode_and_write("openexr", spec, OIIO::TypeDesc::FLOAT, pixels.data(), file);
 }
 
 Film read_exr(const fs::path& file) {
     if (!fs::exists(file)) fail(file, "read", "no such file");
+    if (!fs::is_regular_file(file)) fail(file, "read", "not a file");
     const auto input = OIIO::ImageInput::open(file.string());
     if (!input) fail(file, "read", OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
+    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+        spec.height != spec.full_height)
+        fail(file, "read", "its data window is not the whole picture");
     Film film(spec.width, spec.height);
     const auto channels = static_cast<std::size_t>(spec.nchannels);
     std::vector<float> pixels(film.pixel_count() * channels);
@@ -114,7 +137,7 @@ Film read_exr(const fs::path& file) {
 void write_png(int width, int height, const std::vector<unsigned char>& rgb,
                const fs::path& file) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    write_whole(spec, OIIO::TypeDesc::UINT8, rgb.data(), file);
+    encode_and_write("png", spec, OIIO::TypeDesc::UINT8, rgb.data(), file);
 }
 
 }  // namespace caustics

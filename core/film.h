@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -28,7 +29,7 @@ public:
         return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     }
 
-    /// The plane of that channel, made zero when new.
+    /// The plane of that channel, made zero when new. The reference stays valid as planes are added.
     std::vector<float>& plane(const std::string& channel);
     /// The plane of that channel, or nullptr.
     const std::vector<float>* find(const std::string& channel) const;
@@ -36,7 +37,7 @@ public:
     /// R, G, B of a layer ("" = beauty) at a pixel; the layer must be there.
     Spectrum rgb(const std::string& layer, std::size_t pixel) const;
     void set_rgb(const std::string& layer, std::size_t pixel, const Spectrum& value);
-    const std::vector<Plane>& planes() const { return planes_; }
+    const std::deque<Plane>& planes() const { return planes_; }
 
     /// String attributes written with the picture: the resolved configuration, provenance.
     std::map<std::string, std::string> metadata;
@@ -44,7 +45,7 @@ public:
 private:
     int width_;
     int height_;
-    std::vector<Plane> planes_;
+    std::deque<Plane> planes_;
 };
 
 /// Writes one float32 multi-layer EXR to a temporary name beside `file` and renames it. The same

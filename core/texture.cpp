@@ -11,7 +11,22 @@
 namespace caustics {
 namespace {
 
+std::string one_line(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
 float fraction(float x) { return x - std::floor(x); }
+
+// A coordinate brought near the picture, where its texels' indices fit an int.
+float folded(float x, Bitmap::Wrap wrap) {
+    switch (wrap) {
+        case Bitmap::Wrap::repeat: return fraction(x);
+        case Bitmap::Wrap::mirror: return 2 * fraction(x / 2);
+        case Bitmap::Wrap::clamp: break;
+    }
+    return std::clamp(x, 0.0F, 1.0F);
+}
 
 int wrapped(int i, int size, Bitmap::Wrap wrap) {
     if (wrap == Bitmap::Wrap::clamp) return std::clamp(i, 0, size - 1);
@@ -41,8 +56,8 @@ struct Evaluate {
     }
     Spectrum operator()(const Bitmap& bitmap) const {
         const Vec2 p = transformed(bitmap.to_uv, uv);
-        const float x = p.x() * static_cast<float>(bitmap.width);
-        const float y = p.y() * static_cast<float>(bitmap.height);
+        const float x = folded(p.x(), bitmap.wrap) * static_cast<float>(bitmap.width);
+        const float y = folded(p.y(), bitmap.wrap) * static_cast<float>(bitmap.height);
         if (bitmap.filter == Bitmap::Filter::nearest)
             return texel(bitmap, static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
         // Texel centres lie at half-integers.
@@ -68,9 +83,12 @@ Spectrum evaluate(const Texture& texture, const Vec2& uv) {
 }
 
 Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {
-    const auto input = OIIO::ImageInput::open(file.string());
+    OIIO::ImageSpec config;
+    config["oiio:UnassociatedAlpha"] = 1;  // colours as written, not multiplied by alpha
+    const auto input = OIIO::ImageInput::open(file.string(), &config);
     if (!input)
-        throw InputError(file.string() + ": not a picture that can be read (" + OIIO::geterror() +
+        throw InputError(file.string() + ": not a picture that can be read (" +
+                         one_line(OIIO::geterror()) +
                          ")");
     const OIIO::ImageSpec& spec = input->spec();
     const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
@@ -79,7 +97,7 @@ Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {
     std::vector<float> values(pixels * channels);
     if (pixels == 0 ||
         !input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
-        throw InputError(file.string() + ": the picture is broken (" + input->geterror() + ")");
+        throw InputError(file.string() + ": the picture is broken (" + one_line(input->geterror()) + ")");
     Bitmap bitmap;
     bitmap.width = spec.width;
     bitmap.height = spec.height;
