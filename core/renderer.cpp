@@ -199,11 +199,7 @@ private:
                            static_cast<std::size_t>(x);
         const double n = options_.samples_per_pixel;
         const auto put = [&](const char* layer, const SpectrumSum& sum) {
-            const Spectrum value = (sum / n).cast<float>();
-            if (!is_finite(value))
-                throw std::runtime_error("pixel (" + std::to_string(x) + ", " + std::to_string(y) +
-                                         "): layer " + layer + " is not finite");
-            film.set_rgb(layer, pixel, value);
+            put_finite(layer, pixel, (sum / n).cast<float>(), film);
         };
         put("direct", sums.direct);
         put("specular", sums.emitted);
@@ -225,10 +221,20 @@ private:
         put("stderr", variance.sqrt() * n);
     }
 
+    static void put_finite(const char* layer, std::size_t pixel, const Spectrum& value,
+                           Film& film) {
+        const auto width = static_cast<std::size_t>(film.width());
+        if (!is_finite(value))
+            throw std::runtime_error("pixel (" + std::to_string(pixel % width) + ", " +
+                                     std::to_string(pixel / width) + "): layer " + layer +
+                                     " is not finite");
+        film.set_rgb(layer, pixel, value);
+    }
+
     static void insert(const CameraLayer& layer, Film& film) {
         for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
-            film.set_rgb("caustic", pixel, layer.radiance[pixel]);
-            film.set_rgb("stderr", pixel, layer.standard_error[pixel]);
+            put_finite("caustic", pixel, layer.radiance[pixel], film);
+            put_finite("stderr", pixel, layer.standard_error[pixel], film);
         }
     }
 
