@@ -47,7 +47,8 @@ void parallel_for(int threads, std::size_t count,
         }
     };
     std::vector<std::thread> pool;
-    for (std::size_t worker = 1; worker < static_cast<std::size_t>(threads); ++worker)
+    const auto workers = static_cast<std::size_t>(std::max(1, threads));
+    for (std::size_t worker = 1; worker < std::min(workers, count); ++worker)
         pool.emplace_back(work, worker);
     work(0);
     for (std::thread& thread : pool) thread.join();
