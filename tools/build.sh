@@ -8,7 +8,7 @@ shift
 
 fail() { echo "build: $*" >&2; exit 1; }
 
-bash tools/setup.sh || fail "set-up failed (see above)"
+bash tools/setup.sh || exit 1
 
 # One compiler per core, but none without some 1.5 GB of free memory: some headers need that.
 jobs=$(nproc)
@@ -19,6 +19,6 @@ echo "build: preset $preset in build/$preset, $jobs at a time"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 cmake --preset "$preset" >"$log" 2>&1 ||
-    { cat "$log" >&2; fail "configuring preset $preset failed (see above)"; }
+    { cat "$log" >&2 && fail "configuring preset $preset failed (see above)"; }
 cmake --build --preset "$preset" --parallel "$jobs" ${1:+--target "$@"} </dev/null ||
     fail "building preset $preset failed (see above)"

@@ -7,7 +7,7 @@ results=results/quickstart
 
 fail() { echo "quickstart: $*" >&2; exit 1; }
 
-bash tools/build.sh release causticbench || fail "no program to run (see above)"
+bash tools/build.sh release causticbench || exit 1
 
 sweeps=()
 for scene in ring pool ball; do

@@ -30,13 +30,13 @@ if [ ${#missing[@]} = 0 ]; then
     exit 0
 fi
 
-echo "setup: installing with apt-get: ${missing[*]}"
 as_root=()
 if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null ||
-        fail "not root and no sudo; as root: apt-get install --no-install-recommends ${missing[*]}"
+        fail "needs root or sudo for: apt-get install --no-install-recommends ${missing[*]}"
     as_root=(sudo)
 fi
+echo "setup: installing with apt-get: ${missing[*]}"
 apt() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
         apt-get -q -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" </dev/null
