@@ -10,7 +10,7 @@ packages=(
     libeigen3-dev libfmt-dev                        # vectors, text
     nlohmann-json3-dev libassimp-dev                # scene and mesh files
     libopenimageio-dev openimageio-tools            # images; its CMake files ask for the tools
-    libcli11-dev libspdlog-dev                      # command line, log
+    libcli11-dev                                    # command line
     libgtest-dev                                    # tests
     python3 python3-numpy python3-matplotlib        # layering test, plots
 )
