@@ -1,9 +1,9 @@
 #include "core/mesh_io.h"
 
-#include <array>
-#include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <array>
+#include <assimp/Importer.hpp>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -38,9 +38,7 @@ std::string lower_extension(const std::filesystem::path& file) {
     return extension;
 }
 
-Vec3 to_vec(const aiVector3D& v) {
-    return {v.x, v.y, v.z};
-}
+Vec3 to_vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 void append(TriangleMesh& mesh, const aiMesh& part) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -64,8 +62,8 @@ TriangleMesh import(const MeshSource& source, const char* format, const std::str
     const aiScene* scene = importer.ReadFileFromMemory(source.text.data(), source.text.size(),
                                                        aiProcess_Triangulate, format);
     if (scene == nullptr || scene->mNumMeshes != 1)
-        throw InputError(name + ": " + (scene == nullptr ? importer.GetErrorString()
-                                                         : "not one mesh"));
+        throw InputError(name + ": " +
+                         (scene == nullptr ? importer.GetErrorString() : "not one mesh"));
     TriangleMesh mesh;
     append(mesh, *scene->mMeshes[0]);
     if (mesh.triangles.size() != source.triangles)
@@ -124,8 +122,8 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const MeshLoadOptions&
         throw InputError(file.string() + ": unknown mesh format '" + extension +
                          "' (known: .obj, .ply)");
     const std::string bytes = read_bytes(file);
-    TriangleMesh mesh = extension == ".obj" ? load_obj(bytes, file.string())
-                                            : load_ply(bytes, file.string());
+    TriangleMesh mesh =
+        extension == ".obj" ? load_obj(bytes, file.string()) : load_ply(bytes, file.string());
     if (options.face_normals)
         mesh.normals.clear();
     else

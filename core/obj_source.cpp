@@ -16,8 +16,8 @@ namespace caustics {
 namespace {
 
 constexpr std::array<std::string_view, 16> ignored_keywords = {
-    "o", "g",     "s",   "mg",       "usemtl",   "mtllib",     "usemap",    "maplib",
-    "l", "p",     "lod", "bevel",    "c_interp", "d_interp",   "shadow_obj", "trace_obj"};
+    "o", "g", "s",   "mg",    "usemtl",   "mtllib",   "usemap",     "maplib",
+    "l", "p", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 
 constexpr double max_float = std::numeric_limits<float>::max();
 
@@ -74,8 +74,7 @@ private:
         const std::optional<double> value = parse<double>(word);
         if (!value) fail(quoted(word) + " is not a number");
         // Negated, so that NaN is caught too.
-        if (!(std::abs(*value) <= max_float))
-            fail(quoted(word) + " is not a finite number");
+        if (!(std::abs(*value) <= max_float)) fail(quoted(word) + " is not a finite number");
         return *value;
     }
 
@@ -104,8 +103,8 @@ private:
         const std::optional<long> value = parse<long>(index);
         if (!value) fail("face corner " + quoted(word) + " is not v, v/vt, v//vn or v/vt/vn");
         if (*value == 0 || *value > count || *value < -count)
-            fail("face corner " + quoted(word) + ": no " + what + " " + std::string(index) + " among the " +
-                 std::to_string(count) + " above");
+            fail("face corner " + quoted(word) + ": no " + what + " " + std::string(index) +
+                 " among the " + std::to_string(count) + " above");
     }
 
     // Checks one corner and returns which of position, uv, normal it has.

@@ -18,9 +18,14 @@ static_assert(std::endian::native == std::endian::little, "read_binary turns onl
 namespace {
 
 std::optional<PlyType> parse_type(const std::string& word) {
-    constexpr std::array<std::array<const char*, 2>, 8> names = {
-        {{"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"}, {"ushort", "uint16"},
-         {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}}};
+    constexpr std::array<std::array<const char*, 2>, 8> names = {{{"char", "int8"},
+                                                                  {"uchar", "uint8"},
+                                                                  {"short", "int16"},
+                                                                  {"ushort", "uint16"},
+                                                                  {"int", "int32"},
+                                                                  {"uint", "uint32"},
+                                                                  {"float", "float32"},
+                                                                  {"double", "float64"}}};
     for (std::size_t i = 0; i < names.size(); ++i)
         if (word == names[i][0] || word == names[i][1]) return static_cast<PlyType>(i);
     return {};
@@ -28,9 +33,7 @@ std::optional<PlyType> parse_type(const std::string& word) {
 
 }  // namespace
 
-void PlyFile::fail(const std::string& reason) const {
-    throw InputError(name_ + ": " + reason);
-}
+void PlyFile::fail(const std::string& reason) const { throw InputError(name_ + ": " + reason); }
 
 std::vector<PlyElement> PlyFile::read_header() {
     if (std::vector<std::string> magic = header_line(); magic != std::vector<std::string>{"ply"})
@@ -135,7 +138,8 @@ double PlyFile::read_ascii(const std::string& element, std::size_t index) {
     const auto [stop, error] =
         std::from_chars(word.data() + sign, word.data() + word.size(), value);
     if (error != std::errc{} || stop != word.data() + word.size())
-        fail(element + " " + std::to_string(index) + ": " + quoted(std::string(word)) + " is not a number");
+        fail(element + " " + std::to_string(index) + ": " + quoted(std::string(word)) +
+             " is not a number");
     return value;
 }
 

@@ -66,7 +66,8 @@ public:
     }
 
 private:
-    const PlyElement& the_element(const std::vector<PlyElement>& elements, const std::string& name) {
+    const PlyElement& the_element(const std::vector<PlyElement>& elements,
+                                  const std::string& name) {
         const PlyElement* found = nullptr;
         for (const PlyElement& element : elements) {
             // Also keeps a wrong count from being a long loop over nothing.
@@ -143,8 +144,8 @@ private:
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const double value = row_[columns_[i]];
             if (!(std::abs(value) <= max_float))
-                fail(element, index, names_[i] + " is " + number_text(value) +
-                                         ", not a finite number");
+                fail(element, index,
+                     names_[i] + " is " + number_text(value) + ", not a finite number");
             append(out, static_cast<float>(value));
         }
     }
@@ -158,13 +159,15 @@ private:
             if (!indices || found) continue;
             found = true;
             if (corners.size() < 3)
-                fail(element, index, "a face needs at least 3 corners, this one has " +
-                                         std::to_string(corners.size()));
+                fail(element, index,
+                     "a face needs at least 3 corners, this one has " +
+                         std::to_string(corners.size()));
             append(out, static_cast<std::uint32_t>(corners.size()));
             for (const double corner : corners) {
                 if (to_index(element, index, corner) >= vertex_count_)
-                    fail(element, index, "vertex " + number_text(corner) + " is not among the " +
-                                             std::to_string(vertex_count_) + " vertices");
+                    fail(element, index,
+                         "vertex " + number_text(corner) + " is not among the " +
+                             std::to_string(vertex_count_) + " vertices");
                 append(out, static_cast<std::uint32_t>(corner));
             }
             triangles_ += corners.size() - 2;

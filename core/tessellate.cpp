@@ -30,14 +30,10 @@ Vec2d on_circle(int step, int steps) {
     return {std::cos(angle), std::sin(angle)};
 }
 
-double fraction(int part, int whole) {
-    return static_cast<double>(part) / whole;
-}
+double fraction(int part, int whole) { return static_cast<double>(part) / whole; }
 
 // -1 .. 1, exactly antisymmetric.
-double symmetric(int part, int whole) {
-    return static_cast<double>(2 * part - whole) / whole;
-}
+double symmetric(int part, int whole) { return static_cast<double>(2 * part - whole) / whole; }
 
 std::uint32_t add_vertex(TriangleMesh& mesh, const Vec3d& position, const Vec3d& normal,
                          const Vec2d& uv) {
