@@ -21,18 +21,6 @@ namespace {
 
 std::string layer_name(const std::string& layer) { return layer.empty() ? "beauty" : layer; }
 
-double mean(const Film& film, const std::string& layer, const PixelMask& counted) {
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < counted.size(); ++i) {
-        if (!counted[i]) continue;
-        const SpectrumSum value = film.rgb(layer, i).cast<double>();
-        sum += value.sum();
-        count += 3;
-    }
-    return count == 0 ? 0 : sum / static_cast<double>(count);
-}
-
 void require_comparable(const Film& film, const Film& reference, const std::string& layer) {
     if (film.width() != reference.width() || film.height() != reference.height())
         throw InputError(fmt::format("sizes differ: {}x{} against {}x{} pixels", film.width(),
@@ -46,6 +34,18 @@ void require_comparable(const Film& film, const Film& reference, const std::stri
 }
 
 }  // namespace
+
+double mean(const Film& film, const std::string& layer, const PixelMask& counted) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+        if (!counted[i]) continue;
+        const SpectrumSum value = film.rgb(layer, i).cast<double>();
+        sum += value.sum();
+        count += 3;
+    }
+    return count == 0 ? 0 : sum / static_cast<double>(count);
+}
 
 PixelMask reached_pixels(const Film& film, const Film& reference) {
     PixelMask reached(reference.pixel_count(), true);

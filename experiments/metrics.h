@@ -34,6 +34,8 @@ PixelMask reached_pixels(const Film& film, const Film& reference);
 PixelMask bright_pixels(const Film& reference, const std::string& layer, const PixelMask& counted);
 /// Share of the pixels that the mask counts.
 double fraction(const PixelMask& mask);
+/// Mean of a layer over the channels of the counted pixels; 0 when nothing is counted.
+double mean(const Film& film, const std::string& layer, const PixelMask& counted);
 PixelMask intersection(const PixelMask& a, const PixelMask& b);
 
 /// Metrics of a layer ("" = beauty). Throws InputError when sizes differ, the layer is missing, or

@@ -64,6 +64,7 @@ constexpr Column columns_of_all[] = {
     {"precompute_cpu_s", "/seconds/precompute/cpu"},
     {"balance_cpu_s", "/seconds/balance/cpu"},
     {"render_cpu_s", "/seconds/render/cpu"},
+    {"reference_mean", "/reference/mean"},
     {"spp", "/spp"},
     {"message", "/message"},
 };

@@ -72,8 +72,8 @@ void ReferenceCache::make(const ReferenceRequest& request, const RunOptions& opt
     film.metadata = picture_metadata(request.request, file);
     // The command names the scene as it was reached from here, and the version that of today; the
     // file depends on neither.
-    film.metadata.erase("caustics:command");
-    film.metadata["caustics:reference_key"] = request.key;
+    film.metadata.erase("command");
+    film.metadata["reference_key"] = request.key;
     const std::filesystem::path target = file_of(request);
     std::filesystem::create_directories(target.parent_path());
     write_exr(film, target);
@@ -88,13 +88,14 @@ std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& req
     }
     if (last_ && last_->key == request.key) return last_;
     const std::filesystem::path file = file_of(request);
-    auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), {}});
+    auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), 0, {}});
     for (const char* layer : {"", "caustic"})
         if (!reference->film.has_layer(layer))
             throw InputError(fmt::format("{}: not a reference: no layer \"{}\" (remake it with "
                                          "--references rebuild)",
                                          file.string(), layer));
     const PixelMask reached = reached_pixels(reference->film, reference->film);
+    reference->mean = mean(reference->film, "caustic", reached);
     reference->standard_error = relative_standard_error(reference->film, reached);
     last_ = reference;
     return reference;

@@ -25,6 +25,7 @@ std::string reference_key(const RunRequest& request, const SceneFile& scene);
 struct Reference {
     std::string key;
     Film film;
+    double mean = 0;  ///< of the caustic layer over reached pixels and channels
     std::optional<double> standard_error;  ///< sqrt(mean s^2) / mean(r) of the caustic layer
 };
 

@@ -51,8 +51,8 @@ int render_picture(const RenderOptions& options) {
         require_finite(result.film, layer, "the picture");
     const double exposure = options.exposure.value_or(auto_exposure(result.film, ""));
     result.film.metadata = picture_metadata(request, file);
-    result.film.metadata["caustics:tone_mapping"] = tone_mapping_rule;
-    result.film.metadata["caustics:exposure"] = shortest(exposure);
+    result.film.metadata["tone_mapping"] = tone_mapping_rule;
+    result.film.metadata["exposure"] = shortest(exposure);
     for (const std::string& output : options.outputs) {
         if (std::filesystem::path(output).extension() == ".exr")
             write_exr(result.film, output);

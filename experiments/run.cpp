@@ -38,15 +38,15 @@ std::map<std::string, std::string> picture_metadata(const RunRequest& request,
                                                     const SceneFile& scene) {
     nlohmann::json assets = nlohmann::json::object();
     for (const auto& [name, hash] : scene.assets) assets[name] = hash;
-    return {{"caustics:scene", scene.canonical},
-            {"caustics:scene_assets", assets.dump()},
-            {"caustics:scene_hash", scene.hash},
-            {"caustics:method", request.method.name},
-            {"caustics:parameters", describe(request.method).dump()},
-            {"caustics:seed", fmt::format("{}", request.seed)},
-            {"caustics:spp", fmt::format("{}", request.samples_per_pixel)},
-            {"caustics:code_version", code_version()},
-            {"caustics:command", command(request)}};
+    return {{"scene", scene.canonical},
+            {"scene_assets", assets.dump()},
+            {"scene_hash", scene.hash},
+            {"method", request.method.name},
+            {"parameters", describe(request.method).dump()},
+            {"seed", fmt::format("{}", request.seed)},
+            {"spp", fmt::format("{}", request.samples_per_pixel)},
+            {"code_version", code_version()},
+            {"command", command(request)}};
 }
 
 RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,

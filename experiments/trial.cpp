@@ -69,6 +69,7 @@ void record_errors(json& record, const Film& film, const Reference& reference) {
     record["mask_fraction"] = fraction(bright);
     record["beauty_rmse"] = to_json(measure(film, reference.film, "", reached))["rmse"];
     record["unreached_fraction"] = 1 - fraction(reached);
+    record["reference"]["mean"] = reference.mean;
     if (reference.standard_error) record["reference"]["stderr"] = *reference.standard_error;
 }
 

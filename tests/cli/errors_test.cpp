@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ostream>
+
+#include "experiments/files.h"
+#include "tests/cli/program.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+const std::string good_scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+
+/// A command line or scene that cannot be used. "SCENE" stands for the good scene, "BROKEN" for a
+/// file with `text`, "DIR" for a folder of the test's own.
+struct Broken {
+    const char* name;
+    std::vector<std::string> arguments;
+    std::vector<std::string> words;  ///< that the message must have
+    std::string text = {};
+    int exit_code = 2;
+
+    friend std::ostream& operator<<(std::ostream& out, const Broken& broken) {
+        return out << broken.name;
+    }
+};
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    return at == std::string::npos ? text : text.replace(at, what.size(), by);
+}
+
+/// The good scene with one thing replaced.
+std::string scene_with(const std::string& what, const std::string& by) {
+    const std::string text = read_whole_file(good_scene);
+    EXPECT_NE(text.find(what), std::string::npos) << what;
+    return replaced(text, what, by);
+}
+
+const std::vector<std::string> render_broken = {"render", "BROKEN", "--method", "none",
+                                                "-o",     "DIR/a.exr"};
+
+std::vector<std::string> render_good(const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"render", "SCENE", "-o", "DIR/a.exr"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
+std::vector<std::string> probe_with(const std::string& method) {
+    return {"probe", "SCENE", "--method", method, "--points", "BROKEN"};
+}
+
+const std::vector<Broken> broken_scenes = {
+    {"NotJson", render_broken, {"broken.json"}, "{\"type\": "},
+    {"UnknownKey", render_broken, {"/ball/bsdf", "iro", "int_ior"}, scene_with("int_ior", "iro")},
+    {"UnknownType", render_broken, {"/ball/bsdf", "glas", "dielectric"},
+     scene_with("dielectric", "glas")},
+    {"WrongType", render_broken, {"/ball/radius", "number"}, scene_with("0.4", "\"big\"")},
+    {"NegativeRadius", render_broken, {"/ball/radius"}, scene_with("0.4", "-0.4")},
+    {"MissingKey", render_broken, {"/sensor"}, scene_with("\"sensor\"", "\"sensro\"")},
+    {"MissingMesh", render_broken, {"absent.ply"},
+     scene_with(R"("type": "sphere",
+    "center": [0, 0, 0.6],
+    "radius": 0.4,)", R"("type": "ply", "filename": "absent.ply",)")},
+    {"MissingInclude", render_broken, {"absent.json"},
+     scene_with(R"({"type": "diffuse", "reflectance": 0.5})", R"({"$include": "absent.json"})")},
+    {"DuplicateKey", render_broken, {"type"},
+     scene_with(R"("type": "point",)", R"("type": "point", "type": "point",)")},
+    {"ShortVector", render_broken, {"/light/position"}, scene_with("[0.5, 0.5, 3]", "[0.5, 3]")},
+    {"WrongVersion", render_broken, {"/version"}, scene_with("\"version\": 1", "\"version\": 9")},
+    {"ReflectanceAboveOne", render_broken, {"/floor/bsdf/reflectance"},
+     scene_with("\"reflectance\": 0.5", "\"reflectance\": 1.5")},
+    {"ForeignFilter", render_broken, {"/sensor/film/rfilter", "box"},
+     scene_with("\"box\"", "\"gaussian\"")},
+    {"NotSquareSamples", render_broken, {"5"},
+     scene_with("\"sample_count\": 4", "\"sample_count\": 5")},
+};
+
+const std::vector<Broken> broken_commands = {
+    {"NoVerb", {}, {"no verb", "render, probe, sweep, compare, info"}},
+    {"UnknownVerb", {"rendr", "SCENE"}, {"unknown verb \"rendr\"", "render, probe"}},
+    {"UnknownOption", render_good({"--metod", "none"}), {"--metod", "--method"}},
+    {"MissingMethod", render_good({}), {"--method"}},
+    {"UnknownMethod", render_good({"--method", "photons"}), {"photons", "photonmap"}},
+    {"UnknownParameter", render_good({"--method", "photonmap", "--param", "photns=5"}),
+     {"photns", "photons"}},
+    {"ParameterWithoutValue", render_good({"--method", "none", "--param", "photons"}),
+     {"key=value"}},
+    {"ParameterOutOfRange", render_good({"--method", "photonmap", "--param", "nearest=-1"}),
+     {"/nearest"}},
+    {"NoSuchScene", {"render", "absent.json", "--method", "none", "-o", "DIR/a.exr"},
+     {"absent.json"}},
+    {"SetIntoNothing", render_good({"--method", "none", "--set", "/bal/radius=1"}), {"/bal"}},
+    {"SetWithoutValue", render_good({"--method", "none", "--set", "/ball/radius"}),
+     {"/json/pointer=value"}},
+    {"UnknownPicture", {"render", "SCENE", "--method", "none", "-o", "DIR/a.jpg"},
+     {".jpg", ".exr, .png"}},
+    {"NoSuchFolder", {"render", "SCENE", "--method", "none", "-o", "DIR/absent/a.exr"},
+     {"absent", "does not exist"}},
+    {"SamplesNotSquare", render_good({"--method", "none", "--spp", "5"}), {"--spp 5", "n^2"}},
+    {"SamplesNotPositive", render_good({"--method", "none", "--spp", "0"}), {"--spp"}},
+    {"SeedNotNumber", render_good({"--method", "none", "--seed", "x"}), {"--seed"}},
+    {"PathTraceWithPointLight", render_good({"--method", "pathtrace"}), {"point", "lighttrace"},
+     {}, 3},
+    {"ProbeWithoutRadius", probe_with("lighttrace"), {"row 1", "radius"},
+     "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n"},
+    {"ProbeFarFromReceivers", probe_with("none"), {"row 2", "receiver"},
+     "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n0,0,0.2,0,0,1\n"},
+    {"ProbeZeroNormal", probe_with("none"), {"row 1", "normal is zero"},
+     "x,y,z,nx,ny,nz\n0,0,0,0,0,0\n"},
+    {"ProbeNaN", probe_with("none"), {"row 1", "x"}, "x,y,z,nx,ny,nz\nnan,0,0,0,0,1\n"},
+    {"ProbeUnknownColumn", probe_with("none"), {"\"w\"", "wx"}, "x,y,z,nx,ny,nz,w\n"},
+    {"ProbeHalfAViewer", probe_with("none"), {"wx, wy, wz"}, "x,y,z,nx,ny,nz,wx\n0,0,0,0,0,1,0\n"},
+    {"CompareMissingFile", {"compare", "absent.exr", "absent.exr"}, {"absent.exr"}},
+    {"CompareNotAPicture", {"compare", "BROKEN", "BROKEN"}, {"broken"}, "no picture"},
+    {"SweepEmptyList", {"sweep", "BROKEN", "-o", "DIR/out"}, {"/scenes", "empty"},
+     R"({"version": 1, "scenes": [], "methods": [{"method": "none"}]})"},
+    {"SweepUnknownReferenceMode",
+     {"sweep", "BROKEN", "-o", "DIR/out", "--references", "remake"}, {"keep", "rebuild"}, "{}"},
+};
+
+class BrokenInput : public testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenInput, EndsInOneLine) {
+    const Broken& broken = GetParam();
+    const support::TemporaryFolder folder;
+    const std::string file = folder / "broken.json";
+    write_whole_file(file, broken.text);
+    std::vector<std::string> arguments = broken.arguments;
+    for (std::string& argument : arguments) {
+        if (argument == "SCENE") argument = good_scene;
+        if (argument == "BROKEN") argument = file;
+        argument = replaced(argument, "DIR", folder.path());
+    }
+    const support::ProgramResult result = support::causticbench(arguments);
+    EXPECT_EQ(result.exit_code, broken.exit_code) << result.err;
+    EXPECT_EQ(result.err.rfind("causticbench: error: ", 0), 0U) << result.err;
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+    for (const std::string& word : broken.words)
+        EXPECT_NE(result.err.find(word), std::string::npos) << word << " is not in " << result.err;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        EXPECT_EQ(entry.path(), file) << "nothing is written";
+}
+
+std::string name_of(const testing::TestParamInfo<Broken>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Scenes, BrokenInput, testing::ValuesIn(broken_scenes), name_of);
+INSTANTIATE_TEST_SUITE_P(Commands, BrokenInput, testing::ValuesIn(broken_commands), name_of);
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "experiments/files.h"
+#include "experiments/sweep_plan.h"
+#include "tests/cli/program.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+using support::causticbench;
+using support::ProgramResult;
+namespace fs = std::filesystem;
+
+const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> all;
+    bool quoted = false;
+    all.emplace_back();
+    for (const char c : line) {
+        if (c == '"') quoted = !quoted;
+        else if (c == ',' && !quoted) all.emplace_back();
+        else all.back() += c;
+    }
+    return all;
+}
+
+std::vector<Row> read_rows(const fs::path& file) {
+    std::istringstream in(read_whole_file(file));
+    std::string line;
+    std::getline(in, line);
+    const std::vector<std::string> names = cells(line);
+    std::vector<Row> rows;
+    while (std::getline(in, line)) {
+        const std::vector<std::string> values = cells(line);
+        EXPECT_EQ(values.size(), names.size()) << line;
+        Row row;
+        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = values[i];
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+class Sweeps : public testing::Test {
+protected:
+    std::string write_sweep(const std::string& methods) {
+        const fs::path file = folder_ / "sweep.json";
+        write_whole_file(file, fmt::format(
+            R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [1, 2], "methods": {},
+                "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3, 1.5]}}}},
+                "reference": {{"method": "lighttrace", "param": {{"paths": 20000}}, "spp": 4}}}})",
+            scene, methods));
+        return file;
+    }
+    ProgramResult sweep(const std::string& file, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments = {"sweep", file, "-o", out_};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return causticbench(arguments);
+    }
+    std::vector<Row> rows() const { return read_rows(fs::path(out_) / "records.csv"); }
+    /// Names and times of the trials' records.
+    std::map<std::string, fs::file_time_type> records() const {
+        std::map<std::string, fs::file_time_type> all;
+        for (const auto& entry : fs::directory_iterator(fs::path(out_) / "trials"))
+            all[entry.path().filename()] = fs::last_write_time(entry.path() / "record.json");
+        return all;
+    }
+
+    support::TemporaryFolder folder_;
+    std::string out_ = folder_ / "out";
+};
+
+const std::string two_methods =
+    R"([{"method": "none"}, {"method": "photonmap", "param": {"photons": [500, 1000]}}])";
+
+TEST_F(Sweeps, LeaveATableAndPicturesBehind) {
+    const ProgramResult result = sweep(write_sweep(two_methods));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const std::vector<Row> table = rows();
+    ASSERT_EQ(table.size(), 2U * 3 * 2);
+    for (const Row& row : table) {
+        EXPECT_EQ(row.at("status"), "done");
+        EXPECT_EQ(row.at("scene"), "ball");
+        EXPECT_GT(std::stod(row.at("rmse")), 0);
+        EXPECT_GT(std::stod(row.at("total_s")), 0);
+        EXPECT_GE(std::stoull(row.at("peak_rss_bytes")), std::stoull(row.at("rss_start_bytes")));
+        EXPECT_EQ(row.at("beams"), "");
+        EXPECT_TRUE(row.at("glass") == "1.3" || row.at("glass") == "1.5");
+        EXPECT_EQ(row.at("reference").rfind("lighttrace:", 0), 0U);
+        EXPECT_GT(std::stod(row.at("reference_stderr")), 0);
+        const bool none = row.at("method") == "none";
+        EXPECT_EQ(row.at("photons").empty(), none);
+        EXPECT_EQ(row.at("variance") == "0", none) << "without a caustic all seeds agree";
+        const fs::path trial = fs::path(out_) / "trials" / row.at("trial");
+        for (const char* file : {"record.json", "image.exr", "log.txt"})
+            EXPECT_TRUE(fs::exists(trial / file)) << file;
+    }
+    std::size_t figures = 0;
+    for (const auto& entry : fs::directory_iterator(fs::path(out_) / "report/figures"))
+        figures += entry.path().extension() == ".png" ? 1 : 0;
+    EXPECT_EQ(figures, 2U * 3) << "one a cell";
+    EXPECT_TRUE(fs::exists(fs::path(out_) / "environment.json"));
+    EXPECT_EQ(std::ranges::count(result.out, '\n'), 7) << result.out;
+}
+
+TEST_F(Sweeps, SkipWhatIsDone) {
+    const std::string file = write_sweep(two_methods);
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const auto before = records();
+    const std::string table = read_whole_file(fs::path(out_) / "records.csv");
+
+    EXPECT_EQ(sweep(file).exit_code, 0);
+    EXPECT_EQ(records(), before);
+    EXPECT_EQ(read_whole_file(fs::path(out_) / "records.csv"), table);
+
+    // A trial that is gone, and one that a killed process had not finished, are run again.
+    const std::string gone = before.begin()->first;
+    fs::rename(fs::path(out_) / "trials" / gone,
+               fs::path(out_) / "trials" / (".tmp-" + gone + "-999999999"));
+    EXPECT_EQ(sweep(file).exit_code, 0);
+    auto after = records();
+    EXPECT_EQ(after.size(), before.size());
+    EXPECT_NE(after.at(gone), before.at(gone));
+    after[gone] = before.at(gone);
+    EXPECT_EQ(after, before);
+
+    EXPECT_EQ(sweep(file, {"--force"}).exit_code, 0);
+    for (const auto& [id, time] : records()) EXPECT_NE(time, before.at(id)) << id;
+}
+
+TEST_F(Sweeps, MakeARowOfAnUnsupportedPair) {
+    const std::string file = write_sweep(R"([{"method": "pathtrace"}, {"method": "none"}])");
+    EXPECT_EQ(sweep(file).exit_code, 0);
+    int unsupported = 0;
+    for (const Row& row : rows()) {
+        EXPECT_EQ(row.at("status"), row.at("method") == "none" ? "done" : "unsupported");
+        EXPECT_EQ(row.at("status") == "done", row.at("message").empty());
+        unsupported += row.at("status") == "unsupported" ? 1 : 0;
+    }
+    EXPECT_EQ(unsupported, 4);
+}
+
+TEST_F(Sweeps, GoOnAfterAFailureAndTryItAgain) {
+    const std::string file = write_sweep(R"([{"method": "none"}])");
+    const ProgramResult listed = sweep(file, {"--list"});
+    EXPECT_EQ(listed.exit_code, 0) << listed.err;
+    EXPECT_EQ(std::ranges::count(listed.out, '\n'), 4);
+    EXPECT_EQ(listed.out.rfind("todo ", 0), 0U) << listed.out;
+    EXPECT_FALSE(fs::exists(out_)) << "listing runs nothing";
+
+    // A reference that cannot be read fails the two trials of its scene and no other.
+    const std::string key = read_plan({file}).trials[0].reference->key;
+    const fs::path broken = fs::path(out_) / "references" / (key + ".exr");
+    fs::create_directories(broken.parent_path());
+    write_whole_file(broken, "no picture");
+    const ProgramResult result = sweep(file);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    std::map<std::string, int> statuses;
+    for (const Row& row : rows()) ++statuses[row.at("glass") + " " + row.at("status")];
+    EXPECT_EQ(statuses, (std::map<std::string, int>{{"1.3 failed", 2}, {"1.5 done", 2}}));
+
+    fs::remove(broken);
+    EXPECT_EQ(sweep(file).exit_code, 0);
+    for (const Row& row : rows()) EXPECT_EQ(row.at("status"), "done");
+}
+
+TEST_F(Sweeps, StopAtTheFirstFailureWhenAsked) {
+    const std::string file = write_sweep(R"([{"method": "none"}])");
+    const std::string key = read_plan({file}).trials[0].reference->key;
+    fs::create_directories(fs::path(out_) / "references");
+    write_whole_file(fs::path(out_) / "references" / (key + ".exr"), "no picture");
+    EXPECT_EQ(sweep(file, {"--fail-fast"}).exit_code, 1);
+    EXPECT_EQ(rows().size(), 1U);
+}
+
+}  // namespace
+}  // namespace caustics

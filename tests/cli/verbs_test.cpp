@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/film.h"
+#include "experiments/files.h"
+#include "tests/cli/program.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+using support::causticbench;
+using support::ProgramResult;
+namespace fs = std::filesystem;
+
+const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+
+std::vector<std::string> lines(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) all.push_back(line);
+    return all;
+}
+
+TEST(Program, TellsItsVersionAndHelp) {
+    const ProgramResult version = causticbench({"--version"});
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_EQ(version.out.rfind("causticbench ", 0), 0U) << version.out;
+    for (const std::string verb : {"render", "probe", "sweep", "compare", "info"}) {
+        const ProgramResult help = causticbench({verb, "--help"});
+        EXPECT_EQ(help.exit_code, 0);
+        EXPECT_NE(help.out.find("Example:\n  causticbench " + verb), std::string::npos) << help.out;
+    }
+}
+
+TEST(Render, GivesTheSameBytesOnAnyNumberOfThreads) {
+    const support::TemporaryFolder folder;
+    const auto render = [&](const std::string& name, const std::string& threads,
+                            const std::string& seed) {
+        const std::string file = folder / name;
+        const ProgramResult result =
+            causticbench({"render", scene, "--method", "photonmap", "--param", "photons=2000",
+                          "--threads", threads, "--seed", seed, "-o", file, "-o", file + ".png"});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_TRUE(fs::exists(file + ".png"));
+        return read_whole_file(file);
+    };
+    const std::string one = render("one.exr", "1", "1");
+    EXPECT_EQ(one, render("two.exr", "2", "1"));
+    EXPECT_NE(one, render("other.exr", "2", "7"));
+}
+
+TEST(Render, WritesTheWholeConfigurationIntoThePicture) {
+    const support::TemporaryFolder folder;
+    const std::string file = folder / "a.exr";
+    ASSERT_EQ(causticbench({"render", scene, "--method", "photonmap", "--param", "photons=500",
+                            "--set", "/floor/bsdf/reflectance=0.25", "--spp", "9", "-o", file})
+                  .exit_code,
+              0);
+    const Film film = read_exr(file);
+    for (const char* layer : {"", "direct", "caustic", "specular", "albedo"})
+        EXPECT_TRUE(film.has_layer(layer)) << layer;
+    EXPECT_NE(film.metadata.at("scene").find("0.25"), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(film.metadata.at("parameters")).at("nearest"), 50);
+    EXPECT_NE(film.metadata.at("command").find("--set /floor/bsdf/reflectance=0.25"),
+              std::string::npos);
+    EXPECT_EQ(film.metadata.at("spp"), "9");
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        const Spectrum sum =
+            film.rgb("direct", i) + film.rgb("caustic", i) + film.rgb("specular", i);
+        EXPECT_TRUE((film.rgb("", i) == sum).all()) << "beauty is not the sum at pixel " << i;
+    }
+}
+
+TEST(Info, TellsWhatTheSceneHolds) {
+    const ProgramResult result = causticbench({"info", scene});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    for (const char* word : {"exact sphere", "caster", "receiver", "point at", "16 x 12",
+                             "photonmap    yes", "pathtrace    no: "})
+        EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
+}
+
+TEST(Probe, KeepsTheRowsAndAddsItsAnswers) {
+    const support::TemporaryFolder folder;
+    const std::string points = folder / "points.csv";
+    write_whole_file(points,
+                     "radius,x,y,z,nx,ny,nz,wx,wy,wz\n"
+                     "0.1,0,0,0,0,0,2,0,0,1\n"
+                     "0.1,0,0,0,0,0,-1,0,0,-1\n");
+    const ProgramResult result =
+        causticbench({"probe", scene, "--method", "lighttrace", "--param", "paths=20000",
+                      "--points", points});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::vector<std::string> table = lines(result.out);
+    ASSERT_EQ(table.size(), 3U);
+    EXPECT_EQ(table[0],
+              "radius,x,y,z,nx,ny,nz,wx,wy,wz,irradiance_r,irradiance_g,irradiance_b,"
+              "radiance_r,radiance_g,radiance_b,stderr_r,stderr_g,stderr_b,"
+              "stderr_radiance_r,stderr_radiance_g,stderr_radiance_b");
+    const std::string first = "0.1,0,0,0,0,0,2,0,0,1,";
+    ASSERT_EQ(table[1].substr(0, first.size()), first);
+    const double irradiance = std::stod(table[1].substr(first.size()));
+    EXPECT_GT(irradiance, 0);
+    EXPECT_EQ(table[2], "0.1,0,0,0,0,0,-1,0,0,-1,0,0,0,0,0,0,0,0,0,0,0,0")
+        << "the back of a one-sided floor is black";
+}
+
+TEST(Compare, FindsAPictureEqualToItself) {
+    const support::TemporaryFolder folder;
+    const std::string file = folder / "a.exr";
+    const std::string strip = folder / "strip.png";
+    ASSERT_EQ(causticbench({"render", scene, "--method", "photonmap", "--param", "photons=2000",
+                            "-o", file}).exit_code, 0);
+    const ProgramResult result = causticbench({"compare", file, file, "--json", "--strip", strip});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json.at("layer"), "caustic");
+    EXPECT_EQ(json.at("metrics").at("rmse"), 0);
+    EXPECT_EQ(json.at("mask_metrics").at("mean_ratio"), 1);
+    EXPECT_GT(json.at("mask_fraction"), 0);
+    EXPECT_TRUE(fs::exists(strip));
+    EXPECT_NE(causticbench({"compare", file, file}).out.find("0.01 mean(r)^2"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,37 @@
+#include "experiments/record.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/csv.h"
+
+namespace caustics {
+namespace {
+
+TEST(RecordsCsv, BeginsWithTheColumnsOfTheContract) {
+    const std::string contract =
+        "trial,status,scene,method,seed,repeat,threads,isa,photons_emitted,photons_stored,nearest,"
+        "alpha,mesh_resolution,polygons,beams,cone_point_tests,beam_point_tests,beam_point_hits,"
+        "map_bytes,rss_start_bytes,peak_rss_bytes,parse_s,precompute_s,balance_s,render_s,total_s,"
+        "cpu_s,rmse,relmse,bias,variance,mean_ratio,leak_energy,beauty_rmse,unreached_fraction,"
+        "reference,reference_stderr,config_hash,code_version,";
+    const std::string header = csv_line(record_columns({"nearest", "alpha", "photons"}));
+    EXPECT_EQ(header.substr(0, contract.size()), contract);
+    EXPECT_EQ(header.substr(header.size() - 9), ",photons\n") << "swept keys come last, once";
+}
+
+TEST(RecordsCsv, LeavesEmptyWhatDoesNotApply) {
+    const nlohmann::json record = {{"trial", "a, b"},
+                                   {"seed", 12345678901234},
+                                   {"method", {{"parameters", {{"nearest", 50}}}}},
+                                   {"swept", {{"alpha", 0.1}, {"bound", "hybrid"}}},
+                                   {"metrics", {{"rmse", 1.0 / 3}, {"relmse", nullptr}}}};
+    EXPECT_EQ(record_row(record, {"trial", "seed", "nearest", "alpha", "bound", "rmse", "relmse",
+                                  "beams"}),
+              (std::vector<std::string>{"a, b", "12345678901234", "50", "0.1", "hybrid",
+                                        "0.3333333333333333", "", ""}));
+}
+
+}  // namespace
+}  // namespace caustics
