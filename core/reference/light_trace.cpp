@@ -140,7 +140,7 @@ private:
         const Spectrum scattering =
             evaluate(scene_.shapes()[d.shape].bsdf, d.uv, d.shading_normal, wo, d.wi);
         if (is_black(scattering)) return {};
-        if (scene_.occluded({d.position, d.geometric_normal, d.offset}, {eye})) return {};
+        if (scene_.occluded({d.position, d.geometric_normal, d.offset}, SegmentEnd{eye})) return {};
         const double cos3 = seen->cos_theta * seen->cos_theta * seen->cos_theta;
         const double weight = static_cast<double>(cosine) /
                               (seen->distance * seen->distance * cos3 * camera.pixel_area());
