@@ -188,6 +188,12 @@ std::vector<JsonNode> JsonNode::as_array() const {
     return nodes;
 }
 
+bool JsonNode::has(const std::string& key) const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    return value.contains(key);
+}
+
 std::optional<JsonNode> JsonNode::find(const std::string& key) const {
     const json& value = document_->value(pointer_);
     if (!value.is_object()) fail("expected an object, got " + shown(value));

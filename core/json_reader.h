@@ -42,6 +42,8 @@ public:
     std::vector<double> as_numbers(std::size_t count) const;  ///< an array of so many numbers
     std::vector<JsonNode> as_array() const;
 
+    /// Whether an object has the key; leaves it unknown.
+    bool has(const std::string& key) const;
     /// The child of an object; marks the key as known whether present or not.
     std::optional<JsonNode> find(const std::string& key) const;
     /// As find, but the key must be there.

@@ -26,14 +26,18 @@ void read_film(const JsonNode& node, Camera& camera) {
         camera.width = static_cast<int>(width->as_integer_in(1, 65536));
     if (const auto height = node.find("height"))
         camera.height = static_cast<int>(height->as_integer_in(1, 65536));
-    for (const auto& [key, child] : node.others()) {
-        if (!child.is_object())
-            child.fail("unknown key (known: width, height, rfilter)");
-        read_type(child, "reconstruction filter", {"box"},
-                  {"gaussian", "tent", "mitchell", "catmullrom", "lanczos"});
-        child.finish();
-    }
+    // A film's planes are held whole in memory.
+    constexpr double most_pixels = 1 << 27;
+    if (double{1} * camera.width * camera.height > most_pixels)
+        node.fail("width times height is more than 134217728 pixels");
+    const auto filters = node.children();
     node.finish();
+    for (const auto& [key, filter] : filters) {
+        read_type(filter, "reconstruction filter", {"box"},
+                  {"gaussian", "tent", "mitchell", "catmullrom", "lanczos"});
+        filter.finish();
+    }
+    if (filters.size() > 1) node.fail("a film takes one reconstruction filter");
 }
 
 PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
@@ -71,16 +75,17 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
         const Eigen::Matrix3d linear = camera.to_world.linear();
         const Eigen::Matrix3d square = linear.transpose() * linear;
         const double scale = square.trace() / 3;
-        if ((square - scale * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 1e-6 * scale)
-            to_world->fail("a sensor takes rotations, translations and one scale only");
+        const bool skewed =
+            (square - scale * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 1e-6 * scale;
+        if (skewed || linear.determinant() < 0)
+            to_world->fail("a sensor takes rotations, translations and one positive scale only");
         camera.to_world.linear() = linear / std::sqrt(scale);
     }
     bool has_film = false;
     bool has_sampler = false;
-    for (const auto& [key, child] : node.others()) {
-        if (!child.is_object() || !child.find("type"))
-            child.fail("unknown key of this sensor (known: fov, fov_axis, to_world, a nested film, "
-                       "a nested sampler)");
+    const auto children = node.children();
+    node.finish();
+    for (const auto& [key, child] : children) {
         const std::string type =
             read_type(child, "film or sampler", {"hdrfilm", "independent", "stratified"},
                       {"specfilm", "multijitter", "orthogonal", "ldsampler"});
@@ -92,7 +97,6 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
         else
             desc.sampling = read_sampler(child, type);
     }
-    node.finish();
 }
 
 void read_point_light(const JsonNode& node, SceneDesc& desc) {
@@ -131,14 +135,16 @@ void read_directional_light(const JsonNode& node, SceneDesc& desc) {
 // The children of the scene are told apart by their types alone.
 void read_child(const std::string& key, const JsonNode& node, SceneDesc& desc, bool& has_sensor,
                 Assets& assets) {
-    if (!node.is_object() || !node.find("type"))
-        node.fail("unknown key of a scene (known: type, version, and named children that are "
-                  "objects with a type)");
     const std::string type = node.at("type").as_string();
     std::vector<std::string> known{"perspective", "point", "directional"};
-    std::vector<std::string> later{"constant", "spot",     "envmap",   "projector", "thinlens",
-                                   "path",     "ptracer",  "volpath",  "direct",    "aov",
-                                   "ref",      "directionalarea", "sunsky", "orthographic"};
+    std::vector<std::string> later{"constant",        "spot",   "envmap",      "projector",
+                                   "directionalarea", "sunsky", "thinlens",    "orthographic",
+                                   "homogeneous",     "ref",    "heterogeneous"};
+    const std::vector<std::string> integrators{"path",    "volpath", "direct", "ptracer",
+                                               "moment", "aov",     "depth",  "photonmapper"};
+    if (std::ranges::find(integrators, type) != integrators.end())
+        node.fail("integrators are not supported: the method is chosen on the command line or in "
+                  "the sweep, not in the scene");
     std::ranges::copy(scene_file::shape_types(), std::back_inserter(known));
     std::ranges::copy(scene_file::later_shape_types(), std::back_inserter(later));
     if (type == "area") node.fail("an area emitter is nested in the shape that emits");
@@ -173,7 +179,9 @@ SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrid
     SceneFile scene;
     Assets assets;
     bool has_sensor = false;
-    for (const auto& [key, child] : root.others())
+    const auto children = root.children();
+    root.finish();
+    for (const auto& [key, child] : children)
         read_child(key, child, scene.desc, has_sensor, assets);
     if (!has_sensor) root.fail("the scene has no sensor (known: perspective)");
     if (scene.desc.shapes.empty()) root.fail("the scene has no shape");

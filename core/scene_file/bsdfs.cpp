@@ -82,9 +82,11 @@ Schlick read_schlick(const JsonNode& node, Assets& assets) {
 }
 
 Bsdf read_twosided(const JsonNode& node, Assets& assets) {
-    const auto children = node.others();
-    if (children.size() != 1 || !children.front().second.is_object())
-        node.fail("twosided takes exactly one nested bsdf");
+    const auto children = node.children();
+    node.finish();
+    if (children.size() != 1)
+        node.fail("twosided takes exactly one nested bsdf, the same on both sides (known: diffuse, "
+                  "schlick, conductor)");
     Bsdf inner = read_bsdf(children.front().second, assets);
     if (inner.twosided || std::holds_alternative<Dielectric>(inner.model))
         children.front().second.fail(

@@ -1,6 +1,7 @@
 #include "core/scene_file/shapes.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/mesh_io.h"
@@ -28,6 +29,18 @@ Transform read_sphere_placement(const JsonNode& node) {
            Eigen::Scaling(radius);
 }
 
+// Rotation from z to a unit axis, by Duff et al. 2017, as in Mitsuba: where u = 0 lies follows.
+Eigen::Matrix3d frame_along(const Vec3d& n) {
+    const double sign = std::copysign(1.0, n.z());
+    const double a = -1 / (sign + n.z());
+    const double b = n.x() * n.y() * a;
+    Eigen::Matrix3d frame;
+    frame.col(0) << 1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x();
+    frame.col(1) << b, sign + n.y() * n.y() * a, -n.y();
+    frame.col(2) = n;
+    return frame;
+}
+
 // The unit cylinder along z in [0, 1] -> p0 to p1.
 Transform read_cylinder_placement(const JsonNode& node) {
     const auto p0 = node.find("p0");
@@ -36,9 +49,11 @@ Transform read_cylinder_placement(const JsonNode& node) {
     const Vec3d axis = (p1 ? read_vector(*p1) : Vec3d::UnitZ().eval()) - from;
     if (axis.norm() == 0) node.fail("p0 and p1 of a cylinder must differ");
     const double radius = read_radius(node);
-    return Eigen::Translation3d(from) *
-           Eigen::Quaterniond::FromTwoVectors(Vec3d::UnitZ(), axis.normalized()) *
-           Eigen::Scaling(radius, radius, axis.norm());
+    Transform placement = Transform::Identity();
+    placement.linear() = frame_along(axis.normalized()) *
+                         Eigen::DiagonalMatrix<double, 3>(radius, radius, axis.norm());
+    placement.translation() = from;
+    return placement;
 }
 
 SineWave read_wave(const JsonNode& node) {
@@ -52,10 +67,10 @@ SineWave read_wave(const JsonNode& node) {
 }
 
 SineHeightfield read_heightfield(const JsonNode& node) {
-    for (const char* later : {"fractal", "filename"})
-        if (const auto key = node.find(later))
-            key->fail(std::string("heightfield by ") + later +
-                      " is not supported (yet) (known: waves)");
+    for (const char* later : {"fractal", "filename", "grid"})
+        if (node.has(later))
+            node.at(later).fail(std::string("heightfield by ") + later +
+                                " is not supported (yet) (known: waves)");
     SineHeightfield field;
     for (const JsonNode& wave : node.at("waves").as_array()) field.waves.push_back(read_wave(wave));
     if (const auto half_size = node.find("half_size")) {
@@ -114,12 +129,20 @@ struct CommonKeys {
     }
 };
 
-void read_mesh_file(const JsonNode& node, CommonKeys keys, Shape& shape, Assets& assets) {
+void read_mesh_file(const JsonNode& node, const std::string& type, const CommonKeys& keys,
+                    Shape& shape, Assets& assets) {
     shape.primitive = Primitive::mesh;
     MeshLoadOptions options;
     options.face_normals = keys.face_normals;
     options.flip_normals = keys.flip_normals;
-    shape.mesh = load_mesh(read_file_name(node.at("filename"), assets), options);
+    const JsonNode name = node.at("filename");
+    const std::filesystem::path file = read_file_name(name, assets);
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != "." + type)
+        name.fail("a shape of type " + type + " takes a ." + type + " file (known: obj, ply)");
+    shape.mesh = load_for(name, [&] { return load_mesh(file, options); });
     transform(shape.mesh, keys.to_world);
 }
 
@@ -158,11 +181,9 @@ void read_cube(const CommonKeys& keys, Shape& shape) {
 // What is nested in a shape under keys of the user's choice: a bsdf and an emitter.
 void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
     bool has_bsdf = false;
-    for (const auto& [key, child] : node.others()) {
-        if (!child.is_object() || !child.find("type")) {
-            child.fail("unknown key of this shape (known: the shape's parameters, a nested bsdf, a "
-                       "nested emitter)");
-        }
+    const auto children = node.children();
+    node.finish();
+    for (const auto& [key, child] : children) {
         const std::string type = child.at("type").as_string();
         if (is_bsdf_type(type)) {
             if (has_bsdf) child.fail("a shape takes one bsdf");
@@ -201,13 +222,12 @@ Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) 
     shape.name = name;
     const CommonKeys keys(node, type);
     if (type == "obj" || type == "ply")
-        read_mesh_file(node, keys, shape, assets);
+        read_mesh_file(node, type, keys, shape, assets);
     else if (type == "cube")
         read_cube(keys, shape);
     else
         read_analytic(node, type, keys, shape);
     read_nested(node, shape, assets);
-    node.finish();
     return shape;
 }
 

@@ -22,7 +22,6 @@ Spectrum read_three(const JsonNode& node, double most) {
         for (Eigen::Index c = 0; c < 3; ++c)
             value[c] = static_cast<float>(parts[static_cast<std::size_t>(c)].as_number_in(0, most));
     }
-    if (!is_finite(value)) node.fail("too large");
     return value;
 }
 
@@ -35,7 +34,8 @@ Eigen::Affine3f read_to_uv(const JsonNode& node) {
 Bitmap read_bitmap(const JsonNode& node, Assets& assets) {
     const auto raw = node.find("raw");
     const JsonNode name = node.at("filename");
-    Bitmap bitmap = load_bitmap(read_file_name(name, assets), raw && raw->as_bool());
+    const std::filesystem::path file = read_file_name(name, assets);
+    Bitmap bitmap = load_for(name, [&] { return load_bitmap(file, raw && raw->as_bool()); });
     if (const auto filter = node.find("filter_type"))
         bitmap.filter = static_cast<Bitmap::Filter>(filter->as_choice({"bilinear", "nearest"}));
     if (const auto wrap = node.find("wrap_mode"))
@@ -94,8 +94,9 @@ Transform read_operation(const JsonNode& node) {
     if (translate) return Transform(Eigen::Translation3d(read_vector(*translate)));
     if (rotate) return read_rotation(*rotate);
     if (look_at) return read_look_at(*look_at);
-    const Vec3d factors =
-        scale->is_number() ? Vec3d::Constant(scale->as_number()) : read_vector(*scale);
+    const Vec3d factors = scale->is_number()
+                              ? Vec3d(Vec3d::Constant(scale->as_number_in(-1e30, 1e30)))
+                              : read_vector(*scale);
     return Transform(Eigen::Scaling(factors));
 }
 
@@ -122,6 +123,7 @@ Transform read_matrix(const JsonNode& node, const std::vector<JsonNode>& entries
 
 Vec3d read_vector(const JsonNode& node) {
     const std::vector<double> values = node.as_numbers(3);
+    for (const JsonNode& component : node.as_array()) component.as_number_in(-1e30, 1e30);
     return {values[0], values[1], values[2]};
 }
 
@@ -171,8 +173,11 @@ Transform read_transform(const JsonNode& node) {
 std::filesystem::path read_file_name(const JsonNode& node, Assets& assets) {
     const std::string name = node.as_string();
     const std::filesystem::path file = node.file().parent_path() / name;
-    if (!std::filesystem::is_regular_file(file)) node.fail("no such file: " + file.string());
-    assets.emplace_back(file, name);
+    std::error_code failed;
+    if (!std::filesystem::is_regular_file(file, failed))
+        node.fail("there is no file " + file.string());
+    const std::pair<std::filesystem::path, std::string> asset{file, name};
+    if (std::ranges::find(assets, asset) == assets.end()) assets.push_back(asset);
     return file;
 }
 

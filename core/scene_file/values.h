@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/json_reader.h"
 #include "core/spectrum.h"
 #include "core/texture.h"
@@ -13,6 +14,7 @@ namespace caustics::scene_file {
 /// What a scene file refers to: absolute file -> name as written.
 using Assets = std::vector<std::pair<std::filesystem::path, std::string>>;
 
+/// Three numbers that fit a float.
 Vec3d read_vector(const JsonNode& node);
 /// A number, [r, g, b], or {"type": "rgb", "value": number or [r, g, b]}; 0 <= value <= `most`.
 Spectrum read_colour(const JsonNode& node, double most);
@@ -24,6 +26,16 @@ Texture read_texture(const JsonNode& parent, const std::string& key, double fall
 Transform read_transform(const JsonNode& node);
 /// The file named by the string node, relative to the file the node was written in; noted.
 std::filesystem::path read_file_name(const JsonNode& node, Assets& assets);
+/// Calls a loader of files that knows nothing of the scene, and names the node that asked for the
+/// file in what it throws.
+template <class Load>
+auto load_for(const JsonNode& node, const Load& load) {
+    try {
+        return load();
+    } catch (const InputError& e) {
+        node.fail(e.what());
+    }
+}
 /// The object's `type`, refused with the list of what is known unless it is in `known`; names of
 /// `later` are said to be not supported yet.
 std::string read_type(const JsonNode& node, const std::string& family,
