@@ -58,7 +58,7 @@ const std::vector<Broken> broken_scenes = {
      scene_with("dielectric", "glas")},
     {"WrongType", render_broken, {"/ball/radius", "number"}, scene_with("0.4", "\"big\"")},
     {"NegativeRadius", render_broken, {"/ball/radius"}, scene_with("0.4", "-0.4")},
-    {"MissingKey", render_broken, {"/sensor"}, scene_with("\"sensor\"", "\"sensro\"")},
+    {"MissingKey", render_broken, {"/light", "type"}, scene_with("\"type\": \"point\", ", "")},
     {"MissingMesh", render_broken, {"absent.ply"},
      scene_with(R"("type": "sphere",
     "center": [0, 0, 0.6],

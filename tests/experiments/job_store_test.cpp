@@ -12,7 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 
 TrialOutcome outcome(const std::string& status) {
-    return {{{"trial", "a-1"}, {"status", status}}, Film(2, 2), "log\n"};
+    Film film(2, 2);
+    film.set_rgb("", 0, Spectrum::Ones());
+    return {{{"trial", "a-1"}, {"status", status}}, film, "log\n"};
 }
 
 TEST(JobStore, KeepsWholeTrials) {
