@@ -25,7 +25,7 @@ Spectrum from_directional(const Scene& scene, const ReceiverPoint& p,
                           const DirectionalLight& light) {
     const Vec3 wi = -light.direction;
     const Spectrum f = scattering(p, wi);
-    if (is_black(f) || scene.occluded(end_of(p), wi)) return black();
+    if (is_black(f) || scene.occluded_along(end_of(p), wi)) return black();
     return f * light.irradiance;
 }
 

@@ -45,7 +45,7 @@ bool Scene::occluded(const SegmentEnd& from, const SegmentEnd& to) const {
     return intersector_->occluded(ray);
 }
 
-bool Scene::occluded(const SegmentEnd& from, const Vec3& direction) const {
+bool Scene::occluded_along(const SegmentEnd& from, const Vec3& direction) const {
     return intersector_->occluded(spawn_ray(from, direction));
 }
 

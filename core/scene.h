@@ -66,7 +66,7 @@ public:
     /// Whether any surface lies between two ends.
     bool occluded(const SegmentEnd& from, const SegmentEnd& to) const;
     /// Whether any surface lies along a direction (unit).
-    bool occluded(const SegmentEnd& from, const Vec3& direction) const;
+    bool occluded_along(const SegmentEnd& from, const Vec3& direction) const;
     /// The offset of rays that leave a shape (see SurfacePoint::offset): 64 float spacings at the
     /// largest coordinate of its bounds, where intersection errors are a few spacings.
     float offset(std::uint32_t shape) const { return offsets_[shape]; }

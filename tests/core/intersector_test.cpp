@@ -77,7 +77,7 @@ TEST(Intersector, SeesExactShapesThroughTheirTransforms) {
                                 exact_normal(shape, local->local) * (flip ? -1 : 1);
                 EXPECT_LT((hit->geometric_normal - n.normalized().cast<float>()).norm(), 1e-5F);
                 EXPECT_EQ(hit->uv, exact_uv(shape, local->local));
-                EXPECT_TRUE(scene.occluded({o}, d));
+                EXPECT_TRUE(scene.occluded_along({o}, d));
             }
             EXPECT_GT(hits, 100);
         }
@@ -225,7 +225,7 @@ TEST(Intersector, OcclusionAgreesWithIntersection) {
         const Vec3 d = (b - a).normalized();
         const float length = (b - a).norm();
         const auto hit = scene.intersect({a, d});
-        ASSERT_EQ(scene.occluded({a}, d), hit.has_value());
+        ASSERT_EQ(scene.occluded_along({a}, d), hit.has_value());
         if (hit && std::abs(hit->distance - length) < 1e-4F) continue;
         const bool between = hit && hit->distance < length;
         ASSERT_EQ(scene.occluded({a}, SegmentEnd{b}), between);

@@ -65,7 +65,7 @@ TEST(Scene, LinesOfSightEndAtTheirSurfaces) {
 TEST(Scene, MayBeEmpty) {
     const Scene scene{SceneDesc{}};
     EXPECT_FALSE(scene.intersect({}));
-    EXPECT_FALSE(scene.occluded({Vec3::Zero()}, Vec3::UnitX()));
+    EXPECT_FALSE(scene.occluded_along({Vec3::Zero()}, Vec3::UnitX()));
     EXPECT_TRUE(scene.casters().empty() && scene.lights().empty());
 }
 
