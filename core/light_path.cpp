@@ -43,7 +43,8 @@ DirectionCone cone_between(const BoundingSphere& from, const BoundingSphere& to)
 // Bound of n . w over a cone of directions.
 float max_cosine_in_cone(const Vec3& n, const DirectionCone& cone) {
     const float to_axis = std::acos(std::clamp(n.dot(cone.axis), -1.0F, 1.0F));
-    return std::cos(std::max(0.0F, to_axis - cone.angle()));
+    // acos of a float is good to 4e-4 rad near 0.
+    return std::cos(std::max(0.0F, to_axis - cone.angle() - 1e-3F));
 }
 
 bool is_flat(const Shape& shape) {

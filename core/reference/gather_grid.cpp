@@ -22,7 +22,8 @@ GatherGrid::GatherGrid(std::span<const ReceiverPoint> points, std::span<const fl
 }
 
 GatherGrid::Cell GatherGrid::cell_of(const Vec3& p) const {
-    return (p / cell_size_).array().floor().cast<int>();
+    // Far cells share a key anyway (see key): clamped before the numbers leave int's range.
+    return (p / cell_size_).array().floor().max(-1e9F).min(1e9F).cast<int>();
 }
 
 std::uint64_t GatherGrid::key(const Cell& cell) {
