@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From a fresh Debian to a table, plots and pictures in results/quickstart: sets up, builds, sweeps the
-# three quick-start scenes and plots. Arguments are handed to the sweep (--references rebuild, --force).
+# quick-start scenes and plots. Arguments are handed to the sweep (--references rebuild, --force).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 results=results/quickstart
@@ -10,7 +10,7 @@ fail() { echo "quickstart: $*" >&2; exit 1; }
 bash tools/build.sh release causticbench || exit 1
 
 sweeps=()
-for scene in ring pool ball; do
+for scene in ring ring_area pool ball; do
     sweeps+=("experiments/sweeps/quickstart_$scene.json")
 done
 status=0
