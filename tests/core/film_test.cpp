@@ -11,16 +11,16 @@
 #include <thread>
 
 #include "core/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder() {
-    const fs::path path = fs::path(testing::TempDir()) / "film_test";
-    fs::create_directories(path);
-    return path;
+const fs::path& folder() {
+    static const support::TemporaryFolder temporary("film_test");
+    return temporary.path();
 }
 
 std::string bytes_of(const fs::path& file) {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/film.h"
+#include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {
@@ -14,9 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path temporary(const std::string& name) {
-    const fs::path folder = fs::path(testing::TempDir()) / "texture_test";
-    fs::create_directories(folder);
-    return folder / name;
+    static const support::TemporaryFolder folder("texture_test");
+    return folder.path() / name;
 }
 
 float grey(const Texture& texture, float u, float v) { return evaluate(texture, {u, v})[1]; }
