@@ -53,7 +53,8 @@ void read_estimate(const JsonNode& node, PhotonMapParams& params) {
     if (const auto max_radius = node.find("max_radius")) {
         params.max_radius = max_radius->as_number();
         const auto stored = static_cast<float>(params.max_radius);
-        if (!(stored * stored > 0) || !std::isfinite(stored * stored))
+        // The square must be a float above 0 too: that is what distances are compared with.
+        if (!(stored > 0 && stored * stored > 0) || !std::isfinite(stored * stored))
             max_radius->fail("must be a length above 0 [m] (leave it out to have it chosen)");
     }
 }

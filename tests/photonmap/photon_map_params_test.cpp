@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/error.h"
+#include "photonmap/photon_map.h"
+
+namespace caustics {
+namespace {
+
+PhotonMapParams params_of(const std::string& json) {
+    PhotonMapParams params;
+    read(JsonNode::parse_text(json, "params"), params);
+    return params;
+}
+
+/// The one line that refuses these parameters, or "" where they are taken.
+std::string refusal(const std::string& json) {
+    try {
+        params_of(json);
+        return "";
+    } catch (const InputError& e) {
+        return e.what();
+    }
+}
+
+TEST(PhotonMapParams, AreReadWithTheirDefaultsInPlace) {
+    const PhotonMapParams defaults = params_of("{}");
+    EXPECT_EQ(defaults.photons, 100'000U);
+    EXPECT_EQ(defaults.nearest, 50);
+    const PhotonMapParams given = params_of(
+        R"({"photons": 2000000000, "nearest": 1, "estimator": "raw", "max_radius": 0.25,
+            "max_bounces": 4, "emission": "random", "interaction": "roulette",
+            "tree": "balanced"})");
+    EXPECT_EQ(given.photons, 2'000'000'000U);
+    EXPECT_EQ(given.emitted, 0U);
+    EXPECT_EQ(given.nearest, 1);
+    EXPECT_EQ(given.estimator, PhotonMapParams::Estimator::raw);
+    EXPECT_EQ(given.max_radius, 0.25);
+    EXPECT_EQ(given.max_bounces, 4);
+}
+
+TEST(PhotonMapParams, EmittedReplacesPhotons) {
+    const PhotonMapParams given = params_of(R"({"emitted": 5000})");
+    EXPECT_EQ(given.emitted, 5'000U);
+    EXPECT_EQ(given.photons, 0U);
+    EXPECT_NE(refusal(R"({"emitted": 5000, "photons": 10})").find("/emitted"), std::string::npos);
+}
+
+TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
+    for (const std::string word :
+         {R"("emission": "stratified")", R"("interaction": "split")", R"("tree": "unbalanced")",
+          R"("tree": "packed")", R"("filter": "cone")", R"("adaptive": true)",
+          R"("tables": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
+        const std::string line = refusal("{" + word + "}");
+        EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
+    }
+}
+
+TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
+    for (const std::string json :
+         {R"({"photon": 1})", R"({"photons": 0})", R"({"photons": -1})", R"({"photons": 1.5})",
+          R"({"photons": 2000000001})", R"({"emitted": 0})", R"({"nearest": 0})",
+          R"({"nearest": 1})", R"({"max_radius": 0})", R"({"max_radius": -1})",
+          R"({"max_radius": 1e-30})", R"({"max_radius": 1e30})", R"({"estimator": "biased"})",
+          R"({"tree": "balancd"})", R"({"max_bounces": 0})", R"({"photons": "many"})"}) {
+        const std::string line = refusal(json);
+        EXPECT_NE(line, "") << json;
+        EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+    }
+}
+
+}  // namespace
+}  // namespace caustics
