@@ -53,8 +53,7 @@ bool scatters_from(const Bsdf& bsdf, bool front) {
     return front || bsdf.twosided || std::holds_alternative<Dielectric>(bsdf.model);
 }
 
-Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& wo,
-                  const Vec3& wi) {
+Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) {
     const Texture* reflectance = reflectance_texture(bsdf);
     if (reflectance == nullptr || n.dot(wo) <= 0 || n.dot(wi) <= 0) return black();
     const auto* schlick = std::get_if<Schlick>(&bsdf.model);
@@ -75,8 +74,8 @@ std::optional<Vec3> sample_direction(const Bsdf& bsdf, const Vec3& n, const Vec3
     const float t2 = u0 / (schlick->alpha + (1 - schlick->alpha) * u0);
     const float sine = std::sqrt(std::max(0.0F, 1 - t2));
     const float angle = 2 * pi * u1;
-    const Vec3 half = frame.to_world(
-        Vec3(sine * std::cos(angle), sine * std::sin(angle), std::sqrt(t2)));
+    const Vec3 half =
+        frame.to_world(Vec3(sine * std::cos(angle), sine * std::sin(angle), std::sqrt(t2)));
     const Vec3 wi = 2 * half.dot(wo) * half - wo;
     if (n.dot(wi) <= 0) return {};
     return wi.normalized();
@@ -90,8 +89,7 @@ float direction_pdf(const Bsdf& bsdf, const Vec3& n, const Vec3& wo, const Vec3&
     if (schlick == nullptr) return cosine_pdf;
     const float t2 = half_vector_cosine_squared(n.dot(wo), cosine, wo, wi);
     const float wo_half = Vec3(wo + wi).norm() / 2;
-    const float lobe_pdf =
-        schlick_lobe(t2, schlick->alpha) * std::sqrt(t2) / pi / (4 * wo_half);
+    const float lobe_pdf = schlick_lobe(t2, schlick->alpha) * std::sqrt(t2) / pi / (4 * wo_half);
     return 0.5F * (cosine_pdf + lobe_pdf);
 }
 

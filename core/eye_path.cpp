@@ -35,16 +35,16 @@ Branch continued(const SurfacePoint& hit, const Bsdf& bsdf, const Vec3& directio
 
 void scatter(const SurfacePoint& hit, const Bsdf& bsdf, const Branch& branch, Rng& rng,
              BranchStack& stack) {
-    const SpecularSplit split = split_specular(bsdf, hit.geometric_normal, hit.shading_normal,
-                                               -branch.ray.direction);
+    const SpecularSplit split =
+        split_specular(bsdf, hit.geometric_normal, hit.shading_normal, -branch.ray.direction);
     Spectrum reflected = branch.weight * split.reflected_weight;
     Spectrum refracted = branch.weight * split.refracted_weight / (split.eta * split.eta);
     const float reflected_share = (branch.weight * split.reflected_weight).mean();
     const float refracted_share = (branch.weight * split.refracted_weight).mean();
     const float both = reflected_share + refracted_share;
     if (both <= 0) return;
-    const bool split_path = reflected_share >= split_threshold &&
-                            refracted_share >= split_threshold && !stack.full();
+    const bool split_path =
+        reflected_share >= split_threshold && refracted_share >= split_threshold && !stack.full();
     if (!split_path && reflected_share > 0 && refracted_share > 0) {
         if (rng.next() * both < reflected_share) {
             reflected *= both / reflected_share;

@@ -7,8 +7,7 @@
 namespace caustics {
 
 /// 64-bit FNV-1a (Fowler, Noll, Vo), continued from `state`.
-constexpr std::uint64_t fnv1a(std::string_view bytes,
-                              std::uint64_t state = 0xcbf29ce484222325ULL) {
+constexpr std::uint64_t fnv1a(std::string_view bytes, std::uint64_t state = 0xcbf29ce484222325ULL) {
     for (const char c : bytes) {
         state ^= static_cast<unsigned char>(c);
         state *= 0x100000001b3ULL;

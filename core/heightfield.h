@@ -8,9 +8,9 @@ namespace caustics {
 
 /// One sine of a heightfield: amplitude * sin(wave_vector . (x, y) + phase), local frame.
 struct SineWave {
-    double amplitude = 0;                 ///< [m]
-    Vec2d wave_vector = Vec2d::Zero();    ///< [rad/m]
-    double phase = 0;                     ///< [rad]
+    double amplitude = 0;               ///< [m]
+    Vec2d wave_vector = Vec2d::Zero();  ///< [rad/m]
+    double phase = 0;                   ///< [rad]
 };
 
 /// A sum of sines z = h(x, y) over the rectangle |x| <= half_size.x, |y| <= half_size.y of the

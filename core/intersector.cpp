@@ -48,9 +48,9 @@ void exact_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 std::optional<ExactHit> exact_hit(const void* user, const RTCRay& ray) {
-    return static_cast<const ExactGeometry*>(user)->intersect(
-        Vec3(ray.org_x, ray.org_y, ray.org_z), Vec3(ray.dir_x, ray.dir_y, ray.dir_z), ray.tnear,
-        ray.tfar);
+    return static_cast<const ExactGeometry*>(user)->intersect(Vec3(ray.org_x, ray.org_y, ray.org_z),
+                                                              Vec3(ray.dir_x, ray.dir_y, ray.dir_z),
+                                                              ray.tnear, ray.tfar);
 }
 
 void exact_intersect(const RTCIntersectFunctionNArguments* args) {
@@ -66,15 +66,14 @@ void exact_intersect(const RTCIntersectFunctionNArguments* args) {
 void exact_occluded(const RTCOccludedFunctionNArguments* args) {
     if (args->valid[0] == 0) return;
     auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-    if (exact_hit(args->geometryUserPtr, *ray))
-        ray->tfar = -std::numeric_limits<float>::infinity();
+    if (exact_hit(args->geometryUserPtr, *ray)) ray->tfar = -std::numeric_limits<float>::infinity();
 }
 
 RTCGeometry mesh_geometry(RTCDevice device, const TriangleMesh& mesh) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                              mesh.positions.size());
+    void* positions =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), mesh.positions.size());
     std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * 3 * sizeof(float));
     void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                               3 * sizeof(unsigned), mesh.triangles.size());
@@ -138,9 +137,8 @@ void fill_mesh_point(const TriangleMesh& mesh, std::uint32_t primitive, float u,
     const std::array<std::uint32_t, 3>& triangle = mesh.triangles[primitive];
     const Vec3& a = mesh.positions[triangle[0]];
     point.position = interpolate(mesh.positions, triangle, u, v);
-    point.geometric_normal = (mesh.positions[triangle[1]] - a)
-                                 .cross(mesh.positions[triangle[2]] - a)
-                                 .normalized();
+    point.geometric_normal =
+        (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a).normalized();
     point.shading_normal = point.geometric_normal;
     if (!mesh.normals.empty()) {
         const Vec3 n = interpolate(mesh.normals, triangle, u, v);

@@ -113,10 +113,10 @@ AimedEmission::AimedEmission(const Scene& scene) : scene_(scene) {
 double AimedEmission::aim_cones(Source& source, const BoundingSphere& from, const Shape* emitter) {
     std::vector<double> measures;
     float max_cosine = emitter != nullptr && is_flat(*emitter) ? 0.0F : 1.0F;
-    const Vec3 normal =
-        emitter != nullptr
-            ? std::get<AreaLight>(scene_.lights()[source.light]).sampler.sample(*emitter, 0, 0).normal
-            : Vec3::UnitZ();
+    const Vec3 normal = emitter != nullptr ? std::get<AreaLight>(scene_.lights()[source.light])
+                                                 .sampler.sample(*emitter, 0, 0)
+                                                 .normal
+                                           : Vec3::UnitZ();
     for (const std::uint32_t caster : scene_.casters()) {
         const Shape& shape = scene_.shapes()[caster];
         const DirectionCone cone = emitter == nullptr ? cone_from_point(shape, from.centre)
@@ -176,7 +176,8 @@ std::optional<LightParticle> AimedEmission::emit(Rng& rng) const {
 
 std::optional<Vec3> AimedEmission::direction_in_union(const Source& source, Rng& rng) {
     const float u = rng.next();
-    const DirectionCone& cone = source.cones[source.cones.size() == 1 ? 0 : pick(source.cumulative, u)];
+    const DirectionCone& cone =
+        source.cones[source.cones.size() == 1 ? 0 : pick(source.cumulative, u)];
     const float u0 = rng.next();
     const float u1 = rng.next();
     const Vec3 direction = cone.sample(u0, u1);
@@ -228,8 +229,7 @@ std::optional<Ray> AimedEmission::emit_directional(const Source& source,
     }
     // Start on the plane that touches the scene's bounding sphere from outside.
     const Vec3 centre = scene_.bounds().center();
-    const float behind =
-        (point - centre).dot(light.direction) + 0.505F * scene_.diameter();
+    const float behind = (point - centre).dot(light.direction) + 0.505F * scene_.diameter();
     return spawn_ray({point - behind * light.direction}, light.direction);
 }
 
@@ -289,9 +289,8 @@ std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle&
             ++counts.missed;
             return {};
         }
-        flux *= segment_transmittance(start_absorption,
-                                      medium_absorption(bsdf, hit->geometric_normal, w),
-                                      hit->distance);
+        flux *= segment_transmittance(
+            start_absorption, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
         if (is_receiver(bsdf)) {
             std::optional<Deposit> deposit = deposit_at(scene, *hit, w, flux, bounces);
             ++(deposit ? counts.stored : counts.absorbed);

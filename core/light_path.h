@@ -68,12 +68,12 @@ private:
     };
     struct Source {
         std::uint32_t light = 0;
-        Spectrum power = black();        ///< of the whole aimed measure [W]
-        double share = 0;                ///< probability of this light
+        Spectrum power = black();          ///< of the whole aimed measure [W]
+        double share = 0;                  ///< probability of this light
         std::vector<DirectionCone> cones;  ///< point and area lights
-        std::vector<Disc> discs;         ///< directional lights, on a plane before the scene
-        std::vector<double> cumulative;  ///< of their measures, normalised
-        float max_cosine = 1;            ///< area lights: bound of the cosine over the cones
+        std::vector<Disc> discs;           ///< directional lights, on a plane before the scene
+        std::vector<double> cumulative;    ///< of their measures, normalised
+        float max_cosine = 1;              ///< area lights: bound of the cosine over the cones
     };
     double aim_cones(Source& source, const BoundingSphere& from, const Shape* emitter);
     double aim_discs(Source& source);

@@ -141,9 +141,9 @@ private:
     }
 
     std::uint64_t sample_id(int x, int y, int sample) const {
-        const auto pixel = static_cast<std::uint64_t>(y) *
-                               static_cast<std::uint64_t>(scene_.camera().width) +
-                           static_cast<std::uint64_t>(x);
+        const auto pixel =
+            static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(scene_.camera().width) +
+            static_cast<std::uint64_t>(x);
         return pixel * static_cast<std::uint64_t>(options_.samples_per_pixel) +
                static_cast<std::uint64_t>(sample);
     }
@@ -166,7 +166,8 @@ private:
         sums.through_caster += path.first.caster ? 1 : 0;
         std::uint64_t branch = 0;
         for (WeightedPoint& found : worker.found) {
-            sums.direct += (found.weight * direct_radiance(scene_, found.point, rng)).cast<double>();
+            sums.direct +=
+                (found.weight * direct_radiance(scene_, found.point, rng)).cast<double>();
             found.point.id = id << 8U | (branch++ & 0xFFU);
             worker.points.push_back(found.point);
             worker.owners.push_back({pixel, sample, found.weight});
@@ -209,7 +210,8 @@ private:
         film.plane("normal.X")[pixel] = static_cast<float>(normal.x());
         film.plane("normal.Y")[pixel] = static_cast<float>(normal.y());
         film.plane("normal.Z")[pixel] = static_cast<float>(normal.z());
-        if (sums.hits > 0) film.plane("depth.Z")[pixel] = static_cast<float>(sums.depth / sums.hits);
+        if (sums.hits > 0)
+            film.plane("depth.Z")[pixel] = static_cast<float>(sums.depth / sums.hits);
         if (film.find("unreached.Y") != nullptr)
             film.plane("unreached.Y")[pixel] = static_cast<float>(sums.through_caster / n);
         if (!estimator_.is_statistical()) return;
@@ -240,8 +242,9 @@ private:
 
     static void sum_beauty(Film& film) {
         for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel)
-            film.set_rgb("", pixel, film.rgb("direct", pixel) + film.rgb("caustic", pixel) +
-                                        film.rgb("specular", pixel));
+            film.set_rgb("", pixel,
+                         film.rgb("direct", pixel) + film.rgb("caustic", pixel) +
+                             film.rgb("specular", pixel));
     }
 
     const Scene& scene_;
@@ -251,8 +254,7 @@ private:
 
 }  // namespace
 
-Rendering render(const Scene& scene, const CausticEstimator& estimator,
-                 const RunOptions& options) {
+Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options) {
     return EyePass(scene, estimator, options).run();
 }
 

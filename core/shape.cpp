@@ -68,7 +68,8 @@ AreaSampler::Sample sample_triangle(const TriangleMesh& mesh, std::size_t index,
     const auto& [a, b, c] = mesh.triangles[index];
     const float root = std::sqrt(u0);
     const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-    return {(1 - root) * p + root * (1 - u1) * q + root * u1 * r, (q - p).cross(r - p).normalized()};
+    return {(1 - root) * p + root * (1 - u1) * q + root * u1 * r,
+            (q - p).cross(r - p).normalized()};
 }
 
 }  // namespace

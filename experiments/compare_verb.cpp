@@ -54,10 +54,9 @@ int compare(const CompareOptions& options) {
         picture.has_layer("caustic") && reference.has_layer("caustic") ? "caustic" : "";
     const PixelMask reached = reached_pixels(picture, reference);
     const nlohmann::json whole = to_json(measure(picture, reference, layer, reached));
-    const PixelMask mask =
-        options.mask.empty()
-            ? bright_pixels(reference, layer, reached)
-            : intersection(reached, mask_from(options.mask, reference));
+    const PixelMask mask = options.mask.empty()
+                               ? bright_pixels(reference, layer, reached)
+                               : intersection(reached, mask_from(options.mask, reference));
     const nlohmann::json masked = to_json(measure(picture, reference, layer, mask));
     if (!options.strip.empty()) write_png(strip(picture, reference, layer), options.strip);
 
@@ -73,15 +72,15 @@ int compare(const CompareOptions& options) {
         write_stdout(all.dump(2) + "\n");
         return 0;
     }
-    std::string text = fmt::format(
-        "layer {}{}\nunreached pixels left out: {} of all\n", name,
-        layer.empty() ? " (RGB, because not both files have a layer \"caustic\")" : "",
-        shortest(unreached));
+    std::string text =
+        fmt::format("layer {}{}\nunreached pixels left out: {} of all\n", name,
+                    layer.empty() ? " (RGB, because not both files have a layer \"caustic\")" : "",
+                    shortest(unreached));
     append_text(text, "all pixels", whole);
-    append_text(text,
-                options.mask.empty() ? "pixels whose reference is at least its mean"
-                                     : "pixels of the mask",
-                masked);
+    append_text(
+        text,
+        options.mask.empty() ? "pixels whose reference is at least its mean" : "pixels of the mask",
+        masked);
     text += metric_formulas;
     write_stdout(text);
     return 0;
@@ -91,8 +90,7 @@ int compare(const CompareOptions& options) {
 
 Verb add_compare(CLI::App& app) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* const verb =
-        app.add_subcommand("compare", "Errors of a picture against a reference");
+    CLI::App* const verb = app.add_subcommand("compare", "Errors of a picture against a reference");
     verb->add_option("PICTURE", options->picture, "EXR to judge")->required();
     verb->add_option("REFERENCE", options->reference, "EXR to judge it by")->required();
     verb->add_flag("--json", options->json, "Print JSON");
@@ -100,13 +98,13 @@ Verb add_compare(CLI::App& app) {
                      "EXR whose pixels other than 0 are judged apart (default: pixels whose "
                      "reference is at least its mean)")
         ->type_name("FILE");
-    verb->add_option("--strip", options->strip,
-                     "PNG to write: reference | picture | signed error")
+    verb->add_option("--strip", options->strip, "PNG to write: reference | picture | signed error")
         ->type_name("FILE");
-    verb->footer("Judges the layer \"caustic\", or RGB when not both files have it, leaving out "
-                 "unreached pixels.\n" +
-                 std::string(metric_formulas) +
-                 "Example:\n  causticbench compare photonmap.exr lighttrace.exr --strip strip.png");
+    verb->footer(
+        "Judges the layer \"caustic\", or RGB when not both files have it, leaving out "
+        "unreached pixels.\n" +
+        std::string(metric_formulas) +
+        "Example:\n  causticbench compare photonmap.exr lighttrace.exr --strip strip.png");
     return {verb, [options] { return compare(*options); }};
 }
 

@@ -65,8 +65,8 @@ void check_header(const std::string& file, const std::vector<std::string>& heade
             throw InputError(fmt::format("{}: unknown column \"{}\" (known: {}, {})", file,
                                          header[i], fmt::join(required, ", "),
                                          fmt::join(optional, ", ")));
-        if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i),
-                      header[i]) != header.begin() + static_cast<std::ptrdiff_t>(i))
+        if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i), header[i]) !=
+            header.begin() + static_cast<std::ptrdiff_t>(i))
             throw InputError(fmt::format("{}: column \"{}\" stands twice", file, header[i]));
     }
     for (const std::string& name : required)
@@ -115,8 +115,8 @@ NumberTable read_numbers(const std::filesystem::path& file,
     NumberTable table;
     std::string line;
     if (!std::getline(in, line) || trimmed(line).empty())
-        throw InputError(fmt::format("{}: empty, a header is needed ({})", name,
-                                     fmt::join(required, ",")));
+        throw InputError(
+            fmt::format("{}: empty, a header is needed ({})", name, fmt::join(required, ",")));
     table.header = split(line);
     check_header(name, table.header, required, optional);
     while (std::getline(in, line)) {

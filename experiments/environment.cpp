@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
+#include <CLI/CLI.hpp>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -41,8 +41,8 @@ std::string read_whole_file(const std::filesystem::path& file) {
 }
 
 void write_stdout(const std::string& text) {
-    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
-                         std::fflush(stdout) == 0;
+    const bool written =
+        std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
     if (!written) throw InputError("standard output: cannot be written");
 }
 

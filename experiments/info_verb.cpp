@@ -30,7 +30,9 @@ std::string shape_line(const Shape& shape) {
     const bool caster = is_caster(shape.bsdf);
     const bool receiver = is_receiver(shape.bsdf);
     return fmt::format("  {:<16} {:<28} {}{}\n", shape.name, kind,
-                       caster && receiver ? "caster and receiver" : caster ? "caster" : "receiver",
+                       caster && receiver ? "caster and receiver"
+                       : caster           ? "caster"
+                                          : "receiver",
                        shape.radiance ? ", area light" : "");
 }
 
@@ -55,17 +57,17 @@ struct LightLine {
     }
 };
 
-std::string describe_scene(const SceneOptions& options, const SceneFile& file,
-                           const Scene& scene) {
+std::string describe_scene(const SceneOptions& options, const SceneFile& file, const Scene& scene) {
     std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
     for (const auto& [name, hash] : file.assets)
         text += fmt::format("asset    {} ({})\n", name, hash);
     text += fmt::format("diameter {:.6g} m\n", scene.diameter());
     const PixelSampling& sampling = scene.sampling();
-    text += fmt::format(
-        "film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
-        scene.camera().height, sampling.sample_count,
-        !sampling.stratified ? "independent" : sampling.jitter ? "stratified" : "regular");
+    text += fmt::format("film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
+                        scene.camera().height, sampling.sample_count,
+                        !sampling.stratified ? "independent"
+                        : sampling.jitter    ? "stratified"
+                                             : "regular");
     text += "shapes\n";
     for (const Shape& shape : scene.shapes()) text += shape_line(shape);
     text += "lights\n";

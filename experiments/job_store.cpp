@@ -25,8 +25,7 @@ fs::path temporary_name(const fs::path& folder, const std::string& id, const cha
 bool belongs_to_other_process(const std::string& name) {
     const std::string digits = name.substr(name.rfind('-') + 1);
     pid_t process = 0;
-    const auto result =
-        std::from_chars(digits.data(), digits.data() + digits.size(), process);
+    const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), process);
     if (result.ec != std::errc() || process <= 0 || process == getpid()) return false;
     return kill(process, 0) == 0 || errno == EPERM;
 }
@@ -37,8 +36,7 @@ JobStore::JobStore(const fs::path& folder) : trials_(folder / "trials") {
     std::error_code error;
     fs::create_directories(trials_, error);
     if (error)
-        throw InputError(
-            fmt::format("{}: cannot be made ({})", trials_.string(), error.message()));
+        throw InputError(fmt::format("{}: cannot be made ({})", trials_.string(), error.message()));
     remove_leftovers();
 }
 
@@ -54,10 +52,9 @@ std::optional<nlohmann::json> JobStore::record(const std::string& id) const {
     const fs::path file = trials_ / id / "record.json";
     if (!fs::exists(file)) return {};
     nlohmann::json record = nlohmann::json::parse(read_whole_file(file), nullptr, false);
-    if (!record.is_object() || record.value("trial", "") != id ||
-        !record.contains("status"))
-        throw InputError(fmt::format("{}: broken record (remove the trial's folder to run it again)",
-                                     file.string()));
+    if (!record.is_object() || record.value("trial", "") != id || !record.contains("status"))
+        throw InputError(fmt::format(
+            "{}: broken record (remove the trial's folder to run it again)", file.string()));
     return record;
 }
 

@@ -72,12 +72,14 @@ int run_verb(const std::vector<Verb>& verbs) {
 }
 
 int parse_and_run(int argc, char** argv) {
-    CLI::App app("Caustics by photon maps and their rivals: pictures, probes, sweeps with errors "
-                 "against references.",
-                 "causticbench");
+    CLI::App app(
+        "Caustics by photon maps and their rivals: pictures, probes, sweeps with errors "
+        "against references.",
+        "causticbench");
     app.set_version_flag("--version", "causticbench " + code_version());
-    app.footer("Exit codes: 0 done, 1 some trials failed, 2 bad input or usage, 3 the method cannot "
-               "serve the scene, 130 interrupted.\nExample:\n  causticbench VERB --help");
+    app.footer(
+        "Exit codes: 0 done, 1 some trials failed, 2 bad input or usage, 3 the method cannot "
+        "serve the scene, 130 interrupted.\nExample:\n  causticbench VERB --help");
     const std::vector<Verb> verbs = {add_render(app), add_probe(app), add_sweep(app),
                                      add_compare(app), add_info(app)};
     require_known_words(app, verbs, std::vector<std::string>(argv + 1, argv + argc));

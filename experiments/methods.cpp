@@ -30,12 +30,9 @@ json describe_params(const LightTraceParams& p) {
 
 json describe_params(const PhotonMapParams& p) {
     const bool unbiased = p.estimator == PhotonMapParams::Estimator::unbiased;
-    json all = {{"nearest", p.nearest},
-                {"estimator", unbiased ? "unbiased" : "raw"},
-                {"max_bounces", p.max_bounces},
-                {"emission", "random"},
-                {"interaction", "roulette"},
-                {"tree", "balanced"}};
+    json all = {{"nearest", p.nearest},         {"estimator", unbiased ? "unbiased" : "raw"},
+                {"max_bounces", p.max_bounces}, {"emission", "random"},
+                {"interaction", "roulette"},    {"tree", "balanced"}};
     if (p.photons > 0) all["photons"] = p.photons;
     if (p.emitted > 0) all["emitted"] = p.emitted;
     if (p.max_radius > 0) all["max_radius"] = p.max_radius;
@@ -83,8 +80,8 @@ const std::vector<std::string>& method_names() {
 Method parse_method(const std::string& name, const JsonNode& params) {
     for (const Entry& entry : entries)
         if (name == entry.name) return {name, entry.read(params)};
-    throw InputError(fmt::format("unknown method \"{}\" (known: {})", name,
-                                 fmt::join(method_names(), ", ")));
+    throw InputError(
+        fmt::format("unknown method \"{}\" (known: {})", name, fmt::join(method_names(), ", ")));
 }
 
 JsonNode parameters_node(const std::vector<std::string>& assignments) {
@@ -92,12 +89,10 @@ JsonNode parameters_node(const std::vector<std::string>& assignments) {
     for (const std::string& assignment : assignments) {
         const std::size_t equals = assignment.find('=');
         if (equals == std::string::npos || equals == 0)
-            throw InputError(
-                fmt::format("--param \"{}\": expected key=value", assignment));
+            throw InputError(fmt::format("--param \"{}\": expected key=value", assignment));
         const std::string key = assignment.substr(0, equals);
         const std::string text = assignment.substr(equals + 1);
-        if (object.contains(key))
-            throw InputError(fmt::format("--param \"{}\": given twice", key));
+        if (object.contains(key)) throw InputError(fmt::format("--param \"{}\": given twice", key));
         json value = json::parse(text, nullptr, false);
         object[key] = value.is_discarded() ? json(text) : std::move(value);
     }

@@ -46,8 +46,8 @@ std::optional<SurfacePoint> receiver_along(const Scene& scene, Ray ray, const Ve
             found.distance = (found.position - target).norm();
             return found;
         }
-        ray.origin = offset_origin({hit->position, hit->geometric_normal, hit->offset},
-                                   ray.direction);
+        ray.origin =
+            offset_origin({hit->position, hit->geometric_normal, hit->offset}, ray.direction);
         ray.max_distance -= hit->distance;
         if (!(ray.max_distance > 0)) return {};
     }
@@ -64,8 +64,7 @@ std::optional<SurfacePoint> find_receiver(const Scene& scene, const ProbePoint& 
             for (const float sign : {1.0F, -1.0F}) {
                 const Vec3 direction = sign * line;
                 const Ray ray{point.position - tolerance * direction, direction, 2 * tolerance};
-                const std::optional<SurfacePoint> hit =
-                    receiver_along(scene, ray, point.position);
+                const std::optional<SurfacePoint> hit = receiver_along(scene, ray, point.position);
                 if (hit && (!nearest || hit->distance < nearest->distance)) nearest = hit;
             }
         return nearest;
@@ -145,7 +144,8 @@ void require_finite(const ProbeList& list, const std::vector<Estimate>& answers)
 ProbeList read_probe_list(const std::filesystem::path& file) {
     ProbeList list;
     list.file = file;
-    list.table = read_numbers(file, {"x", "y", "z", "nx", "ny", "nz"}, {"wx", "wy", "wz", "radius"});
+    list.table =
+        read_numbers(file, {"x", "y", "z", "nx", "ny", "nz"}, {"wx", "wy", "wz", "radius"});
     const NumberTable& table = list.table;
     const std::size_t none = table.header.size();
     const std::array<bool, 3> viewer = {table.column("wx") != none, table.column("wy") != none,
@@ -182,8 +182,8 @@ ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& li
 
     ProbeAnswers answers;
     answers.has_standard_errors = built->is_statistical();
-    answers.irradiance = ask(*built, &CausticEstimator::irradiance, asked, batch,
-                             list.points.size(), threads);
+    answers.irradiance =
+        ask(*built, &CausticEstimator::irradiance, asked, batch, list.points.size(), threads);
     require_finite(list, answers.irradiance);
     if (!list.has_viewer) return answers;
     answers.radiance =
@@ -194,8 +194,8 @@ ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& li
 
 std::string probe_table(const ProbeList& list, const ProbeAnswers& answers) {
     const bool errors = answers.has_standard_errors;
-    std::string text = fmt::format("{},irradiance_r,irradiance_g,irradiance_b",
-                                   fmt::join(list.table.header, ","));
+    std::string text =
+        fmt::format("{},irradiance_r,irradiance_g,irradiance_b", fmt::join(list.table.header, ","));
     if (list.has_viewer) text += ",radiance_r,radiance_g,radiance_b";
     if (errors) text += ",stderr_r,stderr_g,stderr_b";
     if (errors && list.has_viewer) text += ",stderr_radiance_r,stderr_radiance_g,stderr_radiance_b";

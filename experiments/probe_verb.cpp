@@ -26,8 +26,7 @@ int probe_points(const ProbeOptions& options) {
     const Method method = options.method.parse();
     const ProbeList list = read_probe_list(options.points);
     const Scene scene(file.desc);
-    const std::string table =
-        probe_table(list, probe(scene, method, list, options.run.options(1)));
+    const std::string table = probe_table(list, probe(scene, method, list, options.run.options(1)));
     if (options.output.empty())
         write_stdout(table);
     else

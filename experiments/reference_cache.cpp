@@ -35,14 +35,11 @@ Film reference_film(const Film& rendered) {
 }  // namespace
 
 std::string reference_key(const RunRequest& request, const SceneFile& scene) {
-    const nlohmann::json configuration = {{"reference_version", reference_version},
-                                          {"scene", scene.hash},
-                                          {"method", request.method.name},
-                                          {"parameters", describe(request.method)},
-                                          {"spp", request.samples_per_pixel},
-                                          {"seed", request.seed},
-                                          {"width", scene.desc.camera.width},
-                                          {"height", scene.desc.camera.height}};
+    const nlohmann::json configuration = {
+        {"reference_version", reference_version}, {"scene", scene.hash},
+        {"method", request.method.name},          {"parameters", describe(request.method)},
+        {"spp", request.samples_per_pixel},       {"seed", request.seed},
+        {"width", scene.desc.camera.width},       {"height", scene.desc.camera.height}};
     return hex(fnv1a(configuration.dump()));
 }
 
@@ -62,8 +59,8 @@ bool ReferenceCache::must_render(const ReferenceRequest& request) const {
 void ReferenceCache::make(const ReferenceRequest& request, const RunOptions& options) const {
     const SceneFile file = load_scene(request.request.scene_file, request.request.overrides);
     if (reference_key(request.request, file) != request.key)
-        throw InputError(fmt::format("{}: changed while the sweep runs",
-                                     request.request.scene_file.string()));
+        throw InputError(
+            fmt::format("{}: changed while the sweep runs", request.request.scene_file.string()));
     const Scene scene(file.desc);
     Stopwatch stopwatch;
     const RunResult result = run(scene, request.request, options, stopwatch);
@@ -91,9 +88,10 @@ std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& req
     auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), 0, {}});
     for (const char* layer : {"", "caustic"})
         if (!reference->film.has_layer(layer))
-            throw InputError(fmt::format("{}: not a reference: no layer \"{}\" (remake it with "
-                                         "--references rebuild)",
-                                         file.string(), layer));
+            throw InputError(
+                fmt::format("{}: not a reference: no layer \"{}\" (remake it with "
+                            "--references rebuild)",
+                            file.string(), layer));
     const PixelMask reached = reached_pixels(reference->film, reference->film);
     reference->mean = mean(reference->film, "caustic", reached);
     reference->standard_error = relative_standard_error(reference->film, reached);

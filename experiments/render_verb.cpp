@@ -29,9 +29,8 @@ void check_outputs(const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
         const std::string ending = std::filesystem::path(output).extension().string();
         if (ending != ".exr" && ending != ".png")
-            throw InputError(
-                fmt::format("-o {}: unknown kind of picture \"{}\" (known: .exr, .png)", output,
-                            ending));
+            throw InputError(fmt::format(
+                "-o {}: unknown kind of picture \"{}\" (known: .exr, .png)", output, ending));
         require_writable_place(output);
     }
 }
@@ -40,15 +39,13 @@ int render_picture(const RenderOptions& options) {
     check_outputs(options.outputs);
     const SceneFile file = options.scene.load();
     const RunRequest request{options.scene.file, options.scene.overrides(), options.method.parse(),
-                             options.run.seed,
-                             samples_per_pixel(file.desc.sampling, options.spp)};
+                             options.run.seed, samples_per_pixel(file.desc.sampling, options.spp)};
     const Scene scene(file.desc);
     Stopwatch stopwatch;
     RunResult result =
         run(scene, request, options.run.options(request.samples_per_pixel), stopwatch);
 
-    for (const auto& layer : {"", "caustic"})
-        require_finite(result.film, layer, "the picture");
+    for (const auto& layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
     const double exposure = options.exposure.value_or(auto_exposure(result.film, ""));
     result.film.metadata = picture_metadata(request, file);
     result.film.metadata["tone_mapping"] = tone_mapping_rule;
@@ -58,7 +55,8 @@ int render_picture(const RenderOptions& options) {
             write_exr(result.film, output);
         else
             write_png(tone_map(result.film, "", exposure), output);
-        fmt::print(stderr, "{}: {}x{} pixels, {} samples a pixel, exposure {:.2f} stops, {:.1f} s\n",
+        fmt::print(stderr,
+                   "{}: {}x{} pixels, {} samples a pixel, exposure {:.2f} stops, {:.1f} s\n",
                    output, result.film.width(), result.film.height(), request.samples_per_pixel,
                    exposure, stopwatch.total().wall);
     }

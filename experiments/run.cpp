@@ -26,9 +26,9 @@ std::string command(const RunRequest& request) {
         line += " --set " + shell_word(pointer + "=" + value);
     const nlohmann::json parameters = describe(request.method);
     for (const auto& [key, value] : parameters.items())
-        line += " --param " +
-                shell_word(key + "=" +
-                           (value.is_string() ? value.get<std::string>() : value.dump()));
+        line +=
+            " --param " +
+            shell_word(key + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
     return line + fmt::format(" --spp {} --seed {}", request.samples_per_pixel, request.seed);
 }
 

@@ -15,9 +15,9 @@ Seconds operator-(const Seconds& a, const Seconds& b) { return {a.wall - b.wall,
 Seconds Stopwatch::now() {
     timespec cpu{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-    const std::chrono::duration<double> wall =
-        std::chrono::steady_clock::now().time_since_epoch();
-    return {wall.count(), static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec)};
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now().time_since_epoch();
+    return {wall.count(),
+            static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec)};
 }
 
 Stopwatch::Stopwatch() : start_(now()), begun_(start_) {}

@@ -1,7 +1,7 @@
 #include "experiments/sweep_file.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "core/error.h"
 #include "experiments/record.h"
@@ -88,9 +88,9 @@ SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
     SweepFile::Reference reference;
     const std::string name = method_names()[node.at("method").as_choice(method_names())];
     const std::optional<JsonNode> params = node.find("param");
-    reference.method = parse_method(
-        name, JsonNode::parse_text(params ? params->canonical() : "{}",
-                                   params ? params->place() : node.place()));
+    reference.method =
+        parse_method(name, JsonNode::parse_text(params ? params->canonical() : "{}",
+                                                params ? params->place() : node.place()));
     if (params) params->others();
     reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp));
     reference.seed = static_cast<std::uint64_t>(integer(node, "seed", 0, 1));

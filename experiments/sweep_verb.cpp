@@ -57,7 +57,8 @@ Verb add_sweep(CLI::App& app) {
                      "Threads of a trial (default: as the sweep file says, or 1)")
         ->check(CLI::Range(1, 4096));
     verb->footer(
-        "Trials that are done are skipped, those that failed run again. Writes DIR/records.csv (one "
+        "Trials that are done are skipped, those that failed run again. Writes DIR/records.csv "
+        "(one "
         "row a trial),\nDIR/trials/ID/{record.json,image.exr,log.txt}, DIR/report/figures/ID.png "
         "(reference | picture | signed error),\nDIR/environment.json. parse_s, precompute_s, "
         "balance_s and render_s follow each other and add up to total_s.\n"

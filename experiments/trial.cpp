@@ -13,9 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-json seconds_json(const Seconds& seconds) {
-    return {{"wall", seconds.wall}, {"cpu", seconds.cpu}};
-}
+json seconds_json(const Seconds& seconds) { return {{"wall", seconds.wall}, {"cpu", seconds.cpu}}; }
 
 bool starts_with(const std::string& text, const std::string& start) {
     return text.compare(0, start.size(), start) == 0;
@@ -89,8 +87,8 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     stopwatch.begin("parse");
     const SceneFile file = load_scene(trial.request.scene_file, trial.request.overrides);
     if (file.hash != trial.scene_hash)
-        throw InputError(fmt::format("{}: changed while the sweep runs",
-                                     trial.request.scene_file.string()));
+        throw InputError(
+            fmt::format("{}: changed while the sweep runs", trial.request.scene_file.string()));
     const Scene scene(file.desc);
     record_scene(record, file, scene);
     log("precompute and render");

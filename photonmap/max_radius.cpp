@@ -16,8 +16,7 @@ double middle_extent(std::span<const Photon> photons, int axis) {
         values.push_back(photons[i].position[axis]);
     std::ranges::sort(values);
     const std::size_t cut = values.size() / 100;
-    return static_cast<double>(values[values.size() - 1 - cut]) -
-           static_cast<double>(values[cut]);
+    return static_cast<double>(values[values.size() - 1 - cut]) - static_cast<double>(values[cut]);
 }
 
 double projected_area(const Vec3d& sides) {

@@ -10,8 +10,8 @@ namespace caustics {
 
 /// The 20-byte photon of [J96, section 2].
 struct Photon {
-    float position[3];  ///< world frame [m]
-    Rgbe energy;        ///< flux in the map's unit (see TracedPhotons)
+    float position[3];   ///< world frame [m]
+    Rgbe energy;         ///< flux in the map's unit (see TracedPhotons)
     std::uint8_t theta;  ///< direction code of wi, from the surface to where the photon came from
     std::uint8_t phi;
     std::uint16_t flags;  ///< low two bits: axis of the splitting plane; the rest is kd_tree's

@@ -90,8 +90,9 @@ void check(const PhotonMapParams& params) {
         throw InputError("photonmap: give either photons or emitted");
     const bool unbiased = params.estimator == PhotonMapParams::Estimator::unbiased;
     if (params.nearest < (unbiased ? 2 : 1))
-        throw InputError("photonmap: nearest must be at least 1, and 2 with the estimator "
-                         "\"unbiased\", which leaves the outermost photon out");
+        throw InputError(
+            "photonmap: nearest must be at least 1, and 2 with the estimator "
+            "\"unbiased\", which leaves the outermost photon out");
     if (!(params.max_radius >= 0)) throw InputError("photonmap: max_radius must be positive");
 }
 

@@ -47,8 +47,9 @@ void read_estimate(const JsonNode& node, PhotonMapParams& params) {
     if (const auto nearest = node.find("nearest")) {
         params.nearest = static_cast<int>(nearest->as_integer_in(1, most_nearest));
         if (params.nearest < 2 && params.estimator == Estimator::unbiased)
-            nearest->fail("must be at least 2 with the estimator \"unbiased\", which leaves the "
-                          "outermost photon out (or choose \"raw\")");
+            nearest->fail(
+                "must be at least 2 with the estimator \"unbiased\", which leaves the "
+                "outermost photon out (or choose \"raw\")");
     }
     if (const auto max_radius = node.find("max_radius")) {
         params.max_radius = max_radius->as_number();

@@ -28,8 +28,8 @@ struct Chunk {
 [[noreturn]] void fail_not_finite(std::uint64_t path, const Deposit& deposit) {
     std::ostringstream message;
     message << "photonmap: path " << path << " ends with a photon that is not finite: position "
-            << deposit.position.transpose() << ", direction " << deposit.wi.transpose()
-            << ", flux " << deposit.flux.transpose();
+            << deposit.position.transpose() << ", direction " << deposit.wi.transpose() << ", flux "
+            << deposit.flux.transpose();
     throw std::runtime_error(message.str());
 }
 
@@ -50,11 +50,8 @@ Photon make_photon(std::uint64_t path, const Deposit& deposit, const Spectrum& e
         fail_not_finite(path, deposit);
     const DirectionCode wi = encode_direction(deposit.wi);
     const Vec3& x = deposit.position;
-    return {{x.x(), x.y(), x.z()},
-            encode_rgbe(deposit.flux * energy_per_flux),
-            wi.theta,
-            wi.phi,
-            0};
+    return {
+        {x.x(), x.y(), x.z()}, encode_rgbe(deposit.flux * energy_per_flux), wi.theta, wi.phi, 0};
 }
 
 class PhotonTracing {
@@ -88,8 +85,7 @@ private:
         const auto threads = static_cast<std::uint64_t>(std::max(1, options_.threads));
         std::vector<Chunk> chunks(threads * chunks_per_thread);
         const auto first_path = [&](std::size_t chunk) {
-            return counts_.emitted +
-                   std::min(chunk * chunk_paths, last_path_ - counts_.emitted);
+            return counts_.emitted + std::min(chunk * chunk_paths, last_path_ - counts_.emitted);
         };
         const std::uint64_t round_end = first_path(chunks.size());
         std::vector<std::uint64_t> starts(chunks.size() + 1, round_end);

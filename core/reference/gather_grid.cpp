@@ -16,8 +16,7 @@ GatherGrid::GatherGrid(std::span<const ReceiverPoint> points, std::span<const fl
         const Cell high = cell_of(points[i].position + half);
         for (int x = low.x(); x <= high.x(); ++x)
             for (int y = low.y(); y <= high.y(); ++y)
-                for (int z = low.z(); z <= high.z(); ++z)
-                    cells_[key(Cell(x, y, z))].push_back(i);
+                for (int z = low.z(); z <= high.z(); ++z) cells_[key(Cell(x, y, z))].push_back(i);
     }
 }
 

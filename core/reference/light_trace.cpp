@@ -144,9 +144,9 @@ private:
         const double cos3 = seen->cos_theta * seen->cos_theta * seen->cos_theta;
         const double weight = static_cast<double>(cosine) /
                               (seen->distance * seen->distance * cos3 * camera.pixel_area());
-        const auto pixel = static_cast<std::size_t>(seen->y) *
-                               static_cast<std::size_t>(camera.width) +
-                           static_cast<std::size_t>(seen->x);
+        const auto pixel =
+            static_cast<std::size_t>(seen->y) * static_cast<std::size_t>(camera.width) +
+            static_cast<std::size_t>(seen->x);
         return Arrival{pixel, d.flux * scattering * static_cast<float>(weight)};
     }
 

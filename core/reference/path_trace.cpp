@@ -60,10 +60,10 @@ private:
 // differ by the cosines about the shading and the geometric normal (Veach 1997, sec. 5.3).
 float flux_correction(const SurfacePoint& p, const Vec3& towards_receiver,
                       const Vec3& towards_light) {
-    const float numerator = p.shading_normal.dot(towards_receiver) *
-                            p.geometric_normal.dot(towards_light);
-    const float denominator = p.shading_normal.dot(towards_light) *
-                              p.geometric_normal.dot(towards_receiver);
+    const float numerator =
+        p.shading_normal.dot(towards_receiver) * p.geometric_normal.dot(towards_light);
+    const float denominator =
+        p.shading_normal.dot(towards_light) * p.geometric_normal.dot(towards_receiver);
     return denominator == 0 ? 0 : std::abs(numerator / denominator);
 }
 
@@ -78,9 +78,8 @@ Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, Rng& rng) 
         if (!hit) return result;
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
         const Vec3 w = -ray.direction;
-        weight *= segment_transmittance(start_absorption,
-                                        medium_absorption(bsdf, hit->geometric_normal, w),
-                                        hit->distance);
+        weight *= segment_transmittance(
+            start_absorption, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
         const AreaLight* light = scene.area_light(hit->shape);
         if (light != nullptr && bounces > 0 && hit->geometric_normal.dot(w) > 0)
             result += weight * light->radiance;
@@ -113,8 +112,8 @@ public:
         : scene_(scene),
           seed_(options.seed),
           max_bounces_(params.max_bounces),
-          paths_per_point_(std::max(1, (params.spp + options.samples_per_pixel - 1) /
-                                           options.samples_per_pixel)) {
+          paths_per_point_(std::max(
+              1, (params.spp + options.samples_per_pixel - 1) / options.samples_per_pixel)) {
         for (const std::uint32_t index : scene.casters())
             caster_bounds_.push_back(bounding_sphere(scene.shapes()[index]));
     }

@@ -15,19 +15,20 @@ namespace {
 // every light, over a floor.
 SceneDesc crowded() {
     SceneDesc desc;
-    desc.shapes = {
-        support::horizontal("floor", 0, 4, true, support::diffuse(0.5F)),
-        support::sphere("near", {0.2, 0.1, 2}, 0.5, support::glass(1.5F)),
-        support::sphere("far", {0.4, -0.2, 1}, 0.6, support::glass(1.33F)),
-        support::rectangle("mirror", {-0.9, 0.2, 1.4}, {0, 0.8, 0}, {0, 0, 0.8},
-                           support::mirror(0.8F)),
-        // Faces down and aside.
-        support::rectangle("light", {0.6, 0.4, 3.4}, {0, 0.4, 0}, {0.4, 0, 0.1},
-                           support::diffuse(0))};
+    desc.shapes = {support::horizontal("floor", 0, 4, true, support::diffuse(0.5F)),
+                   support::sphere("near", {0.2, 0.1, 2}, 0.5, support::glass(1.5F)),
+                   support::sphere("far", {0.4, -0.2, 1}, 0.6, support::glass(1.33F)),
+                   support::rectangle("mirror", {-0.9, 0.2, 1.4}, {0, 0.8, 0}, {0, 0, 0.8},
+                                      support::mirror(0.8F)),
+                   // Faces down and aside.
+                   support::rectangle("light", {0.6, 0.4, 3.4}, {0, 0.4, 0}, {0.4, 0, 0.1},
+                                      support::diffuse(0))};
     return desc;
 }
 
-void shine(Shape& shape, float radiance) { shape.radiance = Spectrum(Spectrum::Constant(radiance)); }
+void shine(Shape& shape, float radiance) {
+    shape.radiance = Spectrum(Spectrum::Constant(radiance));
+}
 
 // The floor in 6 x 6 cells.
 int floor_cell(const Deposit& d) {
@@ -108,9 +109,9 @@ TEST(AimedEmission, LightsAddUpAndPhotonsAreEqual) {
     sum.mean.assign(36, 0);
     sum.standard_error.assign(36, 0);
     for (std::size_t light = 0; light < 3; ++light) {
-        const auto one = support::arrived_flux(
-            scene, support::unaimed(scene, scene.lights()[light]), 1'500'000, 36, floor_cell,
-            5 + light);
+        const auto one =
+            support::arrived_flux(scene, support::unaimed(scene, scene.lights()[light]), 1'500'000,
+                                  36, floor_cell, 5 + light);
         for (std::size_t i = 0; i < 36; ++i) {
             sum.mean[i] += one.mean[i];
             sum.standard_error[i] = std::hypot(sum.standard_error[i], one.standard_error[i]);
@@ -157,8 +158,7 @@ TEST(AimedEmission, AtSmallBallsFarAway) {
         const AimedEmission emission(scene);
         const auto flux = support::flux_by_shape(scene, support::aimed(emission), 20'000, 7);
         const double expected = 2 * pi_d * sine * sine / (1 + std::sqrt(1 - sine * sine));
-        EXPECT_NEAR(flux.mean[0] / expected, 1,
-                    5e-4 + 4 * flux.standard_error[0] / expected)
+        EXPECT_NEAR(flux.mean[0] / expected, 1, 5e-4 + 4 * flux.standard_error[0] / expected)
             << "r / d = " << sine;
     }
 }

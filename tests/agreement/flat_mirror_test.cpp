@@ -41,8 +41,8 @@ double from_square(const Vec3d& p) {
     double sum = 0;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
-            const Vec3d s = light_position + half_light * Vec3d((2 * i + 1.0) / n - 1, 0,
-                                                                (2 * j + 1.0) / n - 1);
+            const Vec3d s = light_position +
+                            half_light * Vec3d((2 * i + 1.0) / n - 1, 0, (2 * j + 1.0) / n - 1);
             const Vec3d to_image = image_of(s) - p;
             if (through_mirror(p, image_of(s)))
                 sum += to_image.z() * to_image.y() / std::pow(to_image.squaredNorm(), 2);
@@ -54,9 +54,8 @@ enum Shapes : std::size_t { floor_shape, mirror_shape };
 
 SceneDesc mirror_scene(const Bsdf& mirror_bsdf) {
     SceneDesc desc;
-    desc.shapes = {
-        support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)),
-        support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, mirror_bsdf)};
+    desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)),
+                   support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, mirror_bsdf)};
     return desc;
 }
 
@@ -110,8 +109,8 @@ void expect_photon_map_is(const Scene& scene, const Truth& truth) {
 }
 
 template <typename Truth>
-void expect_within_stderr(const CausticEstimator& estimator, const Scene& scene,
-                          const Truth& truth, float radius = 0.1F) {
+void expect_within_stderr(const CausticEstimator& estimator, const Scene& scene, const Truth& truth,
+                          float radius = 0.1F) {
     // Over a disc of 10 cm the irradiance differs from that at its centre by r^2 / 8 times its
     // relative Laplacian (about 3 / m^2): 4e-3, a tenth of a point's standard error.
     const std::vector<ReceiverPoint> points = inside_points(scene, 24, radius);

@@ -28,8 +28,7 @@ double landing_radius(double a) {
 }
 
 double floor_irradiance(double r) {
-    if (r == 0)
-        return intensity * 4 * index / std::pow((index + 1) * (height + depth / index), 2);
+    if (r == 0) return intensity * 4 * index / std::pow((index + 1) * (height + depth / index), 2);
     double low = 0;
     double high = pi_d / 2 - 1e-9;
     for (int i = 0; i < 200; ++i) {
@@ -49,8 +48,7 @@ Scene pool(Shape water) {
     water.bsdf = support::glass(static_cast<float>(index));
     desc.shapes = {support::horizontal("floor", -depth, 12, true, support::diffuse(0.5F)),
                    std::move(water)};
-    desc.point_lights = {
-        support::point_light({0, 0, height}, static_cast<float>(intensity))};
+    desc.point_lights = {support::point_light({0, 0, height}, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 
@@ -107,8 +105,7 @@ void expect_light_trace_is_right(const Scene& scene) {
         for (const Estimate& e :
              support::irradiance(*reference, ring(scene, r, r == 0 ? 1 : 16, radius))) {
             const auto error = static_cast<double>(e.standard_error.mean());
-            const double z =
-                (static_cast<double>(e.value.mean()) - floor_irradiance(r)) / error;
+            const double z = (static_cast<double>(e.value.mean()) - floor_irradiance(r)) / error;
             EXPECT_LT(std::abs(z), support::sidak_bound(radii.size() * 16)) << "r = " << r;
             found.add(static_cast<double>(e.value.mean()));
         }

@@ -25,8 +25,7 @@ constexpr int max_bounces = 200;
 
 Scene room_with(std::vector<Shape> bodies) {
     SceneDesc desc;
-    desc.shapes =
-        support::emitting_room(half_room, wall_radiance, support::diffuse(reflectance));
+    desc.shapes = support::emitting_room(half_room, wall_radiance, support::diffuse(reflectance));
     for (Shape& body : bodies) desc.shapes.push_back(std::move(body));
     return Scene(std::move(desc));
 }
@@ -37,8 +36,8 @@ std::vector<ReceiverPoint> wall_points(const Scene& scene) {
     for (std::size_t wall = 0; wall < 6; ++wall) {
         const Transform& to_world = scene.shapes()[wall].to_world;
         for (const Vec3d& local : {Vec3d(0.1, -0.2, 0), Vec3d(0.7, 0.55, 0)})
-            points.push_back(support::probe(scene, wall, to_world * local,
-                                            to_world.linear().col(2), points.size()));
+            points.push_back(support::probe(scene, wall, to_world * local, to_world.linear().col(2),
+                                            points.size()));
     }
     return points;
 }
@@ -65,8 +64,8 @@ void expect_furnace(const Scene& scene) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const support::Moments direct = direct_irradiance(scene, points[i], samples);
         const double found = direct.mean() + static_cast<double>(caustic[i].value[0]);
-        const double error = std::hypot(direct.standard_error(),
-                                        static_cast<double>(caustic[i].standard_error[0]));
+        const double error =
+            std::hypot(direct.standard_error(), static_cast<double>(caustic[i].standard_error[0]));
         EXPECT_GT(caustic[i].value[0], 0);
         EXPECT_LT(std::abs(found - pi_d) / error, support::sidak_bound(points.size()))
             << "at " << points[i].position.transpose() << ": " << found / pi_d << " of pi L";
@@ -106,8 +105,7 @@ TEST(Furnace, AroundAnExactBall) {
 
 TEST(Furnace, AroundAFlatShadedMeshBall) {
     const TriangleMesh ball = support::flat(tessellate_sphere(8));
-    const Scene scene =
-        room_with({support::mesh("ball", ball, tilted(1.0), support::glass(1.5F))});
+    const Scene scene = room_with({support::mesh("ball", ball, tilted(1.0), support::glass(1.5F))});
     expect_furnace(scene);
     expect_flux_of_surface(scene, support::mesh_area(scene.shapes()[6].mesh));
 }
@@ -127,12 +125,12 @@ TEST(Furnace, AroundAMirrorBall) {
 }
 
 TEST(Furnace, AroundAnAirBubbleInGlassAndASecondBall) {
-    const Scene scene = room_with(
-        {support::sphere("ball", {-0.6, 0, 0}, 1, support::glass(1.5F)),
-         support::sphere("bubble", {-0.5, 0.1, 0}, 0.6, support::glass(1, 1.5F)),
-         support::mesh("other", support::flat(tessellate_sphere(6)),
-                       Eigen::Translation3d(1.1, 0.3, 0.5) * Eigen::Scaling(0.6),
-                       support::glass(1.33F))});
+    const Scene scene =
+        room_with({support::sphere("ball", {-0.6, 0, 0}, 1, support::glass(1.5F)),
+                   support::sphere("bubble", {-0.5, 0.1, 0}, 0.6, support::glass(1, 1.5F)),
+                   support::mesh("other", support::flat(tessellate_sphere(6)),
+                                 Eigen::Translation3d(1.1, 0.3, 0.5) * Eigen::Scaling(0.6),
+                                 support::glass(1.33F))});
     expect_furnace(scene);
 }
 
@@ -152,8 +150,8 @@ TEST(Furnace, RadianceInWaterIsNSquaredTimesThatInAir) {
             const Vec3d outward(std::cos(angle), std::sin(angle), 0);
             const Vec3d across(-std::sin(angle), std::cos(angle), 0);
             // u x v = up x across = -outward.
-            walls.push_back(support::rectangle("wall", outward + Vec3d(0, 0, z),
-                                               {0, 0, 0.5}, across, bsdf));
+            walls.push_back(
+                support::rectangle("wall", outward + Vec3d(0, 0, z), {0, 0, 0.5}, across, bsdf));
         }
         walls.push_back(support::horizontal("cap", 2 * z, 1, wet, bsdf));
         for (Shape& wall : walls) {
@@ -173,14 +171,14 @@ TEST(Furnace, RadianceInWaterIsNSquaredTimesThatInAir) {
         expected.push_back(wall < 5 ? pi_d : pi_d * n * n);
     }
     constexpr int samples = 30'000;
-    const auto reference = build(scene, PathTraceParams{.spp = samples, .max_bounces = max_bounces},
-                                 RunOptions{});
+    const auto reference =
+        build(scene, PathTraceParams{.spp = samples, .max_bounces = max_bounces}, RunOptions{});
     const std::vector<Estimate> caustic = support::irradiance(*reference, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const support::Moments direct = direct_irradiance(scene, points[i], samples);
         const double found = direct.mean() + static_cast<double>(caustic[i].value[0]);
-        const double error = std::hypot(direct.standard_error(),
-                                        static_cast<double>(caustic[i].standard_error[0]));
+        const double error =
+            std::hypot(direct.standard_error(), static_cast<double>(caustic[i].standard_error[0]));
         EXPECT_LT(std::abs(found - expected[i]) / error, support::sidak_bound(points.size()))
             << "wall " << i << ": " << found / expected[i];
         EXPECT_LT(error, 0.01 * expected[i]);

@@ -29,17 +29,14 @@ struct SpotScene {
         const Vec3d middle(0, 0, 1.5);
         const Vec3d normal = ((spot - middle).normalized() + Vec3d::UnitZ()).normalized();
         const Vec3d u = normal.unitOrthogonal();
-        desc.shapes = {
-            support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)),
-            support::rectangle("mirror", middle, 0.15 * u, 0.15 * normal.cross(u),
-                               support::mirror())};
+        desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)),
+                       support::rectangle("mirror", middle, 0.15 * u, 0.15 * normal.cross(u),
+                                          support::mirror())};
         // Far enough that the spot is little larger than the mirror.
         const Vec3d light(0, 0, 12);
         if (area_light) {
-            desc.shapes.push_back(
-                support::horizontal("light", 0, 0.5, false, support::diffuse(0)));
-            desc.shapes.back().to_world =
-                Eigen::Translation3d(light) * desc.shapes.back().to_world;
+            desc.shapes.push_back(support::horizontal("light", 0, 0.5, false, support::diffuse(0)));
+            desc.shapes.back().to_world = Eigen::Translation3d(light) * desc.shapes.back().to_world;
             desc.shapes.back().radiance = Spectrum(Spectrum::Constant(100));
         } else {
             desc.point_lights = {support::point_light(light, 100)};
@@ -63,8 +60,8 @@ Vec2d centroid(const Film& film) {
     double total = 0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         const auto value = static_cast<double>(film.rgb("caustic", i)[1]);
-        sum += value * Vec2d(static_cast<double>(i % width) + 0.5,
-                             static_cast<double>(i / width) + 0.5);
+        sum += value *
+               Vec2d(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
         total += value;
     }
     EXPECT_GT(total, 0);

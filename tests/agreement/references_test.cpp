@@ -84,8 +84,8 @@ TEST(References, AgreeOnAMirrorRing) {
 
 TEST(References, AgreeOnAGlassBall) {
     SceneDesc desc = over_floor(1.2);
-    desc.shapes.push_back(support::sphere(
-        "ball", {0.2, 0.1, 0.9}, 0.6, support::glass(1.5F, 1, Spectrum(0.5F, 0.2F, 0.1F))));
+    desc.shapes.push_back(support::sphere("ball", {0.2, 0.1, 0.9}, 0.6,
+                                          support::glass(1.5F, 1, Spectrum(0.5F, 0.2F, 0.1F))));
     // The camera looks from aside, past the ball, at what it focuses on the floor.
     desc.camera = support::camera({-3, 0.2, 2.5}, {-0.36, 0, 0}, {0, 0, 1}, 7, 6, 6);
     desc.shapes.push_back(square_light({1.5, 0.3, 3}, 0.8, 10));
@@ -125,8 +125,8 @@ TEST(References, AgreeUnderAnExactWavyPool) {
 // to 0.2 rad, and paths from the eye need the correction that particles do without.
 TEST(References, AgreeUnderACoarseSmoothShadedMesh) {
     const Shape exact = wavy(0.05);
-    Shape water = support::mesh("water", tessellate_heightfield(exact.field, 12), exact.to_world,
-                                exact.bsdf);
+    Shape water =
+        support::mesh("water", tessellate_heightfield(exact.field, 12), exact.to_world, exact.bsdf);
     ASSERT_FALSE(water.mesh.normals.empty());
     expect_references_agree(under_water(std::move(water)), 1'500'000, 20'000);
 }
@@ -164,8 +164,7 @@ TEST(References, PathTraceSeesSmallBallsFarAway) {
         const double expected = pi_d * sine * sine;
         // Half of the paths go into the ball's cone: 1/sqrt(n) = 0.32 % a sigma.
         EXPECT_LT(found.standard_error[0], 0.004 * expected) << "r / d = " << sine;
-        EXPECT_NEAR(static_cast<double>(found.value[0]) / expected, 1, 0.013)
-            << "r / d = " << sine;
+        EXPECT_NEAR(static_cast<double>(found.value[0]) / expected, 1, 0.013) << "r / d = " << sine;
     }
 }
 

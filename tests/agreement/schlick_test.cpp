@@ -36,12 +36,11 @@ double integrate(const Vec3& wo, const F& f) {
         // theta = pi t^3 makes the step grow from the axis outwards.
         const double t = (i + 0.5) / rings;
         const double theta = pi_d * t * t * t;
-        const double measure =
-            std::sin(theta) * 3 * pi_d * t * t / rings * 2 * pi_d / sectors;
+        const double measure = std::sin(theta) * 3 * pi_d * t * t / rings * 2 * pi_d / sectors;
         for (int j = 0; j < sectors; ++j) {
             const double phi = 2 * pi_d * (j + 0.5) / sectors;
-            const Vec3d wi = std::cos(theta) * axis +
-                             std::sin(theta) * (std::cos(phi) * u + std::sin(phi) * v);
+            const Vec3d wi =
+                std::cos(theta) * axis + std::sin(theta) * (std::cos(phi) * u + std::sin(phi) * v);
             if (wi.z() > 0) sum += static_cast<double>(f(wi.cast<float>())) * measure;
         }
     }
@@ -92,8 +91,8 @@ TEST(Schlick, DensityIntegratesToTheShareOfSamplesAbove) {
         for (const float v : cosines) {
             const Bsdf bsdf = support::schlick(1, alpha);
             const Vec3 wo = direction(v);
-            const double integral = integrate(
-                wo, [&](const Vec3& wi) { return direction_pdf(bsdf, normal, wo, wi); });
+            const double integral =
+                integrate(wo, [&](const Vec3& wi) { return direction_pdf(bsdf, normal, wo, wi); });
             EXPECT_LE(integral, 1 + 1e-3);
             constexpr int count = 100'000;
             int above = 0;
@@ -125,8 +124,7 @@ double histogram_p_value(const Bsdf& bsdf, const Vec3& wo) {
             const double z = (row + 0.5) / (rows * fine);
             const double phi = 2 * pi_d * (column + 0.5) / (columns * fine);
             const double sine = std::sqrt(1 - z * z);
-            const Vec3 wi =
-                Vec3d(sine * std::cos(phi), sine * std::sin(phi), z).cast<float>();
+            const Vec3 wi = Vec3d(sine * std::cos(phi), sine * std::sin(phi), z).cast<float>();
             const double share = static_cast<double>(direction_pdf(bsdf, normal, wo, wi)) * 2 *
                                  pi_d / (rows * fine) / (columns * fine);
             expected[static_cast<std::size_t>(row / fine * columns + column / fine)] +=

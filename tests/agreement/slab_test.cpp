@@ -91,11 +91,10 @@ TEST(Slab, FluxOnTheFloorIsThatOfTheLight) {
 
 TEST(Slab, ThreeNestedInterfacesConserveEnergy) {
     // Air | glass | water | air, the outer ior of each interface being that of its neighbour.
-    const Scene scene(
-        stack({support::horizontal("air_glass", 0, 2, true, support::glass(1.5F, 1)),
-               support::horizontal("glass_water", -thickness / 2, 2, true,
-                                   support::glass(1.333F, 1.5F)),
-               support::horizontal("water_air", -thickness, 2, false, support::glass(1.333F, 1))}));
+    const Scene scene(stack(
+        {support::horizontal("air_glass", 0, 2, true, support::glass(1.5F, 1)),
+         support::horizontal("glass_water", -thickness / 2, 2, true, support::glass(1.333F, 1.5F)),
+         support::horizontal("water_air", -thickness, 2, false, support::glass(1.333F, 1))}));
     for (const double degrees : {0.0, 40.0, 70.0}) {
         const double c0 = std::cos(degrees * pi_d / 180);
         const double r1 = support::fresnel(c0, 1.5);
@@ -166,8 +165,8 @@ TEST(Ball, BeersLawAlongItsChords) {
         const double h = d * std::sin(t);
         const double r = support::fresnel(std::sqrt(1 - h * h), n);
         const double a = std::exp(-sigma * 2 * std::sqrt(1 - h * h / (n * n)));
-        expected += 2 * pi_d * std::sin(t) * (r + (1 - r) * (1 - r) * a / (1 - r * a)) * last /
-                    steps;
+        expected +=
+            2 * pi_d * std::sin(t) * (r + (1 - r) * (1 - r) * a / (1 - r * a)) * last / steps;
     }
     SceneDesc desc;
     desc.shapes = {support::sphere("ball", Vec3d::Zero(), 1,

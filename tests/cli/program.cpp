@@ -12,9 +12,9 @@ namespace caustics::support {
 
 ProgramResult causticbench(const std::vector<std::string>& arguments) {
     static int runs = 0;
-    const std::string base = std::filesystem::temp_directory_path() /
-                             ("causticbench-" + std::to_string(getpid()) + "-" +
-                              std::to_string(++runs));
+    const std::string base =
+        std::filesystem::temp_directory_path() /
+        ("causticbench-" + std::to_string(getpid()) + "-" + std::to_string(++runs));
     const std::string out = base + ".out";
     const std::string err = base + ".err";
     std::vector<std::string> words = {CAUSTICBENCH};

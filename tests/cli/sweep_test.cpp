@@ -26,9 +26,12 @@ std::vector<std::string> cells(const std::string& line) {
     bool quoted = false;
     all.emplace_back();
     for (const char c : line) {
-        if (c == '"') quoted = !quoted;
-        else if (c == ',' && !quoted) all.emplace_back();
-        else all.back() += c;
+        if (c == '"')
+            quoted = !quoted;
+        else if (c == ',' && !quoted)
+            all.emplace_back();
+        else
+            all.back() += c;
     }
     return all;
 }
@@ -53,11 +56,12 @@ class Sweeps : public testing::Test {
 protected:
     std::string write_sweep(const std::string& methods) {
         const fs::path file = folder_ / "sweep.json";
-        write_whole_file(file, fmt::format(
-            R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [1, 2], "methods": {},
+        write_whole_file(
+            file, fmt::format(
+                      R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [1, 2], "methods": {},
                 "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3, 1.5]}}}},
                 "reference": {{"method": "lighttrace", "param": {{"paths": 20000}}, "spp": 4}}}})",
-            scene, methods));
+                      scene, methods));
         return file;
     }
     ProgramResult sweep(const std::string& file, const std::vector<std::string>& more = {}) {

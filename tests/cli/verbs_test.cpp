@@ -90,9 +90,8 @@ TEST(Probe, KeepsTheRowsAndAddsItsAnswers) {
                      "radius,x,y,z,nx,ny,nz,wx,wy,wz\n"
                      "0.1,0,0,0,0,0,2,0,0,1\n"
                      "0.1,0,0,0,0,0,-1,0,0,-1\n");
-    const ProgramResult result =
-        causticbench({"probe", scene, "--method", "lighttrace", "--param", "paths=20000",
-                      "--points", points});
+    const ProgramResult result = causticbench(
+        {"probe", scene, "--method", "lighttrace", "--param", "paths=20000", "--points", points});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const std::vector<std::string> table = lines(result.out);
     ASSERT_EQ(table.size(), 3U);
@@ -112,8 +111,10 @@ TEST(Compare, FindsAPictureEqualToItself) {
     const support::TemporaryFolder folder;
     const std::string file = folder / "a.exr";
     const std::string strip = folder / "strip.png";
-    ASSERT_EQ(causticbench({"render", scene, "--method", "photonmap", "--param", "photons=2000",
-                            "-o", file}).exit_code, 0);
+    ASSERT_EQ(causticbench(
+                  {"render", scene, "--method", "photonmap", "--param", "photons=2000", "-o", file})
+                  .exit_code,
+              0);
     const ProgramResult result = causticbench({"compare", file, file, "--json", "--strip", strip});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const nlohmann::json json = nlohmann::json::parse(result.out);

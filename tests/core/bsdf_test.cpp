@@ -61,11 +61,11 @@ double sampling_p_value(const Bsdf& bsdf, const Vec3& n, const Vec3& wo, std::ui
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
             const auto azimuth = [](int at) { return (double(at) / columns - 0.5) * 2 * pi_d; };
-            const double share = integrate(
-                edge(row + 1), edge(row), azimuth(column), azimuth(column + 1), 40,
-                [&](const Vec3& local) {
-                    return direction_pdf(bsdf, n, wo, about.to_world(local).normalized());
-                });
+            const double share =
+                integrate(edge(row + 1), edge(row), azimuth(column), azimuth(column + 1), 40,
+                          [&](const Vec3& local) {
+                              return direction_pdf(bsdf, n, wo, about.to_world(local).normalized());
+                          });
             expected[static_cast<std::size_t>(row * columns + column)] = draws * share;
             inside += share;
         }
@@ -97,10 +97,10 @@ TEST(Bsdf, SampledAlbedoOfSchlickAtAlphaOneIsTheClosedForm) {
         for (int i = 0; i < 100'000; ++i) {
             const float u0 = rng.next(), u1 = rng.next(), u2 = rng.next();
             const auto wi = sample_direction(bsdf, Vec3::UnitZ(), wo, u0, u1, u2);
-            moments.add(wi ? static_cast<double>(
-                                 evaluate(bsdf, Vec2::Zero(), Vec3::UnitZ(), wo, *wi)[0] *
-                                 wi->z() / direction_pdf(bsdf, Vec3::UnitZ(), wo, *wi))
-                           : 0.0);
+            moments.add(
+                wi ? static_cast<double>(evaluate(bsdf, Vec2::Zero(), Vec3::UnitZ(), wo, *wi)[0] *
+                                         wi->z() / direction_pdf(bsdf, Vec3::UnitZ(), wo, *wi))
+                   : 0.0);
         }
         EXPECT_NEAR(moments.mean(), 1.25 - 2 * v / 3, 4 * moments.standard_error() + 1e-6) << v;
     }
@@ -132,8 +132,8 @@ TEST(Bsdf, GrazingOppositeDirectionsStayFinite) {
                 const Vec3 across = polar(0, i * 0.1);
                 // Not normalised on purpose: unit to rounding only, as rays are.
                 const Vec3 wo = across + z * Vec3::UnitZ();
-                const Vec3 wi = -across * (1 + static_cast<float>(i % 3 - 1) * 1e-7F) +
-                                z * Vec3::UnitZ();
+                const Vec3 wi =
+                    -across * (1 + static_cast<float>(i % 3 - 1) * 1e-7F) + z * Vec3::UnitZ();
                 EXPECT_TRUE(is_finite(evaluate(bsdf, Vec2::Zero(), Vec3::UnitZ(), wo, wi)));
                 const float pdf = direction_pdf(bsdf, Vec3::UnitZ(), wo, wi);
                 EXPECT_TRUE(std::isfinite(pdf) && pdf >= 0) << z << " " << pdf;

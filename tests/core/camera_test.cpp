@@ -89,8 +89,9 @@ TEST(Camera, PixelAreaIsTheMeasureOfTheFilm) {
             sum += std::pow(axis.dot(d.cast<double>()), 3) * camera.pixel_area() / (steps * steps);
         }
     const Vec2d half = camera.half_extent();
-    const double pyramid = 4 * std::asin(half.x() * half.y() / std::sqrt((1 + half.x() * half.x()) *
-                                                                        (1 + half.y() * half.y())));
+    const double pyramid =
+        4 * std::asin(half.x() * half.y() /
+                      std::sqrt((1 + half.x() * half.x()) * (1 + half.y() * half.y())));
     EXPECT_NEAR(sum, pyramid, 1e-4 * pyramid);
 }
 

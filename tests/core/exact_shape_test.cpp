@@ -60,8 +60,8 @@ bool within(const Shape& shape, const Vec3d& p, double margin) {
 }
 
 // First sign change on a dense march, refined by bisection; none when there is no change.
-std::optional<double> marched_root(const Shape& shape, const Vec3d& o, const Vec3d& d,
-                                   double t_max, int steps) {
+std::optional<double> marched_root(const Shape& shape, const Vec3d& o, const Vec3d& d, double t_max,
+                                   int steps) {
     double before = implicit(shape, o);
     for (int i = 1; i <= steps; ++i) {
         double high = t_max * i / steps;
@@ -201,14 +201,13 @@ TEST(ExactShape, NormalsAreTheGradients) {
                                unit(Primitive::rectangle)})
         for (int i = 0; i < 500; ++i) {
             const Vec3d o = random_point(rng, 2);
-            const auto hit =
-                intersect_exact(shape, o, random_point(rng, 0.5) - o, 0, infinity);
+            const auto hit = intersect_exact(shape, o, random_point(rng, 0.5) - o, 0, infinity);
             if (!hit) continue;
             Vec3d gradient;
             for (int axis = 0; axis < 3; ++axis) {
                 const Vec3d step = 1e-6 * Vec3d::Unit(axis);
-                gradient[axis] = implicit(shape, hit->local + step) -
-                                 implicit(shape, hit->local - step);
+                gradient[axis] =
+                    implicit(shape, hit->local + step) - implicit(shape, hit->local - step);
             }
             EXPECT_LT((exact_normal(shape, hit->local) - gradient.normalized()).norm(), 1e-6);
         }

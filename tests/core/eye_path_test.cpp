@@ -53,8 +53,9 @@ TEST(EyePath, AnEyeInGlassSeesTheSquareOfItsIndex) {
 TEST(EyePath, ManyNestedShellsNeitherLoseNorAddLight) {
     std::vector<Shape> shells;
     for (int i = 0; i < 6; ++i)
-        shells.push_back(support::sphere("shell", {0, 0, 0}, 2 - 0.1 * i,
-                                         i % 2 == 0 ? support::glass(1.5F) : support::glass(1, 1.5F)));
+        shells.push_back(
+            support::sphere("shell", {0, 0, 0}, 2 - 0.1 * i,
+                            i % 2 == 0 ? support::glass(1.5F) : support::glass(1, 1.5F)));
     const Scene scene(furnace(std::move(shells)));
     // Near the axis no path is trapped; chains longer than the bounce limit carry little here.
     const support::Moments seen = emitted(scene, Vec3(0, 0, 4), -Vec3::UnitZ(), 0.1F);

@@ -56,8 +56,8 @@ TEST(Intersector, SeesExactShapesThroughTheirTransforms) {
             const bool flat = primitive != Primitive::sphere && primitive != Primitive::cylinder;
             const Vec3d scale = flat ? Vec3d(0.5, 2, 1.5) : Vec3d::Constant(0.7);
             const Transform to_world = turned() * Eigen::Scaling(scale);
-            Shape shape = primitive == Primitive::heightfield ? water(to_world)
-                                                              : exact(primitive, to_world);
+            Shape shape =
+                primitive == Primitive::heightfield ? water(to_world) : exact(primitive, to_world);
             shape.flip_normals = flip;
             const Scene scene = scene_of({shape});
             int hits = 0;
@@ -66,7 +66,8 @@ TEST(Intersector, SeesExactShapesThroughTheirTransforms) {
                 const Vec3 d = (random_point(rng, 1) - o).normalized();
                 const Transform inverse = to_world.inverse();
                 const Vec3d local_d = inverse.linear() * d.cast<double>();
-                const auto local = intersect_exact(shape, inverse * o.cast<double>(), local_d, 0, 1e9);
+                const auto local =
+                    intersect_exact(shape, inverse * o.cast<double>(), local_d, 0, 1e9);
                 const auto hit = scene.intersect({o, d});
                 ASSERT_EQ(hit.has_value(), local.has_value());
                 if (!hit) continue;
@@ -112,8 +113,8 @@ struct Placement {
 };
 
 std::vector<Placement> placements() {
-    return {{1, Vec3d::Zero()},          {1e-3, Vec3d::Zero()},    {1e3, Vec3d::Zero()},
-            {1, Vec3d(100, -200, 50)},   {1e-2, Vec3d(1, 2, 3)},   {10, Vec3d(-5000, 0, 3000)}};
+    return {{1, Vec3d::Zero()},        {1e-3, Vec3d::Zero()},  {1e3, Vec3d::Zero()},
+            {1, Vec3d(100, -200, 50)}, {1e-2, Vec3d(1, 2, 3)}, {10, Vec3d(-5000, 0, 3000)}};
 }
 
 std::vector<Shape> closed_or_open_shapes(const Placement& at) {
@@ -148,8 +149,8 @@ TEST(Intersector, SpawnedRaysNeitherHitTheirOwnSurfaceNorLeakThroughIt) {
             int outwards_hits = 0, inwards_misses = 0, tried = 0;
             for (int i = 0; i < 2000; ++i) {
                 const Vec3 o = centre + random_point(rng, 3 * size);
-                const auto hit =
-                    scene.intersect({o, (centre + random_point(rng, 0.5F * size) - o).normalized()});
+                const auto hit = scene.intersect(
+                    {o, (centre + random_point(rng, 0.5F * size) - o).normalized()});
                 if (!hit) continue;
                 ++tried;
                 const Vec3 n = hit->geometric_normal;
@@ -166,8 +167,8 @@ TEST(Intersector, SpawnedRaysNeitherHitTheirOwnSurfaceNorLeakThroughIt) {
             }
             const auto kind = static_cast<int>(shape.primitive);
             EXPECT_GT(tried, 200) << kind;
-            EXPECT_EQ(outwards_hits, 0) << "shape " << kind << " scale " << at.scale << " of "
-                                        << tried;
+            EXPECT_EQ(outwards_hits, 0)
+                << "shape " << kind << " scale " << at.scale << " of " << tried;
             EXPECT_EQ(inwards_misses, 0) << "shape " << kind << " scale " << at.scale;
         }
 }
@@ -176,7 +177,8 @@ TEST(Intersector, RaysFromInsideAClosedShapeAlwaysHit) {
     Rng rng(4, Stage::test, 0);
     for (const Placement& at : placements())
         for (const Shape& shape : closed_or_open_shapes(at)) {
-            if (shape.primitive != Primitive::sphere && shape.primitive != Primitive::mesh) continue;
+            if (shape.primitive != Primitive::sphere && shape.primitive != Primitive::mesh)
+                continue;
             const Scene scene = scene_of({shape});
             for (int i = 0; i < 3000; ++i) {
                 const Vec3 o = at.centre.cast<float>() +
@@ -197,7 +199,8 @@ TEST(Intersector, MeshesAreWatertightAlongTheirEdges) {
     for (const auto& [a, b, c] : ball.mesh.triangles)
         for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
             for (const float share : {0.0F, 0.25F, 0.5F, 0.9F}) {
-                const Vec3 at = (1 - share) * ball.mesh.positions[p] + share * ball.mesh.positions[q];
+                const Vec3 at =
+                    (1 - share) * ball.mesh.positions[p] + share * ball.mesh.positions[q];
                 const Vec3 d = (at - inside).normalized();
                 ASSERT_TRUE(scene.intersect({inside, d}));
                 ASSERT_TRUE(scene.intersect({inside + 5 * d, -d}));

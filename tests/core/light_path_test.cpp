@@ -60,8 +60,7 @@ TEST(AimedEmission, IsUniformOverTheUnionOfTheCasters) {
     const std::vector<float> radii = {1.2F, 1.5F, 0.5F};
     for (std::size_t i = 0; i < centres.size(); ++i)
         desc.shapes.push_back(support::sphere("ball", centres[i].cast<double>(),
-                                              static_cast<double>(radii[i]),
-                                              support::glass(1.5F)));
+                                              static_cast<double>(radii[i]), support::glass(1.5F)));
     const Scene scene(std::move(desc));
     const auto cell = [&](const Vec3& d) {
         std::size_t which = 0;
@@ -128,9 +127,8 @@ TEST(AimedEmission, ALampInsideACasterSendsAllItsPower) {
     desc.shapes.back().radiance = Spectrum(Spectrum::Constant(2));
     const Scene area(std::move(desc));
     const support::Moments by_area =
-        send(AimedEmission(area), [](const LightParticle& particle, Rng&) {
-            EXPECT_GE(particle.ray.direction.z(), 0);
-        });
+        send(AimedEmission(area),
+             [](const LightParticle& particle, Rng&) { EXPECT_GE(particle.ray.direction.z(), 0); });
     EXPECT_NEAR(by_area.mean(), 2 * pi_d * 1, 4 * by_area.standard_error());
 
     SceneDesc inside = ball_lit_from_a_point(1, 0.2);
@@ -196,9 +194,9 @@ TEST(LightPath, EveryPathHasOneEnd) {
             ASSERT_GT(deposit->geometric_normal.dot(deposit->wi), 0);
             ASSERT_TRUE(is_receiver(scene.shapes()[deposit->shape].bsdf));
         });
-        EXPECT_EQ(counts.missed + counts.escaped + counts.absorbed + counts.depth_limited +
-                      counts.stored,
-                  counts.aimed);
+        EXPECT_EQ(
+            counts.missed + counts.escaped + counts.absorbed + counts.depth_limited + counts.stored,
+            counts.aimed);
         EXPECT_EQ(counts.stored, deposits);
         EXPECT_GT(counts.stored, 0U);
         EXPECT_GT(counts.depth_limited, 0U);

@@ -12,9 +12,7 @@
 namespace caustics {
 namespace {
 
-Vec3 at_angle(double angle) {
-    return Vec3d(std::sin(angle), 0, std::cos(angle)).cast<float>();
-}
+Vec3 at_angle(double angle) { return Vec3d(std::sin(angle), 0, std::cos(angle)).cast<float>(); }
 
 Vec3 random_direction(Rng& rng) {
     const float u0 = rng.next();

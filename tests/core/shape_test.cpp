@@ -28,10 +28,9 @@ Shape exact(Primitive primitive, const Vec3d& scale) {
 }
 
 std::vector<Shape> sampled_shapes() {
-    std::vector<Shape> shapes = {exact(Primitive::rectangle, {0.5, 2, 1}),
-                                 exact(Primitive::disk, {0.5, 2, 1}),
-                                 exact(Primitive::sphere, {0.3, 0.3, 0.3}),
-                                 exact(Primitive::cylinder, {0.5, 0.5, 3})};
+    std::vector<Shape> shapes = {
+        exact(Primitive::rectangle, {0.5, 2, 1}), exact(Primitive::disk, {0.5, 2, 1}),
+        exact(Primitive::sphere, {0.3, 0.3, 0.3}), exact(Primitive::cylinder, {0.5, 0.5, 3})};
     const std::size_t primitives = shapes.size();
     for (std::size_t i = 0; i < primitives; ++i) {
         shapes.push_back(shapes[i]);

@@ -27,8 +27,8 @@ TEST(RecordsCsv, LeavesEmptyWhatDoesNotApply) {
                                    {"method", {{"parameters", {{"nearest", 50}}}}},
                                    {"swept", {{"alpha", 0.1}, {"bound", "hybrid"}}},
                                    {"metrics", {{"rmse", 1.0 / 3}, {"relmse", nullptr}}}};
-    EXPECT_EQ(record_row(record, {"trial", "seed", "nearest", "alpha", "bound", "rmse", "relmse",
-                                  "beams"}),
+    EXPECT_EQ(record_row(record,
+                         {"trial", "seed", "nearest", "alpha", "bound", "rmse", "relmse", "beams"}),
               (std::vector<std::string>{"a, b", "12345678901234", "50", "0.1", "hybrid",
                                         "0.3333333333333333", "", ""}));
 }

@@ -62,8 +62,8 @@ TEST_F(SweepPlans, AreTheProductOfAllLists) {
 TEST_F(SweepPlans, NameTrialsByWordsAndHash) {
     const SweepPlan all = plan(R"("methods": [{"method": "photonmap", "param": {"photons": 10}}])");
     ASSERT_EQ(all.trials.size(), 1U);
-    EXPECT_TRUE(std::regex_match(all.trials[0].id,
-                                 std::regex("ball-photonmap-photons10-s1-[0-9a-f]{16}")))
+    EXPECT_TRUE(
+        std::regex_match(all.trials[0].id, std::regex("ball-photonmap-photons10-s1-[0-9a-f]{16}")))
         << all.trials[0].id;
     EXPECT_EQ(ids(all), ids(plan(R"("methods": [{"method": "photonmap",
                                                 "param": {"photons": [10]}}], "seeds": [1])")))
@@ -82,11 +82,15 @@ TEST_F(SweepPlans, NeverGiveTwoTrialsOneName) {
 }
 
 TEST_F(SweepPlans, JoinFilesAndDropWhatIsNamedTwice) {
-    const std::filesystem::path first = sweep(R"("methods": [{"method": "none"}], "seeds": [1, 2])");
+    const std::filesystem::path first =
+        sweep(R"("methods": [{"method": "none"}], "seeds": [1, 2])");
     const std::filesystem::path second = folder_ / "second.json";
-    write_whole_file(second, fmt::format(
-        R"({{"version": 1, "scenes": ["{}"], "spp": 4, "methods": [{{"method": "none"}}],
-            "seeds": [2, 3]}})", scene));
+    write_whole_file(
+        second,
+        fmt::format(
+            R"({{"version": 1, "scenes": ["{}"], "spp": 4, "methods": [{{"method": "none"}}],
+            "seeds": [2, 3]}})",
+            scene));
     const SweepPlan all = read_plan({first, second});
     EXPECT_EQ(all.trials.size(), 3U);
     EXPECT_EQ(all.duplicates, 1U);

@@ -37,8 +37,8 @@ TEST(DirectionCode, ErrsByAtMostHalfACellsDiagonalOverTheSphere) {
 TEST(DirectionCode, DecodesToCentresThatEncodeToThemselves) {
     for (int theta = 0; theta < 256; ++theta) {
         for (int phi = 0; phi < 256; ++phi) {
-            const Vec3 w = decode_direction(static_cast<std::uint8_t>(theta),
-                                            static_cast<std::uint8_t>(phi));
+            const Vec3 w =
+                decode_direction(static_cast<std::uint8_t>(theta), static_cast<std::uint8_t>(phi));
             ASSERT_NEAR(w.norm(), 1, 1e-6);
             const DirectionCode code = encode_direction(w);
             ASSERT_EQ(code.theta, theta);

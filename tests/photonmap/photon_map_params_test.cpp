@@ -50,8 +50,8 @@ TEST(PhotonMapParams, EmittedReplacesPhotons) {
 TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
     for (const std::string word :
          {R"("emission": "stratified")", R"("interaction": "split")", R"("tree": "unbalanced")",
-          R"("tree": "packed")", R"("filter": "cone")", R"("adaptive": true)",
-          R"("tables": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
+          R"("tree": "packed")", R"("filter": "cone")", R"("adaptive": true)", R"("tables": true)",
+          R"("passes": 2)", R"("radius": 0.1)"}) {
         const std::string line = refusal("{" + word + "}");
         EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
     }

@@ -30,9 +30,9 @@ inline std::vector<PhotonSet> photon_sets(std::size_t count, std::uint64_t seed)
         return Vec3(x, y, z);
     };
     const auto lattice = [&] { return Vec3((4 * cube()).array().round()); };
-    std::vector<PhotonSet> sets{{"uniform", {}},   {"clustered", {}}, {"one point", {}},
-                                {"line", {}},      {"lattice", {}},   {"tiny", {}},
-                                {"huge", {}},      {"negative", {}},  {"plane", {}},
+    std::vector<PhotonSet> sets{{"uniform", {}},     {"clustered", {}},      {"one point", {}},
+                                {"line", {}},        {"lattice", {}},        {"tiny", {}},
+                                {"huge", {}},        {"negative", {}},       {"plane", {}},
                                 {"tilted line", {}}, {"half coincident", {}}};
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 positions[] = {cube(),

@@ -78,9 +78,9 @@ TEST(PhotonTracing, GivesTheSamePhotonsForAnyNumberOfThreads) {
         const TracedPhotons two = trace(synthetic_paths(0.4F), target, 2);
         ASSERT_EQ(two.store.size(), one.store.size());
         EXPECT_EQ(two.counts.emitted, one.counts.emitted);
-        EXPECT_EQ(std::memcmp(two.store.photons().data(), one.store.photons().data(),
-                              one.store.bytes()),
-                  0);
+        EXPECT_EQ(
+            std::memcmp(two.store.photons().data(), one.store.photons().data(), one.store.bytes()),
+            0);
     }
 }
 
@@ -114,8 +114,7 @@ TEST(PhotonTracing, KeepsFluxOverTwelveOrdersOfMagnitudeAndAnyColour) {
             return deposit;
         };
         const TracedPhotons traced = trace_photons(paths, flux, {.stored = 10}, {});
-        const Spectrum kept =
-            decode_rgbe(traced.store.photons().front().energy) * traced.flux_unit;
+        const Spectrum kept = decode_rgbe(traced.store.photons().front().energy) * traced.flux_unit;
         EXPECT_NEAR(kept[0] / flux[0], 1, 1e-6);
         EXPECT_NEAR(kept[1] / flux[1], 1, 1e-6);
         EXPECT_EQ(kept[2], 0);

@@ -87,9 +87,10 @@ TEST(RadianceEstimate, FewerThanNSumOverTheMaximumDisc) {
                                 photon_at({3, 0, 0})};
     balance(photons);
     for (const Estimator estimator : {Estimator::unbiased, Estimator::raw}) {
-        const RadianceEstimate estimate(
-            photons, {.nearest = 3, .max_radius = 2, .estimator = estimator,
-                      .flux_unit = Spectrum(1, 2, 3)});
+        const RadianceEstimate estimate(photons, {.nearest = 3,
+                                                  .max_radius = 2,
+                                                  .estimator = estimator,
+                                                  .flux_unit = Spectrum(1, 2, 3)});
         NearestSet scratch(3);
         const Gathered gathered = estimate.irradiance(point_at({0, 0, 0}), scratch);
         EXPECT_EQ(gathered.photons, 2U);
@@ -145,8 +146,8 @@ TEST(RadianceEstimate, IsLinearInTheFlux) {
     const ReceiverPoint point = point_at({0.3F, 0.6F, 0});
     const RadianceEstimate once(photons, {});
     const RadianceEstimate thrice(photons, {.flux_unit = Spectrum::Constant(3)});
-    EXPECT_NEAR(
-        thrice.radiance(point, scratch).value[0] / once.radiance(point, scratch).value[0], 3, 1e-6);
+    EXPECT_NEAR(thrice.radiance(point, scratch).value[0] / once.radiance(point, scratch).value[0],
+                3, 1e-6);
 }
 
 TEST(RadianceEstimate, CoincidentPhotonsGiveALargeFiniteValue) {

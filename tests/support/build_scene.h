@@ -20,8 +20,7 @@ Shape rectangle(const std::string& name, const Vec3d& centre, const Vec3d& half_
                 const Vec3d& half_v, const Bsdf& bsdf);
 Shape sphere(const std::string& name, const Vec3d& centre, double radius, const Bsdf& bsdf);
 /// `mesh` in a local frame -> world frame.
-Shape mesh(const std::string& name, TriangleMesh mesh, const Transform& to_world,
-           const Bsdf& bsdf);
+Shape mesh(const std::string& name, TriangleMesh mesh, const Transform& to_world, const Bsdf& bsdf);
 /// The same without vertex normals: shaded flat.
 TriangleMesh flat(TriangleMesh mesh);
 /// The sum of its triangles.

@@ -45,8 +45,8 @@ double chi_square_p_value(const std::vector<double>& counts, const std::vector<d
         ++cells;
     }
     if (pooled_expected >= 5) {
-        sum += (pooled_count - pooled_expected) * (pooled_count - pooled_expected) /
-               pooled_expected;
+        sum +=
+            (pooled_count - pooled_expected) * (pooled_count - pooled_expected) / pooled_expected;
         ++cells;
     } else if (pooled_count > pooled_expected + 5 * std::sqrt(pooled_expected) + 5) {
         return 0;  // Hits where hardly any belong.
