@@ -53,7 +53,8 @@ void encode_and_write(const std::string& format, const OIIO::ImageSpec& spec, OI
     if (!output) fail(file, "written", OIIO::geterror());
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);
-    const bool done = output->set_ioproxy(&memory) && output->open(file.filename().string(), spec) &&
+    const bool done = output->set_ioproxy(&memory) &&
+                      output->open(file.filename().string(), spec) &&
                       output->write_image(type, pixels) && output->close();
     if (!done) fail(file, "written", output->geterror());
     write_whole(bytes, file);
@@ -134,8 +135,7 @@ Film read_exr(const fs::path& file) {
     return film;
 }
 
-void write_png(int width, int height, const std::vector<unsigned char>& rgb,
-               const fs::path& file) {
+void write_png(int width, int height, const std::vector<unsigned char>& rgb, const fs::path& file) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     encode_and_write("png", spec, OIIO::TypeDesc::UINT8, rgb.data(), file);
 }

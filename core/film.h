@@ -29,7 +29,7 @@ public:
         return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     }
 
-    /// The plane of that channel, made zero when new. The reference stays valid as planes are added.
+    /// The plane of that channel, made zero when new; the reference outlives planes added later.
     std::vector<float>& plane(const std::string& channel);
     /// The plane of that channel, or nullptr.
     const std::vector<float>* find(const std::string& channel) const;

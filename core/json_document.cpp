@@ -156,8 +156,8 @@ private:
 
 }  // namespace
 
-std::map<std::string, std::filesystem::path>::const_iterator
-JsonNode::Document::inclusion(const std::string& pointer) const {
+std::map<std::string, std::filesystem::path>::const_iterator JsonNode::Document::inclusion(
+    const std::string& pointer) const {
     for (std::string prefix = pointer;;) {
         const auto found = included.find(prefix);
         if (found != included.end() || prefix.empty()) return found;
@@ -239,8 +239,8 @@ std::string read_text(const std::filesystem::path& file) {
     std::ostringstream text;
     if (stream && stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
     if (!stream.is_open() || stream.bad())
-        throw InputError(one_line(file.string() + ": cannot be read: " +
-                                  std::generic_category().message(errno)));
+        throw InputError(one_line(file.string() +
+                                  ": cannot be read: " + std::generic_category().message(errno)));
     return text.str();
 }
 
@@ -252,7 +252,8 @@ std::string canonical_json(const json& value) {
                 text += (text.empty() ? "" : ",") + json(key).dump() + ":" + canonical_json(child);
             return "{" + text + "}";
         case json::value_t::array:
-            for (const json& child : value) text += (text.empty() ? "" : ",") + canonical_json(child);
+            for (const json& child : value)
+                text += (text.empty() ? "" : ",") + canonical_json(child);
             return "[" + text + "]";
         case json::value_t::number_float: {
             const double number = value.get<double>();

@@ -30,8 +30,8 @@ struct JsonNode::Document {
         return root.at(nlohmann::json::json_pointer(pointer));
     }
     /// The entry of `included` at or above a pointer, nearest first; end() for the main file.
-    std::map<std::string, std::filesystem::path>::const_iterator
-    inclusion(const std::string& pointer) const;
+    std::map<std::string, std::filesystem::path>::const_iterator inclusion(
+        const std::string& pointer) const;
     /// "file: /pointer", with the pointer inside that file and, when included, the whole one.
     std::string place(const std::string& pointer) const;
     [[noreturn]] void fail(const std::string& pointer, const std::string& reason) const;

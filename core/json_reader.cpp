@@ -94,8 +94,7 @@ void JsonNode::set(const std::string& pointer, const std::string& value) {
         if (target->is_array()) {
             next = element(*target, tokens[i]);
         } else if (target->is_object()) {
-            if (target->contains(tokens[i]) || i + 1 == tokens.size())
-                next = &(*target)[tokens[i]];
+            if (target->contains(tokens[i]) || i + 1 == tokens.size()) next = &(*target)[tokens[i]];
         }
         if (next == nullptr)
             throw InputError(fmt::format("{}: there is nothing of that name; {} {}", what,

@@ -106,8 +106,7 @@ void read_point_light(const JsonNode& node, SceneDesc& desc) {
     if (position && to_world) to_world->fail("give either position or to_world");
     if (position) light.position = read_vector(*position).cast<float>();
     if (to_world)
-        light.position =
-            Vec3d(scene_file::read_transform(*to_world).translation()).cast<float>();
+        light.position = Vec3d(scene_file::read_transform(*to_world).translation()).cast<float>();
     light.intensity = read_colour(node, "intensity", 1, unlimited);
     node.finish();
     desc.point_lights.push_back(light);
@@ -124,9 +123,8 @@ void read_directional_light(const JsonNode& node, SceneDesc& desc) {
         light.direction = towards.normalized().cast<float>();
     }
     if (to_world)
-        light.direction = Vec3d(scene_file::read_transform(*to_world).linear().col(2))
-                              .normalized()
-                              .cast<float>();
+        light.direction =
+            Vec3d(scene_file::read_transform(*to_world).linear().col(2)).normalized().cast<float>();
     light.irradiance = read_colour(node, "irradiance", 1, unlimited);
     node.finish();
     desc.directional_lights.push_back(light);
@@ -137,14 +135,15 @@ void read_child(const std::string& key, const JsonNode& node, SceneDesc& desc, b
                 Assets& assets) {
     const std::string type = node.at("type").as_string();
     std::vector<std::string> known{"perspective", "point", "directional"};
-    std::vector<std::string> later{"constant",        "spot",   "envmap",      "projector",
-                                   "directionalarea", "sunsky", "thinlens",    "orthographic",
+    std::vector<std::string> later{"constant",        "spot",   "envmap",       "projector",
+                                   "directionalarea", "sunsky", "thinlens",     "orthographic",
                                    "homogeneous",     "ref",    "heterogeneous"};
-    const std::vector<std::string> integrators{"path",    "volpath", "direct", "ptracer",
+    const std::vector<std::string> integrators{"path",   "volpath", "direct", "ptracer",
                                                "moment", "aov",     "depth",  "photonmapper"};
     if (std::ranges::find(integrators, type) != integrators.end())
-        node.fail("integrators are not supported: the method is chosen on the command line or in "
-                  "the sweep, not in the scene");
+        node.fail(
+            "integrators are not supported: the method is chosen on the command line or in "
+            "the sweep, not in the scene");
     std::ranges::copy(scene_file::shape_types(), std::back_inserter(known));
     std::ranges::copy(scene_file::later_shape_types(), std::back_inserter(later));
     if (type == "area") node.fail("an area emitter is nested in the shape that emits");

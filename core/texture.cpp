@@ -88,16 +88,17 @@ Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {
     const auto input = OIIO::ImageInput::open(file.string(), &config);
     if (!input)
         throw InputError(file.string() + ": not a picture that can be read (" +
-                         one_line(OIIO::geterror()) +
-                         ")");
+                         one_line(OIIO::geterror()) + ")");
     const OIIO::ImageSpec& spec = input->spec();
-    const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+    const auto pixels =
+        static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
     const auto channels = static_cast<std::size_t>(spec.nchannels);
     const bool decode = !raw && spec.format.is_floating_point() == false;
     std::vector<float> values(pixels * channels);
     if (pixels == 0 ||
         !input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
-        throw InputError(file.string() + ": the picture is broken (" + one_line(input->geterror()) + ")");
+        throw InputError(file.string() + ": the picture is broken (" + one_line(input->geterror()) +
+                         ")");
     Bitmap bitmap;
     bitmap.width = spec.width;
     bitmap.height = spec.height;

@@ -9,35 +9,21 @@ namespace {
 
 const std::vector<std::string> known_types{"diffuse", "schlick", "dielectric", "conductor",
                                            "twosided"};
-const std::vector<std::string> later_types{"phong",          "blendbsdf", "roughconductor",
-                                           "roughdielectric", "plastic",   "thindielectric",
-                                           "mask",           "principled", "ref"};
+const std::vector<std::string> later_types{
+    "phong",   "blendbsdf",      "roughconductor", "roughdielectric",
+    "plastic", "thindielectric", "mask",           "principled",
+    "ref"};
 
 // Refractive indices by name, with Mitsuba 3's constants.
 constexpr std::array<std::pair<const char*, float>, 23> named_iors{{
-    {"vacuum", 1.0F},
-    {"helium", 1.000036F},
-    {"hydrogen", 1.000132F},
-    {"air", 1.000277F},
-    {"carbon dioxide", 1.00045F},
-    {"water", 1.3330F},
-    {"acetone", 1.36F},
-    {"ethanol", 1.361F},
-    {"carbon tetrachloride", 1.461F},
-    {"glycerol", 1.4729F},
-    {"benzene", 1.501F},
-    {"silicone oil", 1.52045F},
-    {"bromine", 1.661F},
-    {"water ice", 1.31F},
-    {"fused quartz", 1.458F},
-    {"pyrex", 1.470F},
-    {"acrylic glass", 1.49F},
-    {"polypropylene", 1.49F},
-    {"bk7", 1.5046F},
-    {"sodium chloride", 1.544F},
-    {"amber", 1.55F},
-    {"pet", 1.5750F},
-    {"diamond", 2.419F},
+    {"vacuum", 1.0F},      {"helium", 1.000036F},        {"hydrogen", 1.000132F},
+    {"air", 1.000277F},    {"carbon dioxide", 1.00045F}, {"water", 1.3330F},
+    {"acetone", 1.36F},    {"ethanol", 1.361F},          {"carbon tetrachloride", 1.461F},
+    {"glycerol", 1.4729F}, {"benzene", 1.501F},          {"silicone oil", 1.52045F},
+    {"bromine", 1.661F},   {"water ice", 1.31F},         {"fused quartz", 1.458F},
+    {"pyrex", 1.470F},     {"acrylic glass", 1.49F},     {"polypropylene", 1.49F},
+    {"bk7", 1.5046F},      {"sodium chloride", 1.544F},  {"amber", 1.55F},
+    {"pet", 1.5750F},      {"diamond", 2.419F},
 }};
 
 float read_ior(const JsonNode& parent, const std::string& key, float fallback) {
@@ -85,8 +71,9 @@ Bsdf read_twosided(const JsonNode& node, Assets& assets) {
     const auto children = node.children();
     node.finish();
     if (children.size() != 1)
-        node.fail("twosided takes exactly one nested bsdf, the same on both sides (known: diffuse, "
-                  "schlick, conductor)");
+        node.fail(
+            "twosided takes exactly one nested bsdf, the same on both sides (known: diffuse, "
+            "schlick, conductor)");
     Bsdf inner = read_bsdf(children.front().second, assets);
     if (inner.twosided || std::holds_alternative<Dielectric>(inner.model))
         children.front().second.fail(

@@ -58,10 +58,13 @@ Transform read_cylinder_placement(const JsonNode& node) {
 
 SineWave read_wave(const JsonNode& node) {
     SineWave wave;
-    wave.amplitude = node.at("amplitude").as_number();
+    wave.amplitude = node.at("amplitude").as_number_in(-far_away, far_away);
     const std::vector<double> k = node.at("wave_vector").as_numbers(2);
     wave.wave_vector = {k[0], k[1]};
-    if (const auto phase = node.find("phase")) wave.phase = phase->as_number();
+    if (wave.wave_vector.cwiseAbs().maxCoeff() > far_away)
+        node.at("wave_vector").fail("is out of range (to 1e+30)");
+    if (const auto phase = node.find("phase"))
+        wave.phase = phase->as_number_in(-far_away, far_away);
     node.finish();
     return wave;
 }
@@ -75,6 +78,7 @@ SineHeightfield read_heightfield(const JsonNode& node) {
     for (const JsonNode& wave : node.at("waves").as_array()) field.waves.push_back(read_wave(wave));
     if (const auto half_size = node.find("half_size")) {
         const std::vector<double> half = half_size->as_numbers(2);
+        for (const JsonNode& side : half_size->as_array()) side.as_number_in(0, far_away);
         if (half[0] <= 0 || half[1] <= 0) half_size->fail("must be above 0");
         field.half_size = {half[0], half[1]};
     }
@@ -118,9 +122,7 @@ struct CommonKeys {
         if (faces) face_normals = faces->as_bool();
     }
 
-    int count(int least) const {
-        return static_cast<int>(resolution->as_integer_in(least, 16384));
-    }
+    int count(int least) const { return static_cast<int>(resolution->as_integer_in(least, 4096)); }
 
     void finish_mesh(TriangleMesh& mesh) const {
         if (face_normals) mesh.normals.clear();
@@ -227,6 +229,7 @@ Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) 
         read_cube(keys, shape);
     else
         read_analytic(node, type, keys, shape);
+    if (!bounds(shape).sizes().allFinite()) node.fail("reaches beyond what a float can hold");
     read_nested(node, shape, assets);
     return shape;
 }

@@ -17,8 +17,9 @@ Spectrum read_three(const JsonNode& node, double most) {
     if (node.is_number()) {
         value = Spectrum::Constant(static_cast<float>(node.as_number_in(0, most)));
     } else {
+        if (!node.is_array() || node.as_array().size() != 3)
+            node.fail("must be a number, [r, g, b] or {\"type\": \"rgb\", \"value\": ...}");
         const std::vector<JsonNode> parts = node.as_array();
-        if (parts.size() != 3) node.fail("must be a number or [r, g, b]");
         for (Eigen::Index c = 0; c < 3; ++c)
             value[c] = static_cast<float>(parts[static_cast<std::size_t>(c)].as_number_in(0, most));
     }
@@ -89,7 +90,8 @@ Transform read_operation(const JsonNode& node) {
     const auto look_at = node.find("look_at");
     node.finish();
     if (int{translate.has_value()} + int{rotate.has_value()} + int{scale.has_value()} +
-            int{look_at.has_value()} != 1)
+            int{look_at.has_value()} !=
+        1)
         node.fail("must be one operation of translate, rotate, scale, look_at");
     if (translate) return Transform(Eigen::Translation3d(read_vector(*translate)));
     if (rotate) return read_rotation(*rotate);
@@ -135,8 +137,7 @@ Spectrum read_colour(const JsonNode& node, double most) {
     return value;
 }
 
-Spectrum read_colour(const JsonNode& parent, const std::string& key, double fallback,
-                     double most) {
+Spectrum read_colour(const JsonNode& parent, const std::string& key, double fallback, double most) {
     const auto node = parent.find(key);
     return node ? read_colour(*node, most)
                 : Spectrum(Spectrum::Constant(static_cast<float>(fallback)));
@@ -164,9 +165,10 @@ Transform read_transform(const JsonNode& node) {
     }
     const Eigen::Matrix3d linear = result.linear();
     const double size = linear.cwiseAbs().maxCoeff();
-    if (!result.matrix().allFinite() ||
-        !(std::abs(linear.determinant()) > 1e-12 * size * size * size))
-        node.fail("the transform is singular or not finite");
+    if (!(result.matrix().cwiseAbs().maxCoeff() <= 1e30))
+        node.fail("the transform's numbers reach beyond 1e30");
+    if (!(std::abs(linear.determinant()) > 1e-12 * size * size * size))
+        node.fail("the transform is singular: it flattens or deletes what it is applied to");
     return result;
 }
 

@@ -40,7 +40,8 @@ Film film_with_hard_values() {
     film.plane("B") = {7, 7, 7, 7, 7, 8};
     film.plane("G") = {9, 9, 9, 9, 9, 9};
     film.plane("R") = {0.5F, 0.25F, 0, 0, 0, 0};
-    film.metadata = {{"config", "{\"scene\":\"pool\"}"}, {"a_name_longer_than_thirty_one_bytes", "1"}};
+    film.metadata = {{"config", "{\"scene\":\"pool\"}"},
+                     {"a_name_longer_than_thirty_one_bytes", "1"}};
     return film;
 }
 
@@ -128,8 +129,9 @@ TEST(Exr, SaysInOneLineWhatCannotBeReadOrWritten) {
         EXPECT_EQ(message.find('\n'), std::string::npos);
     }
     const fs::path nowhere = folder() / "no_such_folder" / "a.exr";
-    EXPECT_TRUE(error_of([&] { write_exr(film, nowhere); })
-                    .starts_with(nowhere.string() + ": cannot be written"));
+    EXPECT_TRUE(error_of([&] {
+                    write_exr(film, nowhere);
+                }).starts_with(nowhere.string() + ": cannot be written"));
     const fs::path taken = folder() / "taken.exr";
     fs::create_directories(taken / "inside");
     EXPECT_NE(error_of([&] { write_exr(film, taken); }), "");

@@ -72,8 +72,9 @@ TEST(JsonNode, NamesPlaceReasonAndAlternatives) {
 
 TEST(JsonNode, WholeNumbersBeyondTheRangeAreRefusedNotWrapped) {
     for (const char* text : {"18446744073709551615", "9223372036854775808", "1e300", "-1e300"})
-        EXPECT_NE(error_of([&] { return node(text).as_integer_in(0, INT64_MAX); }).find("out of range"),
-                  std::string::npos)
+        EXPECT_NE(
+            error_of([&] { return node(text).as_integer_in(0, INT64_MAX); }).find("out of range"),
+            std::string::npos)
             << text;
     EXPECT_EQ(node("9223372036854775807").as_integer_in(0, INT64_MAX), INT64_MAX);
 }
@@ -151,8 +152,9 @@ TEST(JsonSet, APointerIntoNothingNamesWhatIsThere) {
     EXPECT_EQ(error_of([&] { return root.set("/a/b/d", "1"), 0; }),
               "t.json: setting /a/b/d: there is nothing of that name; /a/b is 1");
     for (const char* pointer : {"/l/2", "/l/-", "/l/01", "/l/x"})
-        EXPECT_NE(error_of([&] { return root.set(pointer, "1"), 0; })
-                      .find("/l is an array of 2 elements"),
+        EXPECT_NE(error_of([&] {
+                      return root.set(pointer, "1"), 0;
+                  }).find("/l is an array of 2 elements"),
                   std::string::npos)
             << pointer;
     for (const char* pointer : {"", "a/b", "/a~2"})

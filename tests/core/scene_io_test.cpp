@@ -65,8 +65,8 @@ TEST(Scene, DefaultsAreMitsubas) {
     EXPECT_TRUE(desc.sampling.jitter);
     const Shape& floor = shape(desc, "floor");
     EXPECT_EQ(floor.primitive, Primitive::rectangle);
-    EXPECT_TRUE(equal(constant(std::get<Diffuse>(floor.bsdf.model).reflectance),
-                      Spectrum::Constant(0.5F)));
+    EXPECT_TRUE(
+        equal(constant(std::get<Diffuse>(floor.bsdf.model).reflectance), Spectrum::Constant(0.5F)));
     EXPECT_FALSE(floor.bsdf.twosided);
     EXPECT_FALSE(floor.flip_normals);
     EXPECT_FALSE(floor.radiance.has_value());
@@ -113,8 +113,8 @@ TEST(Scene, SphereAndCylinderFoldTheirPlacement) {
     const Shape sphere = load_shape(
         R"({"type": "sphere", "center": [1, 2, 3], "radius": 2, "to_world": [{"scale": 10}]})");
     expect_near(sphere.to_world * Vec3d(1, 0, 0), {30, 20, 30});
-    const Shape cylinder = load_shape(
-        R"({"type": "cylinder", "p0": [1, 0, 0], "p1": [1, 0, -3], "radius": 0.5})");
+    const Shape cylinder =
+        load_shape(R"({"type": "cylinder", "p0": [1, 0, 0], "p1": [1, 0, -3], "radius": 0.5})");
     expect_near(cylinder.to_world * Vec3d(0, 0, 0), {1, 0, 0});
     expect_near(cylinder.to_world * Vec3d(0, 0, 1), {1, 0, -3});
     // Mitsuba's frame along -z: s = (1, 0, 0), t = (0, -1, 0).
@@ -135,8 +135,8 @@ TEST(Scene, ResolutionMakesAMeshInTheWorldFrame) {
     const Shape faceted =
         load_shape(R"({"type": "sphere", "resolution": 4, "face_normals": true})");
     EXPECT_TRUE(faceted.mesh.normals.empty());
-    const Shape sheared = load_shape(
-        R"({"type": "sphere", "resolution": 4, "to_world": [{"scale": [1, 1, 3]}]})");
+    const Shape sheared =
+        load_shape(R"({"type": "sphere", "resolution": 4, "to_world": [{"scale": [1, 1, 3]}]})");
     EXPECT_EQ(bounds(sheared).max().z(), 3);
 }
 
@@ -189,21 +189,23 @@ TEST(Scene, BsdfDefaultsAndValues) {
     const Shape both = load_shape(R"({"type": "disk", "b": {"type": "twosided",
         "inner": {"type": "diffuse", "reflectance": [0.1, 0.2, 0.3]}}})");
     EXPECT_TRUE(both.bsdf.twosided);
-    EXPECT_TRUE(equal(constant(std::get<Diffuse>(both.bsdf.model).reflectance),
-                      {0.1F, 0.2F, 0.3F}));
+    EXPECT_TRUE(
+        equal(constant(std::get<Diffuse>(both.bsdf.model).reflectance), {0.1F, 0.2F, 0.3F}));
 }
 
 TEST(Scene, Textures) {
     const auto board = std::get<Checkerboard>(load_bsdf<Diffuse>(R"({"type": "diffuse",
         "reflectance": {"type": "checkerboard", "color0": 0.8,
-                        "to_uv": [{"scale": [4, 2, 1]}]}})").reflectance);
+                        "to_uv": [{"scale": [4, 2, 1]}]}})")
+                                                  .reflectance);
     EXPECT_TRUE(equal(board.color0, Spectrum::Constant(0.8F)));
     EXPECT_TRUE(equal(board.color1, Spectrum::Constant(0.2F)));
     EXPECT_TRUE((board.to_uv * Vec3(1, 1, 0)).isApprox(Vec3(4, 2, 0)));
     write_png(2, 1, {255, 255, 255, 0, 0, 0}, write("two.png", ""));
     const auto bitmap = std::get<Bitmap>(load_bsdf<Schlick>(R"({"type": "schlick",
         "reflectance": {"type": "bitmap", "filename": "two.png", "filter_type": "nearest",
-                        "wrap_mode": "clamp", "raw": true}})").reflectance);
+                        "wrap_mode": "clamp", "raw": true}})")
+                                             .reflectance);
     EXPECT_EQ(bitmap.width, 2);
     EXPECT_EQ(bitmap.filter, Bitmap::Filter::nearest);
     EXPECT_EQ(bitmap.wrap, Bitmap::Wrap::clamp);
@@ -211,7 +213,8 @@ TEST(Scene, Textures) {
 }
 
 TEST(ToWorld, MatricesAndOperationsInTheirOrder) {
-    const Transform rows = load_to_world("[[0, -1, 0, 5], [1, 0, 0, 6], [0, 0, 1, 7], [0, 0, 0, 1]]");
+    const Transform rows =
+        load_to_world("[[0, -1, 0, 5], [1, 0, 0, 6], [0, 0, 1, 7], [0, 0, 0, 1]]");
     expect_near(rows * Vec3d(1, 0, 0), {5, 7, 7});
     const Transform flat = load_to_world("[0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1]");
     EXPECT_EQ(rows.matrix(), flat.matrix());

@@ -121,10 +121,9 @@ TEST(LoadBitmap, FloatPicturesAreLinearAndOneChannelIsGrey) {
 TEST(LoadBitmap, AlphaIsIgnored) {
     // One pixel of a TGA: 32 bits, blue green red alpha, from the top left.
     const fs::path file = temporary("alpha.tga");
-    const unsigned char bytes[] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 32, 0x28,
-                                   50, 100, 200, 128};
-    std::ofstream(file, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes), sizeof bytes);
+    const unsigned char bytes[] = {0, 0, 2, 0, 0, 0,  0,    0,  0,   0,   0,
+                                   0, 1, 0, 1, 0, 32, 0x28, 50, 100, 200, 128};
+    std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes), sizeof bytes);
     const Bitmap bitmap = load_bitmap(file, true);
     EXPECT_FLOAT_EQ(bitmap.texels[0][0], 200.0F / 255);
     EXPECT_FLOAT_EQ(bitmap.texels[0][2], 50.0F / 255);
