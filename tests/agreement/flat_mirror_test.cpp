@@ -183,7 +183,7 @@ TEST(FlatMirror, AGlassSheetReflectsByFresnel) {
         const Vec3d to_image = image_of(light_position) - p;
         return from_point(p) * support::fresnel(to_image.y() / to_image.norm(), 1.5);
     };
-    const auto reference = build(scene, LightTraceParams{.paths = 2'000'000}, RunOptions{});
+    const auto reference = build(scene, LightTraceParams{.paths = 4'000'000}, RunOptions{});
     // Few photons are reflected: wider discs, 9e-3 off at most.
     expect_within_stderr(*reference, scene, truth, 0.15F);
 }
