@@ -5,7 +5,7 @@
 
 #include "experiments/files.h"
 #include "tests/cli/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {

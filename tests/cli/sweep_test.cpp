@@ -8,7 +8,7 @@
 #include "experiments/files.h"
 #include "experiments/sweep_plan.h"
 #include "tests/cli/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {

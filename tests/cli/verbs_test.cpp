@@ -7,7 +7,7 @@
 #include "core/film.h"
 #include "experiments/files.h"
 #include "tests/cli/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "experiments/files.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -11,9 +12,12 @@ namespace caustics::support {
 /// run side by side.
 class TemporaryFolder {
 public:
+    /// Named after the running test.
+    TemporaryFolder() : TemporaryFolder(test_name()) {}
     explicit TemporaryFolder(const std::string& name)
         : path_(std::filesystem::temp_directory_path() /
                 ("causticbench_" + name + "_" + std::to_string(getpid()))) {
+        std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
     ~TemporaryFolder() {
@@ -24,8 +28,17 @@ public:
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
 private:
+    static std::string test_name() {
+        const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
+        std::string name = std::string(test->test_suite_name()) + "-" + test->name();
+        for (char& c : name)
+            if (c == '/') c = '-';
+        return name;
+    }
+
     std::filesystem::path path_;
 };
 
