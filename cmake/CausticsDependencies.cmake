@@ -37,6 +37,9 @@ if(NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
     find_program(CAUSTICS_CCACHE ccache)
     mark_as_advanced(CAUSTICS_CCACHE)
     if(CAUSTICS_CCACHE)
-        set(CMAKE_CXX_COMPILER_LAUNCHER "${CAUSTICS_CCACHE}")
+        # ccache keeps nothing of a file that reads precompiled headers unless told it may.
+        set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env
+            CCACHE_SLOPPINESS=pch_defines,time_macros "${CAUSTICS_CCACHE}")
+        add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
     endif()
 endif()

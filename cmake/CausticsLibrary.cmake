@@ -8,9 +8,16 @@ include(GoogleTest)
 set(CAUSTICS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion)
 # GCC sees uninitialised members in std::variant's move at -O2 and -O3 (its bug 80635).
 list(APPEND CAUSTICS_WARNINGS -Wno-maybe-uninitialized)
+# GCC 12 sees overlapping copies in std::string's operator+ at -O3 (its bug 105651).
+list(APPEND CAUSTICS_WARNINGS -Wno-restrict)
 # No fused multiply-add: the same bits from every build of the same source.
 set(CAUSTICS_COMPILE_OPTIONS -ffp-contract=off)
 set(CAUSTICS_LINK_OPTIONS "")
+# Kernels in AVX2 and AVX-512 are built wherever the processor's family has them.
+string(TOLOWER "${CMAKE_SYSTEM_PROCESSOR}" caustics_processor)
+if(caustics_processor MATCHES "^(x86_64|amd64)$")
+    set(CAUSTICS_X86_KERNELS ON)
+endif()
 if(CAUSTICS_SANITIZE)
     list(APPEND CAUSTICS_COMPILE_OPTIONS "-fsanitize=${CAUSTICS_SANITIZE}"
         -fno-omit-frame-pointer -fno-sanitize-recover=all)
@@ -20,6 +27,31 @@ if(CAUSTICS_COVERAGE)
     list(APPEND CAUSTICS_COMPILE_OPTIONS --coverage -fprofile-update=atomic)
     list(APPEND CAUSTICS_LINK_OPTIONS --coverage)
 endif()
+
+# The headers of others that most files read, compiled once: parsing them is half of a build's time.
+# Our own headers are not among them. `caustics_precompiled` serves libraries and programs,
+# `caustics_precompiled_tests` has GoogleTest and fmt as well.
+function(caustics_use_precompiled target name)
+    if(NOT CAUSTICS_PRECOMPILED_HEADERS)
+        return()
+    endif()
+    if(NOT TARGET ${name})
+        set(headers <Eigen/Core> <Eigen/Geometry> <algorithm> <filesystem> <functional> <map>
+            <optional> <string> <variant> <vector>)
+        set(depends Eigen3::Eigen)
+        if(name STREQUAL caustics_precompiled_tests)
+            list(APPEND headers <fmt/format.h> <gtest/gtest.h>)
+            list(APPEND depends fmt::fmt GTest::gtest)
+        endif()
+        set(source "${PROJECT_BINARY_DIR}/generated/${name}.cpp")
+        file(CONFIGURE OUTPUT "${source}" CONTENT "")
+        add_library(${name} OBJECT "${source}")
+        caustics_configure_target(${name})
+        target_link_libraries(${name} PRIVATE ${depends})
+        target_precompile_headers(${name} PRIVATE ${headers})
+    endif()
+    target_precompile_headers(${target} REUSE_FROM ${name})
+endfunction()
 
 # Sets `out` to the targets that the items name.
 function(caustics_resolve_targets out)
@@ -49,6 +81,9 @@ function(caustics_configure_target target)
     if(CAUSTICS_STD_THREADS)
         target_compile_definitions(${target} PRIVATE CAUSTICS_STD_THREADS=1)
     endif()
+    if(CAUSTICS_X86_KERNELS)
+        target_compile_definitions(${target} PRIVATE CAUSTICS_X86_KERNELS=1)
+    endif()
 endfunction()
 
 # caustics_library(photonmap SOURCES ... [DEPENDS core ...] [PRIVATE_DEPENDS ...])
@@ -60,7 +95,25 @@ function(caustics_library name)
     add_library(caustics_${name} STATIC ${arg_SOURCES})
     add_library(caustics::${name} ALIAS caustics_${name})
     caustics_configure_target(caustics_${name})
+    caustics_use_precompiled(caustics_${name} caustics_precompiled)
     target_link_libraries(caustics_${name} PUBLIC ${depends} PRIVATE ${private_depends})
+endfunction()
+
+# caustics_isa_sources(photonmap AVX2 a_avx2.cpp ... AVX512 a_avx512.cpp ...) adds sources that are
+# compiled for wider registers and chosen at run time (core/isa.h). They must include no inline code of
+# Eigen or the standard library: the linker could take that code for all of the program.
+function(caustics_isa_sources library)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "AVX2;AVX512")
+    if(NOT CAUSTICS_X86_KERNELS)
+        return()
+    endif()
+    set(avx2_flags -mavx2 -mbmi -mbmi2 -mlzcnt)
+    target_sources(caustics_${library} PRIVATE ${arg_AVX2} ${arg_AVX512})
+    set_source_files_properties(${arg_AVX2} PROPERTIES
+        COMPILE_OPTIONS "${avx2_flags}" SKIP_PRECOMPILE_HEADERS ON)
+    set_source_files_properties(${arg_AVX512} PROPERTIES
+        COMPILE_OPTIONS "${avx2_flags};-mavx512f;-mavx512bw;-mavx512dq;-mavx512vl"
+        SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # caustics_executable(causticbench SOURCES ... DEPENDS ...): the program <build folder>/bin/causticbench.
@@ -69,6 +122,7 @@ function(caustics_executable name)
     caustics_resolve_targets(depends ${arg_DEPENDS})
     add_executable(${name} ${arg_SOURCES})
     caustics_configure_target(${name})
+    caustics_use_precompiled(${name} caustics_precompiled)
     target_link_libraries(${name} PRIVATE ${depends})
     set_target_properties(${name} PROPERTIES
         RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
@@ -101,7 +155,8 @@ function(caustics_test name)
     set(program test_${name})
     add_executable(${program} ${arg_SOURCES})
     caustics_configure_target(${program})
-    target_link_libraries(${program} PRIVATE ${depends} GTest::gtest_main)
+    caustics_use_precompiled(${program} caustics_precompiled_tests)
+    target_link_libraries(${program} PRIVATE ${depends} fmt::fmt GTest::gtest_main)
     target_compile_definitions(${program} PRIVATE
         "CAUSTICS_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" ${arg_DEFINES})
     set_target_properties(${program} PROPERTIES
