@@ -45,20 +45,28 @@ void MethodOptions::add_to(CLI::App& verb) {
 
 Method MethodOptions::parse() const { return parse_method(name, parameters_node(params)); }
 
-void RunFlags::add_threads(CLI::App& verb) {
-    verb.add_option("--threads", threads, "Number of threads (default: those available)")
+void MachineFlags::add_to(CLI::App& verb, const std::string& default_threads) {
+    verb.add_option("--threads", threads, "Number of threads (default: " + default_threads + ")")
         ->check(CLI::Range(1, 4096));
+    std::string known;
+    for (const Isa each : supported_isas())
+        known += (known.empty() ? "" : ", ") + std::string(name(each));
+    verb.add_option_function<std::string>(
+            "--isa", [this](const std::string& wanted) { isa = isa_from_name(wanted); },
+            "Instruction set of the hot loops: " + known + " (default: the last)")
+        ->type_name("NAME");
 }
 
 void RunFlags::add_to(CLI::App& verb) {
     verb.add_option("--seed", seed, "Seed of all random numbers (default 1)");
-    add_threads(verb);
+    machine.add_to(verb, "those available");
 }
 
 RunOptions RunFlags::options(int samples_per_pixel) const {
     RunOptions options;
     options.seed = seed;
-    options.threads = threads > 0 ? threads : available_threads();
+    options.threads = machine.threads > 0 ? machine.threads : available_threads();
+    options.isa = machine.isa;
     options.samples_per_pixel = samples_per_pixel;
     options.progress = [](double) { throw_if_interrupted(); };
     return options;

@@ -30,12 +30,19 @@ struct MethodOptions {
     Method parse() const;
 };
 
+/// What of the machine a run may use.
+struct MachineFlags {
+    int threads = 0;         ///< 0: not given
+    Isa isa = widest_isa();  ///< of the methods' hot loops
+
+    void add_to(CLI::App& verb, const std::string& default_threads);
+};
+
 struct RunFlags {
     std::uint64_t seed = 1;
-    int threads = 0;  ///< 0: those the process may run on
+    MachineFlags machine;
 
     void add_to(CLI::App& verb);
-    void add_threads(CLI::App& verb);
     RunOptions options(int samples_per_pixel) const;
 };
 

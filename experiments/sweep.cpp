@@ -126,6 +126,7 @@ private:
         progress.begin(trial.id);
         RunOptions options;
         options.threads = options_.threads > 0 ? options_.threads : trial.threads;
+        options.isa = options_.isa;
         options.progress = [&](double share) { progress.share(share); };
         return run_trial(trial, reference.get(), options);
     }

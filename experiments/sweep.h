@@ -14,6 +14,7 @@ struct SweepOptions {
     bool fail_fast = false;           ///< stop at the first failure
     bool rebuild_references = false;  ///< render references anew
     int threads = 0;                  ///< of a trial; 0: as the sweep file says
+    Isa isa = widest_isa();           ///< of the trials
 };
 
 /// Runs what is not done yet (failed trials count as not done), one trial after the other, and

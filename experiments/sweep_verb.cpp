@@ -15,7 +15,7 @@ struct SweepFlags {
     std::vector<std::string> files;
     std::string folder;
     std::string references = "keep";
-    RunFlags run;
+    MachineFlags machine;
     bool force = false;
     bool fail_fast = false;
     bool list = false;
@@ -32,7 +32,8 @@ int sweep(const SweepFlags& flags) {
     options.force = flags.force;
     options.fail_fast = flags.fail_fast;
     options.rebuild_references = flags.references == "rebuild";
-    options.threads = flags.run.threads;
+    options.threads = flags.machine.threads;
+    options.isa = flags.machine.isa;
     return run_sweep(plan, options);
 }
 
@@ -53,9 +54,7 @@ Verb add_sweep(CLI::App& app) {
     verb->add_option("--references", flags->references,
                      "keep: use the references that are there; rebuild: render them anew")
         ->check(CLI::IsMember({"keep", "rebuild"}));
-    verb->add_option("--threads", flags->run.threads,
-                     "Threads of a trial (default: as the sweep file says, or 1)")
-        ->check(CLI::Range(1, 4096));
+    flags->machine.add_to(*verb, "as the sweep file says, or 1");
     verb->footer(
         "Trials that are done are skipped, those that failed run again. Writes DIR/records.csv "
         "(one "

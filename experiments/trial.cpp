@@ -116,7 +116,6 @@ json trial_record(const Trial& trial, const std::string& status) {
                    {"repeat", trial.repeat},
                    {"threads", trial.threads},
                    {"spp", trial.request.samples_per_pixel},
-                   {"isa", "generic"},
                    {"config_hash", trial.config_hash},
                    {"code_version", code_version()}};
     record["scene"] = {{"name", trial.scene_name},
@@ -142,6 +141,7 @@ json trial_record(const Trial& trial, const std::string& status) {
 TrialOutcome run_trial(const Trial& trial, const Reference* reference, const RunOptions& options) {
     TrialOutcome outcome{trial_record(trial, "failed"), {}, {}};
     outcome.record["threads"] = options.threads;
+    outcome.record["isa"] = name(options.isa);
     const auto end_with = [&](const char* status, const char* message) {
         outcome.record["status"] = status;
         outcome.record["message"] = message;

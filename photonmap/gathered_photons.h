@@ -10,9 +10,9 @@ namespace caustics {
 /// data, so that code for any instruction set can share it. Arrays are aligned to 64 bytes and may be
 /// read (not trusted) up to the next multiple of 16 entries.
 struct GatheredPhotons {
-    const float* squared_distance = nullptr;  ///< from the query's point [m^2]
-    const std::uint32_t* energy = nullptr;    ///< Rgbe, its four bytes in order of address
-    const std::uint16_t* direction = nullptr; ///< DirectionCode: theta, then phi, by address
+    const float* squared_distance = nullptr;   ///< from the query's point [m^2]
+    const std::uint32_t* energy = nullptr;     ///< Rgbe, its four bytes in order of address
+    const std::uint16_t* direction = nullptr;  ///< DirectionCode: theta, then phi, by address
     std::size_t count = 0;
     std::size_t farthest = 0;  ///< index of a photon at the largest distance; 0 when count is 0
 };

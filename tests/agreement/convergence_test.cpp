@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -20,8 +21,9 @@ constexpr int samples_per_pixel = 64;
 
 // A scene of the project with a small film.
 SceneDesc small_scene(const std::string& name) {
-    return load_scene(std::string(CAUSTICS_SOURCE_DIR) + "/experiments/scenes/" + name + ".json",
-                      {{"/sensor/film/width", "16"}, {"/sensor/film/height", "12"}})
+    return load_scene(
+               std::filesystem::path(CAUSTICS_SOURCE_DIR "/experiments/scenes") / (name + ".json"),
+               {{"/sensor/film/width", "16"}, {"/sensor/film/height", "12"}})
         .desc;
 }
 

@@ -4,42 +4,82 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 #include "experiments/files.h"
 
 namespace caustics::support {
 
-ProgramResult causticbench(const std::vector<std::string>& arguments) {
-    static int runs = 0;
-    const std::string base =
-        std::filesystem::temp_directory_path() /
-        ("causticbench-" + std::to_string(getpid()) + "-" + std::to_string(++runs));
-    const std::string out = base + ".out";
-    const std::string err = base + ".err";
-    std::vector<std::string> words = {CAUSTICBENCH};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
+namespace {
 
-    const pid_t child = fork();
-    if (child == 0) {
-        constexpr mode_t mode = 0600;
-        dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDOUT_FILENO);
-        dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDERR_FILENO);
-        execv(argv[0], argv.data());
-        _exit(127);
+/// The program at work, its output going to files.
+class Program {
+public:
+    explicit Program(const std::vector<std::string>& arguments) {
+        std::vector<std::string> words = {CAUSTICBENCH};
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        std::vector<char*> argv;
+        for (std::string& word : words) argv.push_back(word.data());
+        argv.push_back(nullptr);
+
+        child_ = fork();
+        if (child_ == 0) {
+            constexpr mode_t mode = 0600;
+            dup2(open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDOUT_FILENO);
+            dup2(open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDERR_FILENO);
+            execv(argv[0], argv.data());
+            _exit(127);
+        }
     }
-    int status = 0;
-    waitpid(child, &status, 0);
-    ProgramResult result;
-    if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
-    result.out = read_whole_file(out);
-    result.err = read_whole_file(err);
-    std::filesystem::remove(out);
-    std::filesystem::remove(err);
-    return result;
+
+    bool has_ended() { return waitpid(child_, &status_, WNOHANG) == child_; }
+    void interrupt() const { kill(child_, SIGINT); }
+
+    ProgramResult wait() {
+        waitpid(child_, &status_, 0);
+        return result();
+    }
+    ProgramResult result() const {
+        ProgramResult result;
+        if (WIFEXITED(status_)) result.exit_code = WEXITSTATUS(status_);
+        result.out = read_whole_file(out_);
+        result.err = read_whole_file(err_);
+        std::filesystem::remove(out_);
+        std::filesystem::remove(err_);
+        return result;
+    }
+
+private:
+    static std::string file_base() {
+        static int runs = 0;
+        return std::filesystem::temp_directory_path() /
+               ("causticbench-" + std::to_string(getpid()) + "-" + std::to_string(++runs));
+    }
+
+    std::string base_ = file_base();
+    std::string out_ = base_ + ".out";
+    std::string err_ = base_ + ".err";
+    pid_t child_ = -1;
+    int status_ = 0;
+};
+
+}  // namespace
+
+ProgramResult causticbench(const std::vector<std::string>& arguments) {
+    return Program(arguments).wait();
+}
+
+ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments,
+                                       const std::filesystem::path& file) {
+    Program program(arguments);
+    while (!std::filesystem::exists(file)) {
+        if (program.has_ended()) return program.result();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    program.interrupt();
+    return program.wait();
 }
 
 }  // namespace caustics::support

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,5 +15,9 @@ struct ProgramResult {
 
 /// Runs causticbench with these arguments.
 ProgramResult causticbench(const std::vector<std::string>& arguments);
+
+/// Runs it, and sends SIGINT as soon as `file` exists.
+ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments,
+                                       const std::filesystem::path& file);
 
 }  // namespace caustics::support

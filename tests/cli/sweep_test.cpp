@@ -176,6 +176,29 @@ TEST_F(Sweeps, GoOnAfterAFailureAndTryItAgain) {
     for (const Row& row : rows()) EXPECT_EQ(row.at("status"), "done");
 }
 
+TEST_F(Sweeps, StopWhenInterruptedAndGoOnLater) {
+    const std::string file = write_sweep(
+        R"([{"method": "photonmap", "param": {"photons": [500, 1000, 2000, 4000, 300000]}}])");
+    const std::vector<std::string> arguments = {"sweep", file, "-o", out_};
+    const std::string first = read_plan({file}).trials[0].id;
+    const ProgramResult stopped = support::interrupted_causticbench(
+        arguments, fs::path(out_) / "trials" / first / "record.json");
+    EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+    EXPECT_NE(stopped.err.find("interrupted"), std::string::npos) << stopped.err;
+    const auto kept = records();
+    ASSERT_LT(kept.size(), 20U) << "the signal came too late to show anything";
+    std::size_t interrupted = 0;
+    for (const Row& row : rows()) interrupted += row.at("status") == "interrupted" ? 1 : 0;
+    EXPECT_LE(interrupted, 1U);
+    EXPECT_EQ(rows().size(), kept.size() + interrupted);
+
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const auto all = records();
+    EXPECT_EQ(all.size(), 20U);
+    for (const auto& [id, time] : kept) EXPECT_EQ(all.at(id), time) << id << " was run again";
+    for (const Row& row : rows()) EXPECT_EQ(row.at("status"), "done");
+}
+
 TEST_F(Sweeps, StopAtTheFirstFailureWhenAsked) {
     const std::string file = write_sweep(R"([{"method": "none"}])");
     const std::string key = read_plan({file}).trials[0].reference->key;
