@@ -49,7 +49,8 @@ PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
         if (const auto jitter = node.find("jitter")) sampling.jitter = jitter->as_bool();
         const int root = static_cast<int>(std::floor(std::sqrt(sampling.sample_count)));
         if (root * root != sampling.sample_count)
-            count->fail("a stratified sampler takes a square number of samples (" +
+            count->fail(std::to_string(sampling.sample_count) +
+                        " is no square number, which a stratified sampler takes (" +
                         std::to_string(root * root) + " or " +
                         std::to_string((root + 1) * (root + 1)) + ")");
     }

@@ -88,7 +88,7 @@ const std::vector<Broken> broken_scenes = {
      scene_with("\"box\"", "\"gaussian\"")},
     {"NotSquareSamples",
      render_broken,
-     {"5"},
+     {"5 is no square number", "4 or 9"},
      scene_with("\"sample_count\": 4", "\"sample_count\": 5")},
 };
 
