@@ -176,8 +176,10 @@ TEST_P(BrokenInput, EndsInOneLine) {
     EXPECT_EQ(result.err.rfind("causticbench: error: ", 0), 0U) << result.err;
     EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
     EXPECT_EQ(result.out, "");
+    // The folder's name holds the case's and a number, which are not the program's words.
+    const std::string message = replaced(result.err, folder.path(), "DIR");
     for (const std::string& word : broken.words)
-        EXPECT_NE(result.err.find(word), std::string::npos) << word << " is not in " << result.err;
+        EXPECT_NE(message.find(word), std::string::npos) << word << " is not in " << message;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
         EXPECT_EQ(entry.path(), file) << "nothing is written";
 }
