@@ -107,7 +107,8 @@ function(caustics_isa_sources library)
     if(NOT CAUSTICS_X86_KERNELS)
         return()
     endif()
-    set(avx2_flags -mavx2 -mbmi -mbmi2 -mlzcnt)
+    # GCC 12 sees uninitialised registers in its own intrinsics (its bug 105593).
+    set(avx2_flags -mavx2 -mbmi -mbmi2 -mlzcnt -Wno-uninitialized)
     target_sources(caustics_${library} PRIVATE ${arg_AVX2} ${arg_AVX512})
     set_source_files_properties(${arg_AVX2} PROPERTIES
         COMPILE_OPTIONS "${avx2_flags}" SKIP_PRECOMPILE_HEADERS ON)

@@ -1,8 +1,9 @@
 #include "photonmap/direction_code.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "photonmap/direction_tables.h"
 
 namespace caustics {
 
@@ -10,25 +11,26 @@ namespace {
 
 constexpr int cells = 256;
 
-struct SineCosine {
-    float sine;
-    float cosine;
-};
-
 /// Sine and cosine at the centres of 256 cells of [0, range].
-std::array<SineCosine, cells> tabulate(double range) {
-    std::array<SineCosine, cells> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        const double angle = (static_cast<double>(i) + 0.5) * range / cells;
+void tabulate(double range, SineCosine (&table)[cells]) {
+    for (int i = 0; i < cells; ++i) {
+        const double angle = (i + 0.5) * range / cells;
         table[i] = {static_cast<float>(std::sin(angle)), static_cast<float>(std::cos(angle))};
     }
-    return table;
 }
 
-const std::array<SineCosine, cells> theta_table = tabulate(pi_d);
-const std::array<SineCosine, cells> phi_table = tabulate(2 * pi_d);
+DirectionTables tabulate() {
+    DirectionTables tables;
+    tabulate(pi_d, tables.theta);
+    tabulate(2 * pi_d, tables.phi);
+    return tables;
+}
+
+const DirectionTables tables = tabulate();
 
 }  // namespace
+
+const DirectionTables& direction_tables() { return tables; }
 
 DirectionCode encode_direction(const Vec3& direction) {
     const double theta = std::acos(std::clamp(static_cast<double>(direction.z()), -1.0, 1.0));
@@ -42,8 +44,8 @@ DirectionCode encode_direction(const Vec3& direction) {
 }
 
 Vec3 decode_direction(std::uint8_t theta, std::uint8_t phi) {
-    const SineCosine t = theta_table[theta];
-    const SineCosine p = phi_table[phi];
+    const SineCosine t = tables.theta[theta];
+    const SineCosine p = tables.phi[phi];
     return {t.sine * p.cosine, t.sine * p.sine, t.cosine};
 }
 

@@ -1,0 +1,208 @@
+#include "photonmap/shading.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "shading_sets.h"
+
+namespace caustics {
+namespace {
+
+using test::PhotonArrays;
+
+const Spectrum grey_red(0.9F, 0.5F, 0.25F);
+
+Bsdf lambert() { return {Diffuse{grey_red}}; }
+Bsdf schlick(float alpha) { return {Schlick{grey_red, alpha}}; }
+
+/// What each photon's flux is multiplied by, in double; which photons count at all is as
+/// evaluate() decides it.
+SpectrumSum oracle(const ReceiverPoint& point, const PhotonArrays& photons, bool weighted,
+                   std::size_t left_out) {
+    const Vec3d n = point.shading_normal.cast<double>().normalized();
+    const Vec3d wo = point.wo.cast<double>().normalized();
+    const auto* const model = std::get_if<Schlick>(&point.bsdf->model);
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (std::size_t i = 0; i < photons.size(); ++i) {
+        const DirectionCode code = photons.direction(i);
+        const Vec3 wi = decode_direction(code.theta, code.phi);
+        if (i == left_out || point.shading_normal.dot(wi) <= 0) continue;
+        const double reflection =
+            model == nullptr ? 1 / pi_d
+                             : test::schlick_as_printed(static_cast<double>(model->alpha), n, wo,
+                                                        wi.cast<double>().normalized());
+        const double weight = weighted ? static_cast<double>(photons.weight(i)) : 1.0;
+        sum += decode_rgbe(photons.energy(i)).cast<double>() * reflection * weight;
+    }
+    return sum * grey_red.cast<double>();
+}
+
+void expect_close(const SpectrumSum& value, const SpectrumSum& truth, const std::string& what) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], truth[c], 1e-5 * truth[c]) << what << c;
+}
+
+TEST(Shading, IsTheFormulaOnEveryInstructionSet) {
+    Rng rng(31, Stage::test, 0);
+    for (const float alpha : {0.0F, 1.0F, 0.5F, 0.1F, 0.01F, 0.001F}) {
+        const Bsdf bsdf = alpha > 0 ? schlick(alpha) : lambert();
+        for (const std::size_t count : {0, 1, 7, 8, 9, 15, 16, 17, 31, 100, 511, 512, 513, 1500}) {
+            const ReceiverPoint point = test::random_point(rng, bsdf);
+            const PhotonArrays photons = test::random_photons(count, 32);
+            for (const bool weighted : {false, true}) {
+                const std::size_t left_out = weighted ? count / 2 : WeightedPhotons::none;
+                const SpectrumSum truth = oracle(point, photons, weighted, left_out);
+                for (const Isa isa : supported_isas())
+                    expect_close(Shading(isa).reflected(point, photons.photons(weighted, left_out)),
+                                 truth,
+                                 name(isa) + std::string(" ") + std::to_string(alpha) + " " +
+                                     std::to_string(count) + " channel ");
+                ReflectionTable table;
+                expect_close(Shading(Isa::plain)
+                                 .reflected(point, photons.photons(weighted, left_out), table),
+                             truth, "table ");
+            }
+        }
+    }
+}
+
+TEST(Shading, IsTheFormulaWhereTheLobeIsSharpest) {
+    // Seen near the mirror direction, along the normal and at grazing angles.
+    const Bsdf bsdf = schlick(0.01F);
+    Rng rng(33, Stage::test, 0);
+    for (const double degrees : {0.0, 1e-6, 0.01, 1.0, 45.0, 80.0, 89.9}) {
+        ReceiverPoint point = test::random_point(rng, bsdf);
+        const Vec3d n = point.shading_normal.cast<double>();
+        const double angle = degrees * pi_d / 180;
+        point.wo = (n * std::cos(angle) + n.unitOrthogonal() * std::sin(angle)).cast<float>();
+        const Vec3 mirrored =
+            2 * point.shading_normal.dot(point.wo) * point.shading_normal - point.wo;
+        PhotonArrays photons(64);
+        for (std::size_t i = 0; i < photons.size(); ++i) {
+            const Vec3 near = mirrored + 0.05F * test::random_direction(rng);
+            photons.set(i, encode_rgbe(Spectrum::Ones()), encode_direction(near.normalized()));
+        }
+        const SpectrumSum truth = oracle(point, photons, false, WeightedPhotons::none);
+        for (const Isa isa : supported_isas())
+            expect_close(Shading(isa).reflected(point, photons.photons()), truth,
+                         name(isa) + std::string(" ") + std::to_string(degrees) + " channel ");
+    }
+}
+
+TEST(Shading, CountsThePhotonsThatEvaluateCountsForEveryDirectionCode) {
+    const Bsdf bsdf = lambert();
+    Rng rng(34, Stage::test, 0);
+    PhotonArrays all(65'536);
+    for (std::size_t code = 0; code < all.size(); ++code)
+        all.set(code, encode_rgbe(Spectrum::Ones()),
+                {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8U)});
+    for (int trial = 0; trial < 30; ++trial) {
+        ReceiverPoint point = test::random_point(rng, bsdf);
+        // Normals along the axes put whole circles of directions at rounding's mercy.
+        if (trial < 3) point.shading_normal = point.wo = Vec3::Unit(trial);
+        double counted = 0;
+        for (std::size_t code = 0; code < all.size(); ++code) {
+            const Vec3 wi = decode_direction(all.direction(code).theta, all.direction(code).phi);
+            if (!is_black(evaluate(bsdf, point.uv, point.shading_normal, point.wo, wi)))
+                counted += 1;
+        }
+        for (const Isa isa : supported_isas()) {
+            const SpectrumSum sum = Shading(isa).reflected(point, all.photons());
+            EXPECT_NEAR(sum[0] * pi_d / static_cast<double>(grey_red[0]), counted, 0.01)
+                << name(isa) << " trial " << trial;
+        }
+    }
+}
+
+TEST(Shading, IsBlackFromBelow) {
+    Rng rng(35, Stage::test, 0);
+    const PhotonArrays photons = test::random_photons(100, 36);
+    for (const Bsdf& bsdf : {lambert(), schlick(0.1F)}) {
+        ReceiverPoint point = test::random_point(rng, bsdf);
+        point.wo = -point.wo;
+        ReflectionTable table;
+        for (const Isa isa : supported_isas()) {
+            EXPECT_TRUE((Shading(isa).reflected(point, photons.photons()) == 0).all());
+            EXPECT_TRUE((Shading(isa).reflected(point, photons.photons(), table) == 0).all());
+        }
+    }
+}
+
+TEST(Shading, DecodesEveryEnergyExactly) {
+    for (int exponent = 0; exponent < 255; ++exponent) {
+        PhotonArrays photons(1);
+        const Rgbe energy{{255, 1, static_cast<std::uint8_t>(exponent)},
+                          static_cast<std::uint8_t>(exponent)};
+        photons.set(0, energy, {});
+        const SpectrumSum truth = decode_rgbe(energy).cast<double>();
+        for (const Isa isa : supported_isas())
+            EXPECT_TRUE((Shading(isa).arriving(photons.photons()) == truth).all())
+                << name(isa) << " " << exponent;
+    }
+}
+
+TEST(Shading, ArrivingLeavesOutAndWeighs) {
+    const PhotonArrays photons = test::random_photons(700, 37);
+    for (const std::size_t left_out : {0, 3, 16, 511, 512, 513, 699}) {
+        SpectrumSum truth = SpectrumSum::Zero();
+        for (std::size_t i = 0; i < photons.size(); ++i)
+            if (i != left_out)
+                truth += (decode_rgbe(photons.energy(i)) * photons.weight(i)).cast<double>();
+        for (const Isa isa : supported_isas())
+            expect_close(Shading(isa).arriving(photons.photons(true, left_out)), truth, name(isa));
+    }
+}
+
+TEST(Shading, EvaluatesWhatHasNoKernelPhotonByPhoton) {
+    // No receiver is glass, but the sum is still what evaluate() says: black.
+    const Bsdf glass{Dielectric{}};
+    Rng rng(38, Stage::test, 0);
+    const ReceiverPoint point = test::random_point(rng, glass);
+    const PhotonArrays photons = test::random_photons(20, 39);
+    ReflectionTable table;
+    EXPECT_TRUE((Shading(Isa::plain).reflected(point, photons.photons()) == 0).all());
+    EXPECT_TRUE((Shading(Isa::plain).reflected(point, photons.photons(), table) == 0).all());
+}
+
+TEST(ReflectionTable, WorksEachDirectionOutOnce) {
+    const Bsdf bsdf = schlick(0.1F);
+    Rng rng(40, Stage::test, 0);
+    const ReceiverPoint point = test::random_point(rng, bsdf);
+    const PhotonArrays photons = test::random_photons(5'000, 41);
+    std::set<int> codes;
+    for (std::size_t i = 0; i < photons.size(); ++i)
+        codes.insert(photons.direction(i).theta + 256 * photons.direction(i).phi);
+    ReflectionTable table;
+    const Shading shading(Isa::plain);
+    const SpectrumSum once = shading.reflected(point, photons.photons(), table);
+    EXPECT_EQ(table.lookups(), photons.size());
+    EXPECT_EQ(table.fillings(), codes.size());
+    EXPECT_TRUE((shading.reflected(point, photons.photons(), table) == once).all());
+    EXPECT_EQ(table.lookups(), 2 * photons.size());
+    EXPECT_EQ(table.fillings(), codes.size());
+}
+
+TEST(ReflectionTable, ForgetsWhenThePointOrTheViewChanges) {
+    const Bsdf sharp = schlick(0.1F), broad = schlick(0.2F), flat = lambert();
+    Rng rng(42, Stage::test, 0);
+    const PhotonArrays photons = test::random_photons(100, 43);
+    ReflectionTable table;
+    const Shading shading(Isa::plain);
+    ReceiverPoint point = test::random_point(rng, sharp);
+    const auto expect_right = [&](const std::string& what) {
+        expect_close(shading.reflected(point, photons.photons(), table),
+                     oracle(point, photons, false, WeightedPhotons::none), what);
+    };
+    expect_right("first ");
+    point.wo = (point.wo + 0.1F * point.shading_normal).normalized();
+    expect_right("view ");
+    point.bsdf = &broad;
+    expect_right("alpha ");
+    point.bsdf = &flat;
+    expect_right("model ");
+    point = test::random_point(rng, flat);
+    expect_right("normal ");
+}
+
+}  // namespace
+}  // namespace caustics
