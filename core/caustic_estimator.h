@@ -72,6 +72,7 @@ struct RunOptions {
     std::uint64_t seed = 1;
     int threads = 1;
     int samples_per_pixel = 1;  ///< of the eye pass; 1 in `probe`
+    bool adaptive = true;       ///< whether an adaptive sampler may take more (references: no)
     Isa isa = widest_isa();     ///< of the methods' hot loops
     std::function<void(std::string_view)> begin_phase;
     std::function<void(double)> progress;

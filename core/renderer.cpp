@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+#include <numeric>
 #include <utility>
 
 #include "core/direct_light.h"
 #include "core/eye_path.h"
+#include "core/film_layers.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 
@@ -21,81 +21,86 @@ struct Tile {
     int x0, y0, x1, y1;
 };
 
-// A receiver point's place in the picture.
+// Whose sample a receiver point belongs to, and with which weight.
 struct PointOwner {
-    std::size_t pixel;
-    int sample;
+    std::size_t pixel;  ///< in the tile
+    std::size_t value;  ///< index of the sample's value
     Spectrum weight;
 };
 
 // A thread's scratch, reused from tile to tile.
 struct Worker {
     std::unique_ptr<QueryContext> context;
+    std::vector<std::size_t> pixels;
     std::vector<WeightedPoint> found;
     std::vector<ReceiverPoint> points;
     std::vector<PointOwner> owners;
     std::vector<Estimate> estimates;
+    std::vector<SpectrumSum> values;  ///< of the samples of a round
     std::uint64_t camera_rays = 0;
-};
-
-struct PixelSums {
-    SpectrumSum direct = SpectrumSum::Zero();
-    SpectrumSum emitted = SpectrumSum::Zero();
-    SpectrumSum caustic = SpectrumSum::Zero();
-    SpectrumSum caustic_squares = SpectrumSum::Zero();
-    SpectrumSum own_variance = SpectrumSum::Zero();  ///< of single-sample pixels
-    SpectrumSum albedo = SpectrumSum::Zero();
-    Vec3d normal = Vec3d::Zero();
-    double depth = 0;
-    int hits = 0;
-    int through_caster = 0;
 };
 
 class EyePass {
 public:
     EyePass(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options)
-        : scene_(scene), estimator_(estimator), options_(options) {}
+        : scene_(scene),
+          estimator_(estimator),
+          options_(options),
+          adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
+          most_samples_(adaptive_ ? scene.sampling().max_sample_count : options.samples_per_pixel),
+          tiles_(all_tiles()),
+          workers_(static_cast<std::size_t>(std::max(1, options.threads))) {}
 
     Rendering run() {
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
         const auto layer = estimator_.camera_layer(options_);
-        make_planes(rendering.film, layer.has_value());
-        render_tiles(rendering, !layer.has_value());
-        if (layer) insert(*layer, rendering.film);
+        with_caustic_ = !layer.has_value();
+        FilmLayers layers(rendering.film, {.unreached = layer.has_value(),
+                                           .standard_error = layer || estimator_.is_statistical(),
+                                           .samples = adaptive_});
+        if (adaptive_)
+            sample_adaptively(layers);
+        else
+            for_each_tile(0, 1, [&](const Tile& tile, std::size_t, Worker& worker) {
+                std::vector<PixelSums> sums(pixel_count(tile));
+                sample_all(tile, sums, worker);
+                write(tile, sums, layers);
+            });
+        if (layer)
+            for (std::size_t pixel = 0; pixel < rendering.film.pixel_count(); ++pixel)
+                layers.write_caustic(pixel, layer->radiance[pixel], layer->standard_error[pixel]);
+        layers.sum_beauty();
+        rendering.report.counters = counters();
         if (layer)
             for (const auto& [name, count] : layer->counters)
                 rendering.report.counters[name] += count;
-        sum_beauty(rendering.film);
         return rendering;
     }
 
 private:
-    void make_planes(Film& film, bool camera_layer) const {
-        for (const char* layer : {"", "direct", "caustic", "specular", "albedo"})
-            film.set_rgb(layer, 0, black());
-        for (const char* channel : {"normal.X", "normal.Y", "normal.Z", "depth.Z"})
-            film.plane(channel);
-        if (camera_layer) film.plane("unreached.Y");
-        if (estimator_.is_statistical()) film.set_rgb("stderr", 0, black());
+    // Calls body(tile, index, worker) for every tile; the progress goes from `from` to `to`.
+    template <typename Body>
+    void for_each_tile(double from, double to, const Body& body) {
+        std::atomic<std::size_t> done{0};
+        parallel_for(options_.threads, tiles_.size(), [&](std::size_t i, std::size_t w) {
+            Worker& worker = workers_[w];
+            if (!worker.context) worker.context = estimator_.make_context();
+            body(tiles_[i], i, worker);
+            const double share = static_cast<double>(++done) / static_cast<double>(tiles_.size());
+            options_.report(from + share * (to - from));
+        });
     }
 
-    void render_tiles(Rendering& rendering, bool with_caustic) {
-        const std::vector<Tile> tiles = all_tiles();
-        std::vector<Worker> workers(static_cast<std::size_t>(std::max(1, options_.threads)));
-        std::atomic<std::size_t> done{0};
-        parallel_for(options_.threads, tiles.size(), [&](std::size_t i, std::size_t w) {
-            Worker& worker = workers[w];
-            if (!worker.context) worker.context = estimator_.make_context();
-            render_tile(tiles[i], with_caustic, worker, rendering.film);
-            options_.report(static_cast<double>(++done) / static_cast<double>(tiles.size()));
-        });
+    Counters counters() const {
+        Counters all;
         std::uint64_t camera_rays = 0;
-        for (const Worker& worker : workers) {
-            if (worker.context) worker.context->add_to(rendering.report.counters);
+        for (const Worker& worker : workers_) {
+            if (worker.context) worker.context->add_to(all);
             camera_rays += worker.camera_rays;
         }
-        rendering.report.counters["camera_rays"] = camera_rays;
+        all["camera_rays"] = camera_rays;
+        return all;
     }
 
     std::vector<Tile> all_tiles() const {
@@ -106,6 +111,54 @@ private:
                 tiles.push_back({x, y, std::min(x + tile_size, camera.width),
                                  std::min(y + tile_size, camera.height)});
         return tiles;
+    }
+
+    static std::size_t pixel_count(const Tile& tile) {
+        return static_cast<std::size_t>(tile.x1 - tile.x0) *
+               static_cast<std::size_t>(tile.y1 - tile.y0);
+    }
+
+    // The base samples of the whole picture first: how bright it is decides what is dark.
+    void sample_adaptively(FilmLayers& layers) {
+        std::vector<std::vector<PixelSums>> sums(tiles_.size());
+        for_each_tile(0, 0.5, [&](const Tile& tile, std::size_t i, Worker& worker) {
+            sums[i].resize(pixel_count(tile));
+            sample_all(tile, sums[i], worker);
+        });
+        SpectrumSum brightness = SpectrumSum::Zero();
+        for (const std::vector<PixelSums>& tile : sums)
+            for (const PixelSums& pixel : tile) brightness += pixel.beauty() / pixel.samples;
+        const Camera& camera = scene_.camera();
+        const SpectrumSum mean = brightness / (double{1} * camera.width * camera.height);
+        for_each_tile(0.5, 1, [&](const Tile& tile, std::size_t i, Worker& worker) {
+            refine(tile, mean, sums[i], worker);
+            write(tile, sums[i], layers);
+            sums[i] = {};
+        });
+    }
+
+    // Doubles the samples of the pixels whose error is too large, until none is or none may have more.
+    void refine(const Tile& tile, const SpectrumSum& mean, std::vector<PixelSums>& sums,
+                Worker& worker) const {
+        for (int samples = options_.samples_per_pixel; samples < most_samples_;) {
+            worker.pixels.clear();
+            for (std::size_t pixel = 0; pixel < sums.size(); ++pixel)
+                if (sums[pixel].samples == samples && needs_more(sums[pixel], mean))
+                    worker.pixels.push_back(pixel);
+            if (worker.pixels.empty()) return;
+            const int more = std::min(samples, most_samples_ - samples);
+            sample(tile, samples, more, sums, worker);
+            samples += more;
+        }
+    }
+
+    // A standard error above the allowed share of the pixel's own brightness, or of a tenth of the
+    // picture's for pixels darker than that.
+    bool needs_more(const PixelSums& sums, const SpectrumSum& mean) const {
+        const SpectrumSum beauty = sums.beauty();
+        const SpectrumSum allowed = static_cast<double>(scene_.sampling().max_error) *
+                                    (beauty / sums.samples).max(0.1 * mean);
+        return (sums.variance_of_mean(beauty, sums.beauty_squares) > allowed.square()).any();
     }
 
     // The film point of a sample, in pixels (Mitsuba's samplers; [C11] with two numbers an axis).
@@ -122,34 +175,45 @@ private:
         return {x + u, y + v};
     }
 
-    void render_tile(const Tile& tile, bool with_caustic, Worker& worker, Film& film) const {
-        const auto width = static_cast<std::size_t>(tile.x1 - tile.x0);
-        std::vector<PixelSums> sums(width * static_cast<std::size_t>(tile.y1 - tile.y0));
+    void sample_all(const Tile& tile, std::vector<PixelSums>& sums, Worker& worker) const {
+        worker.pixels.resize(sums.size());
+        std::iota(worker.pixels.begin(), worker.pixels.end(), std::size_t{0});
+        sample(tile, 0, options_.samples_per_pixel, sums, worker);
+    }
+
+    // Takes samples first .. first + count of the worker's pixels. One batch for the method; a
+    // sample's points stand together, so that their sum is one sample's value.
+    void sample(const Tile& tile, int first, int count, std::vector<PixelSums>& sums,
+                Worker& worker) const {
         worker.points.clear();
         worker.owners.clear();
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x)
-                for (int sample = 0; sample < options_.samples_per_pixel; ++sample) {
-                    const std::size_t pixel = static_cast<std::size_t>(y - tile.y0) * width +
-                                              static_cast<std::size_t>(x - tile.x0);
-                    trace_sample(x, y, sample, pixel, sums[pixel], worker);
-                }
-        if (with_caustic) add_caustic(worker, sums);
-        for (std::size_t pixel = 0; pixel < sums.size(); ++pixel)
-            write_pixel(tile.x0 + static_cast<int>(pixel % width),
-                        tile.y0 + static_cast<int>(pixel / width), sums[pixel], film);
+        worker.values.clear();
+        const int width = tile.x1 - tile.x0;
+        for (const std::size_t pixel : worker.pixels)
+            for (int i = first; i < first + count; ++i) {
+                const int x = tile.x0 + static_cast<int>(pixel) % width;
+                const int y = tile.y0 + static_cast<int>(pixel) / width;
+                worker.values.push_back(trace_sample(x, y, i, pixel, sums[pixel], worker));
+            }
+        if (with_caustic_) add_caustic(worker, sums);
+        for (std::size_t i = 0; i < worker.values.size(); ++i) {
+            PixelSums& pixel = sums[worker.pixels[i / static_cast<std::size_t>(count)]];
+            pixel.beauty_squares += worker.values[i].square();
+            ++pixel.samples;
+        }
     }
 
     std::uint64_t sample_id(int x, int y, int sample) const {
         const auto pixel =
             static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(scene_.camera().width) +
             static_cast<std::uint64_t>(x);
-        return pixel * static_cast<std::uint64_t>(options_.samples_per_pixel) +
+        return pixel * static_cast<std::uint64_t>(most_samples_) +
                static_cast<std::uint64_t>(sample);
     }
 
-    void trace_sample(int x, int y, int sample, std::size_t pixel, PixelSums& sums,
-                      Worker& worker) const {
+    // Gives the sample's radiance without caustics.
+    SpectrumSum trace_sample(int x, int y, int sample, std::size_t pixel, PixelSums& sums,
+                             Worker& worker) const {
         const std::uint64_t id = sample_id(x, y, sample);
         Rng rng(options_.seed, Stage::eye, id);
         const Vec2d at = film_point(x, y, sample, rng);
@@ -158,23 +222,25 @@ private:
         worker.found.clear();
         const EyePath path = trace_eye_path(scene_, ray, rng, worker.found);
         ++worker.camera_rays;
-        sums.emitted += path.emitted.cast<double>();
+        const SpectrumSum emitted = path.emitted.cast<double>();
+        sums.emitted += emitted;
         sums.albedo += path.first.albedo.cast<double>();
         sums.normal += path.first.normal.cast<double>();
         sums.depth += static_cast<double>(path.first.depth);
         sums.hits += path.first.depth > 0 ? 1 : 0;
         sums.through_caster += path.first.caster ? 1 : 0;
+        SpectrumSum direct = SpectrumSum::Zero();
         std::uint64_t branch = 0;
         for (WeightedPoint& found : worker.found) {
-            sums.direct +=
-                (found.weight * direct_radiance(scene_, found.point, rng)).cast<double>();
+            direct += (found.weight * direct_radiance(scene_, found.point, rng)).cast<double>();
             found.point.id = id << 8U | (branch++ & 0xFFU);
             worker.points.push_back(found.point);
-            worker.owners.push_back({pixel, sample, found.weight});
+            worker.owners.push_back({pixel, worker.values.size(), found.weight});
         }
+        sums.direct += direct;
+        return emitted + direct;
     }
 
-    // One batch a tile; a sample's points stand together, so that its sum is one sample's value.
     void add_caustic(Worker& worker, std::vector<PixelSums>& sums) const {
         worker.estimates.assign(worker.points.size(), Estimate{});
         estimator_.radiance(worker.points, worker.estimates, *worker.context);
@@ -182,74 +248,38 @@ private:
             const PointOwner& owner = worker.owners[i];
             SpectrumSum value = SpectrumSum::Zero();
             SpectrumSum variance = SpectrumSum::Zero();
-            for (; i < worker.points.size() && worker.owners[i].pixel == owner.pixel &&
-                   worker.owners[i].sample == owner.sample;
-                 ++i) {
+            for (; i < worker.points.size() && worker.owners[i].value == owner.value; ++i) {
                 const SpectrumSum weight = worker.owners[i].weight.cast<double>();
                 value += weight * worker.estimates[i].value.cast<double>();
                 variance += (weight * worker.estimates[i].standard_error.cast<double>()).square();
             }
+            worker.values[owner.value] += value;
             sums[owner.pixel].caustic += value;
             sums[owner.pixel].caustic_squares += value.square();
             sums[owner.pixel].own_variance += variance;
         }
     }
 
-    void write_pixel(int x, int y, const PixelSums& sums, Film& film) const {
-        const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width()) +
-                           static_cast<std::size_t>(x);
-        const double n = options_.samples_per_pixel;
-        const auto put = [&](const char* layer, const SpectrumSum& sum) {
-            put_finite(layer, pixel, (sum / n).cast<float>(), film);
-        };
-        put("direct", sums.direct);
-        put("specular", sums.emitted);
-        put("caustic", sums.caustic);
-        put("albedo", sums.albedo);
-        const Vec3d normal = sums.normal / n;
-        film.plane("normal.X")[pixel] = static_cast<float>(normal.x());
-        film.plane("normal.Y")[pixel] = static_cast<float>(normal.y());
-        film.plane("normal.Z")[pixel] = static_cast<float>(normal.z());
-        if (sums.hits > 0)
-            film.plane("depth.Z")[pixel] = static_cast<float>(sums.depth / sums.hits);
-        if (film.find("unreached.Y") != nullptr)
-            film.plane("unreached.Y")[pixel] = static_cast<float>(sums.through_caster / n);
-        if (!estimator_.is_statistical()) return;
-        // Several samples tell the error by their scatter, a single one only by its own paths'.
-        const SpectrumSum variance =
-            n > 1 ? SpectrumSum((sums.caustic_squares / n - (sums.caustic / n).square()).max(0) /
-                                (n - 1))
-                  : sums.own_variance;
-        put("stderr", variance.sqrt() * n);
-    }
-
-    static void put_finite(const char* layer, std::size_t pixel, const Spectrum& value,
-                           Film& film) {
-        const auto width = static_cast<std::size_t>(film.width());
-        if (!is_finite(value))
-            throw std::runtime_error("pixel (" + std::to_string(pixel % width) + ", " +
-                                     std::to_string(pixel / width) + "): layer " + layer +
-                                     " is not finite");
-        film.set_rgb(layer, pixel, value);
-    }
-
-    static void insert(const CameraLayer& layer, Film& film) {
-        for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
-            put_finite("caustic", pixel, layer.radiance[pixel], film);
-            put_finite("stderr", pixel, layer.standard_error[pixel], film);
+    void write(const Tile& tile, const std::vector<PixelSums>& sums, FilmLayers& layers) const {
+        const int width = tile.x1 - tile.x0;
+        for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
+            const int x = tile.x0 + static_cast<int>(pixel) % width;
+            const int y = tile.y0 + static_cast<int>(pixel) / width;
+            layers.write(
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(scene_.camera().width) +
+                    static_cast<std::size_t>(x),
+                sums[pixel]);
         }
-    }
-
-    static void sum_beauty(Film& film) {
-        for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel)
-            film.set_rgb("", pixel,
-                         film.rgb("direct", pixel) + film.rgb("caustic", pixel) +
-                             film.rgb("specular", pixel));
     }
 
     const Scene& scene_;
     const CausticEstimator& estimator_;
     RunOptions options_;
+    bool adaptive_;
+    int most_samples_;
+    bool with_caustic_ = true;
+    std::vector<Tile> tiles_;
+    std::vector<Worker> workers_;
 };
 
 }  // namespace

@@ -18,7 +18,8 @@ struct Rendering {
 
 /// The eye pass, the same code and the same camera samples for every method: direct light, the
 /// specular chains S* E with Fresnel, Beer's law and n^2 scaling, and at each receiver point the
-/// method's caustic radiance. Layers as film.h. Bit-identical for any number of threads.
+/// method's caustic radiance. Layers as film.h. Adaptive sampling, where the scene's sampler asks for
+/// it, takes its first samples everywhere and more where they scatter. Bit-identical for any number of threads.
 Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options);
 
 }  // namespace caustics

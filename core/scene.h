@@ -38,11 +38,16 @@ struct SegmentEnd {
     float offset = 0;                      ///< of that surface [m]
 };
 
-/// How the pixel's samples are placed (Mitsuba's `independent` and `stratified`; row C4).
+/// How the pixel's samples are placed: Mitsuba's `independent` and `stratified` (row C4), and
+/// `adaptive` (row J10), which starts with independent ones and doubles them while a pixel's standard
+/// error exceeds a share of its brightness, as the adaptive integrator of Mitsuba 0.6 does. Samples
+/// that decide about more samples are used as well, so that an adaptive picture is slightly biased.
 struct PixelSampling {
     bool stratified = false;
     bool jitter = true;  ///< of stratified samples; false = cell centres
     int sample_count = 4;
+    int max_sample_count = 0;  ///< of adaptive sampling; 0 = the same number everywhere
+    float max_error = 0.05F;   ///< of adaptive sampling: allowed standard error / brightness
 };
 
 /// The parsed scene: plain data, no acceleration structure.

@@ -54,6 +54,20 @@ PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
                         std::to_string(root * root) + " or " +
                         std::to_string((root + 1) * (root + 1)) + ")");
     }
+    if (type == "adaptive") {
+        const auto most = node.find("max_sample_count");
+        sampling.max_sample_count =
+            most ? static_cast<int>(most->as_integer_in(1, 1 << 20)) : 32 * sampling.sample_count;
+        if (sampling.sample_count < 2)
+            node.fail("adaptive sampling starts with at least 2 samples (sample_count)");
+        if (most && sampling.max_sample_count < sampling.sample_count)
+            most->fail("must not be below sample_count (" + std::to_string(sampling.sample_count) +
+                       ")");
+        if (const auto error = node.find("max_error")) {
+            sampling.max_error = static_cast<float>(error->as_number());
+            if (!(sampling.max_error > 0)) error->fail("must be above 0");
+        }
+    }
     node.finish();
     return sampling;
 }
@@ -87,9 +101,9 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
     const auto children = node.children();
     node.finish();
     for (const auto& [key, child] : children) {
-        const std::string type =
-            read_type(child, "film or sampler", {"hdrfilm", "independent", "stratified"},
-                      {"specfilm", "multijitter", "orthogonal", "ldsampler"});
+        const std::string type = read_type(child, "film or sampler",
+                                           {"hdrfilm", "independent", "stratified", "adaptive"},
+                                           {"specfilm", "multijitter", "orthogonal", "ldsampler"});
         bool& seen = type == "hdrfilm" ? has_film : has_sampler;
         if (seen) child.fail("stands twice: a sensor takes one film and one sampler");
         seen = true;

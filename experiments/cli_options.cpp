@@ -79,6 +79,10 @@ int samples_per_pixel(const PixelSampling& sampling, int asked) {
         throw InputError(fmt::format(
             "--spp {}: the scene's stratified sampler takes n^2 samples a pixel (nearest: {})",
             count, root * root));
+    if (sampling.max_sample_count > 0 && (count < 2 || count > sampling.max_sample_count))
+        throw InputError(fmt::format(
+            "--spp {}: the scene's adaptive sampler starts with 2 to {} samples a pixel", count,
+            sampling.max_sample_count));
     return count;
 }
 

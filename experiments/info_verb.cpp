@@ -57,6 +57,14 @@ struct LightLine {
     }
 };
 
+std::string sampling_name(const PixelSampling& sampling) {
+    if (sampling.max_sample_count > 0)
+        return fmt::format("adaptive to {}, error {:g}", sampling.max_sample_count,
+                           sampling.max_error);
+    if (!sampling.stratified) return "independent";
+    return sampling.jitter ? "stratified" : "regular";
+}
+
 std::string describe_scene(const SceneOptions& options, const SceneFile& file, const Scene& scene) {
     std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
     for (const auto& [name, hash] : file.assets)
@@ -64,10 +72,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     text += fmt::format("diameter {:.6g} m\n", scene.diameter());
     const PixelSampling& sampling = scene.sampling();
     text += fmt::format("film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
-                        scene.camera().height, sampling.sample_count,
-                        !sampling.stratified ? "independent"
-                        : sampling.jitter    ? "stratified"
-                                             : "regular");
+                        scene.camera().height, sampling.sample_count, sampling_name(sampling));
     text += "shapes\n";
     for (const Shape& shape : scene.shapes()) text += shape_line(shape);
     text += "lights\n";

@@ -66,6 +66,7 @@ constexpr Column columns_of_all[] = {
     {"render_cpu_s", "/seconds/render/cpu"},
     {"reference_mean", "/reference/mean"},
     {"spp", "/spp"},
+    {"camera_rays", "/counters/camera_rays"},
     {"message", "/message"},
 };
 

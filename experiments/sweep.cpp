@@ -77,6 +77,7 @@ private:
     static RunOptions reference_options(Progress* progress) {
         RunOptions options;
         options.threads = available_threads();
+        options.adaptive = false;
         options.progress = [progress](double share) {
             throw_if_interrupted();
             if (progress != nullptr) progress->share(share);

@@ -52,7 +52,9 @@ void resolve(const SweepFile& sweep, SceneVariant& variant) {
     variant.hash = file.hash;
     samples_per_pixel(file.desc.sampling, sweep.spp);
     if (!sweep.reference) return;
-    samples_per_pixel(file.desc.sampling, sweep.reference->spp);
+    PixelSampling fixed_rate = file.desc.sampling;
+    fixed_rate.max_sample_count = 0;
+    samples_per_pixel(fixed_rate, sweep.reference->spp);
     const Scene scene(file.desc);
     if (const auto reason = why_unsupported(scene, sweep.reference->method))
         throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),

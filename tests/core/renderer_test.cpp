@@ -236,6 +236,79 @@ TEST(Renderer, StratifiedSamplesStandInTheirCells) {
     }
 }
 
+// A floor seen from straight above, black for x below 0.1 m and grey beyond.
+class AdaptiveSampling : public testing::Test {
+protected:
+    static SceneDesc floor(int most, float error) {
+        SceneDesc desc;
+        desc.shapes.push_back(support::horizontal("floor", 0, 50, true, support::diffuse(0.5F)));
+        desc.camera = support::camera({0, 0, 2}, {0, 0.001, 0}, {0, 1, 0}, 30, 33, 21);
+        desc.sampling.max_sample_count = most;
+        desc.sampling.max_error = error;
+        return desc;
+    }
+    Stub step_{[](const ReceiverPoint& point) {
+        return Estimate{Spectrum(Spectrum::Constant(point.position.x() > 0.1F ? 1.0F : 0.0F)),
+                        black()};
+    }};
+    /// Mean squared error of red against pixel averages by many samples.
+    static double squared_error(const Film& film, const Film& truth) {
+        double sum = 0;
+        for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel)
+            sum += std::pow(film.rgb("", pixel)[0] - truth.rgb("", pixel)[0], 2);
+        return sum / static_cast<double>(film.pixel_count());
+    }
+};
+
+TEST_F(AdaptiveSampling, TakesMoreSamplesWhereThePixelIsNotEven) {
+    const Scene scene(floor(64, 0.02F));
+    const Rendering rendering = render(scene, step_, run(4));
+    const std::vector<float>& samples = *rendering.film.find("samples.Y");
+    int refined = 0;
+    double sum = 0;
+    for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
+        const float value = rendering.film.rgb("", pixel)[0];
+        EXPECT_TRUE(samples[pixel] == 4 || samples[pixel] == 64) << samples[pixel];
+        EXPECT_EQ(samples[pixel] > 4, value > 0 && value < 1) << pixel;
+        refined += samples[pixel] > 4 ? 1 : 0;
+        sum += static_cast<double>(samples[pixel]);
+    }
+    EXPECT_GT(refined, 15) << "about a pixel a row lies on the edge";
+    EXPECT_LT(refined, 2 * 21);
+    EXPECT_EQ(rendering.report.counters.at("camera_rays"), static_cast<std::uint64_t>(sum));
+}
+
+TEST_F(AdaptiveSampling, BeatsTheSameNumberOfRaysSpreadEvenly) {
+    const Scene scene(floor(64, 0.02F));
+    RunOptions fixed = run(1024);
+    fixed.adaptive = false;
+    const Film truth = render(scene, step_, fixed).film;
+    EXPECT_EQ(truth.find("samples.Y"), nullptr);
+    const Rendering adaptive = render(scene, step_, run(4));
+    const double mean_samples = static_cast<double>(adaptive.report.counters.at("camera_rays")) /
+                                static_cast<double>(truth.pixel_count());
+    fixed.samples_per_pixel = static_cast<int>(std::ceil(mean_samples));
+    fixed.seed = 3;
+    EXPECT_LT(4 * squared_error(adaptive.film, truth),
+              squared_error(render(scene, step_, fixed).film, truth));
+}
+
+TEST_F(AdaptiveSampling, LeavesDarkNoiseAloneAndIsTheSameForAnyNumberOfThreads) {
+    const Scene scene(floor(32, 0.1F));
+    // Noise a thousandth as bright as the rest of the picture.
+    const Stub dark([](const ReceiverPoint& point) {
+        const float value = point.position.x() > 0 ? 1 : 0.001F * noise(point).value[0];
+        return Estimate{Spectrum(Spectrum::Constant(value)), black()};
+    });
+    const Film one = render(scene, dark, run(4, 1)).film;
+    EXPECT_TRUE(same_planes(one, render(scene, dark, run(4, 3)).film));
+    const std::vector<float>& samples = *one.find("samples.Y");
+    for (std::size_t pixel = 0; pixel < samples.size(); ++pixel)
+        if (one.rgb("", pixel)[0] < 0.002F) {
+            EXPECT_EQ(samples[pixel], 4);
+        }
+}
+
 TEST(Renderer, AProgressCallbackMayStopIt) {
     const Scene scene(still_life(40, 40));
     RunOptions options = run(1, 2);

@@ -89,6 +89,26 @@ TEST(Scene, SensorFilmAndSamplerUnderAnyKey) {
     EXPECT_EQ(desc.sampling.sample_count, 9);
 }
 
+TEST(Scene, AdaptiveSampler) {
+    const auto sampler = [](const std::string& keys) {
+        return load(R"({"version": 1, "type": "scene", "floor": {"type": "disk"},
+            "eye": {"type": "perspective", "s": {"type": "adaptive")" +
+                    keys + "}}}")
+            .sampling;
+    };
+    EXPECT_EQ(sampler("").sample_count, 4);
+    EXPECT_EQ(sampler("").max_sample_count, 128);
+    EXPECT_EQ(sampler("").max_error, 0.05F);
+    const PixelSampling given =
+        sampler(R"(, "sample_count": 2, "max_sample_count": 64, "max_error": 0.1)");
+    EXPECT_EQ(given.sample_count, 2);
+    EXPECT_EQ(given.max_sample_count, 64);
+    EXPECT_EQ(given.max_error, 0.1F);
+    for (const char* keys : {R"(, "sample_count": 1)", R"(, "max_sample_count": 3)",
+                             R"(, "max_error": 0)", R"(, "jitter": true)"})
+        EXPECT_THROW(sampler(keys), InputError) << keys;
+}
+
 TEST(Scene, Lights) {
     const SceneDesc desc = load(scene_with(R"(,
         "a": {"type": "point", "position": [1, 2, 3], "intensity": 5},
