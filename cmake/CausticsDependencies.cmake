@@ -16,6 +16,10 @@ find_package(OpenImageIO CONFIG REQUIRED)
 if(CAUSTICS_TESTS)
     find_package(GTest CONFIG REQUIRED)
 endif()
+if(CAUSTICS_BENCH)
+    find_package(benchmark 1.7 CONFIG REQUIRED)
+    find_package(nanoflann 1.4 CONFIG REQUIRED)
+endif()
 
 # Debian's OpenImageIO target names /usr/include/opencv4, which no header used here needs and which
 # exists only with OpenCV's development package; CMake refuses an include folder that is not there.

@@ -19,6 +19,7 @@ LAYERS = {
     "tests/core": ["core", "tests/support"],
     "tests/photonmap": ["core", "photonmap", "tests/support"],
     "tests/beamtree": ["core", "beamtree", "tests/support"],
+    "tests/bench": ["core", "photonmap", "tests/support"],
     "tests": ["core", "photonmap", "beamtree", "experiments", "tests/support"],
 }
 # The one file that names all methods.
@@ -28,8 +29,8 @@ EXCEPTIONS = {
 }
 # Header prefix -> the files or folders that may include it. fmt, Eigen and the standard library are free.
 LIBRARIES = {
-    "embree3/": ["core/intersector.cpp"],
-    "embree4/": ["core/intersector.cpp"],
+    "embree3/": ["core/intersector.cpp", "tests/bench/"],
+    "embree4/": ["core/intersector.cpp", "tests/bench/"],
     "OpenImageIO/": ["core/film.cpp", "core/texture.cpp", "experiments/pictures.cpp", "tests/"],
     "assimp/": ["core/mesh_io.cpp"],
     "nlohmann/": ["core/json_reader.cpp", "core/json_document.h", "core/json_document.cpp",
@@ -39,6 +40,8 @@ LIBRARIES = {
     "CLI/": ["experiments/", "tests/experiments/"],
     "spdlog/": ["experiments/", "tests/experiments/"],
     "build_info.h": ["experiments/", "tests/experiments/"],
+    "benchmark/": ["tests/bench/"],
+    "nanoflann.hpp": ["tests/bench/"],
     "gtest/": ["tests/"],
     "gmock/": ["tests/"],
 }

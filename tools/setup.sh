@@ -12,6 +12,7 @@ packages=(
     libopenimageio-dev openimageio-tools            # images; its CMake files ask for the tools
     libcli11-dev                                    # command line
     libgtest-dev                                    # tests
+    libbenchmark-dev libnanoflann-dev               # benchmarks
     python3 python3-numpy python3-matplotlib        # layering test, plots
 )
 

@@ -1,0 +1,155 @@
+// Shading of gathered photons: 100 photons a point, Schlick's law with alpha = 0.1, against the same
+// sum in scalar code. Counters are nanoseconds per photon.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "photonmap/shading.h"
+#include "tests/bench/bench.h"
+#include "tests/bench/caustic_sets.h"
+#include "tests/bench/contest.h"
+#include "tests/bench/nanoflann_peer.h"
+#include "tests/bench/scalar_shading.h"
+
+namespace caustics::bench {
+
+namespace {
+
+constexpr std::size_t photons_a_point = 100;
+constexpr std::size_t padded = 112;
+const Vec3 eye(0.3F, -1.7F, 1.3F);
+/// Against the double sum; the scalar codes decode angles in float and lose some where t is near 1.
+constexpr double scalar_tolerance = 2e-4;
+constexpr double our_tolerance = 1e-5;
+
+/// Points that found all their photons, with what each variant needs.
+struct Work {
+    Bsdf bsdf{Schlick{Spectrum(Spectrum::Ones()), 0.1F}};
+    std::vector<ReceiverPoint> points;
+    std::vector<std::uint32_t> energy;     ///< `padded` a point
+    std::vector<std::uint16_t> direction;  ///< likewise
+    Shading shading;
+    ReflectionTable table;
+    std::vector<SpectrumSum> sums;
+
+    explicit Work(Isa isa) : shading(isa) {}
+
+    WeightedPhotons photons(std::size_t i) const {
+        return {{nullptr, &energy[i * padded], &direction[i * padded], photons_a_point, 0}};
+    }
+    ScalarQuery scalar(std::size_t i) const {
+        const ReceiverPoint& p = points[i];
+        const Vec3 &n = p.shading_normal, &wo = p.wo;
+        return {&energy[i * padded],   &direction[i * padded],   photons_a_point,
+                {n.x(), n.y(), n.z()}, {wo.x(), wo.y(), wo.z()}, 0.1F};
+    }
+};
+
+void add_point(Work& work, const float* x, const std::vector<Photon>& photons,
+               const std::uint32_t* found) {
+    ReceiverPoint point{};
+    point.position = Vec3(x[0], x[1], x[2]);
+    point.geometric_normal = point.shading_normal = Vec3::UnitZ();
+    point.wo = (eye - point.position).normalized();
+    point.bsdf = &work.bsdf;
+    work.points.push_back(point);
+    for (std::size_t i = 0; i < padded; ++i) {
+        const Photon& photon = photons[found[i < photons_a_point ? i : 0]];
+        work.energy.push_back(std::bit_cast<std::uint32_t>(photon.energy));
+        work.direction.push_back(
+            std::bit_cast<std::uint16_t>(DirectionCode{photon.theta, photon.phi}));
+    }
+}
+
+std::shared_ptr<Work> make_work(Caustic caustic, const BenchOptions& options) {
+    const auto work = std::make_shared<Work>(options.isa);
+    const std::size_t count = 250'677;
+    const std::vector<Photon> photons = caustic_photons(caustic, Arrival::random, count);
+    const NanoflannTree tree(photons.front().position, count, 5, 10);
+    const Queries queries = scanlines(caustic, 320, 240, options.quick ? 2 : 8, 4);
+    const float radius = max_radius(caustic, photons_a_point, count);
+    std::vector<std::uint32_t> found(photons_a_point);
+    std::vector<float> distances(photons_a_point);
+    for (std::size_t i = 0; i < queries.size(); ++i)
+        if (tree.nearest(NanoflannTree::ResultSet::heap, queries[i], photons_a_point,
+                         radius * radius, found.data(), distances.data()) == photons_a_point)
+            add_point(*work, queries[i], photons, found.data());
+    work->sums.resize(work->points.size());
+    return work;
+}
+
+/// [J96, eqs. 5-6] in double.
+SpectrumSum truth(const Work& work, std::size_t i) {
+    const Vec3d wo = work.points[i].wo.cast<double>().normalized();
+    const double alpha = static_cast<double>(0.1F), v = wo.z();
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (std::size_t p = i * padded; p < i * padded + photons_a_point; ++p) {
+        const auto code = std::bit_cast<DirectionCode>(work.direction[p]);
+        const Vec3d wi = decode_direction(code.theta, code.phi).cast<double>().normalized();
+        const double v_in = wi.z(), t = (wo + wi).normalized().z();
+        if (v_in <= 0) continue;
+        const double g = 1 / ((alpha - alpha * v + v) * (alpha - alpha * v_in + v_in));
+        const double lobe = 1 + alpha * t * t - t * t;
+        const double f = (1 - g * v * v_in) / pi_d + g / (4 * pi_d) * alpha / (lobe * lobe);
+        sum += decode_rgbe(std::bit_cast<Rgbe>(work.energy[p])).cast<double>() * f;
+    }
+    return sum;
+}
+
+/// The largest relative error of the sums; throws when it is too large.
+double error_of(const Work& work, const std::string& contestant, double tolerance) {
+    double largest = 0;
+    for (std::size_t i = 0; i < work.points.size(); ++i) {
+        const SpectrumSum exact = truth(work, i);
+        largest = std::max(largest, ((work.sums[i] - exact).abs() / exact).maxCoeff());
+    }
+    if (!(largest <= tolerance))
+        throw std::runtime_error(contestant + " errs by " + std::to_string(largest));
+    return largest;
+}
+
+Contest make_contest(Caustic caustic, const BenchOptions& options) {
+    const std::shared_ptr<Work> work = make_work(caustic, options);
+    const std::size_t count = work->points.size();
+    Contest contest(static_cast<double>(count * photons_a_point));
+    const auto add = [&](const std::string& name, double tolerance, const auto& shade_one) {
+        const auto run = [work, count, shade_one] {
+            for (std::size_t i = 0; i < count; ++i) shade_one(*work, i);
+        };
+        run();
+        contest.note(name + "_error", error_of(*work, name, tolerance));
+        contest.add(name, run);
+    };
+    const auto add_scalar = [&](const std::string& name, auto shade) {
+        add(name, scalar_tolerance, [shade](Work& w, std::size_t i) {
+            float rgb[3];
+            shade(w.scalar(i), rgb);
+            w.sums[i] = Spectrum(rgb[0], rgb[1], rgb[2]).cast<double>();
+        });
+    };
+    add_scalar("libm", shade_by_libm);
+    add_scalar("tables", shade_by_tables);
+    add("ours", our_tolerance,
+        [](Work& w, std::size_t i) { w.sums[i] = w.shading.reflected(w.points[i], w.photons(i)); });
+    add("ours_tables", our_tolerance, [](Work& w, std::size_t i) {
+        w.sums[i] = w.shading.reflected(w.points[i], w.photons(i), w.table);
+    });
+    contest.note("table_fillings_per_photon", static_cast<double>(work->table.fillings()) /
+                                                  static_cast<double>(work->table.lookups()));
+    return contest;
+}
+
+}  // namespace
+
+void register_benchmarks(const BenchOptions& options) {
+    for (const Caustic caustic : {Caustic::water, Caustic::ball})
+        register_contest(std::string("shading/") + name(caustic), options.quick ? 2 : 10,
+                         [=] { return make_contest(caustic, options); });
+}
+
+}  // namespace caustics::bench
