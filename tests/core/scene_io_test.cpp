@@ -29,7 +29,7 @@ std::string scene_with(const std::string& more) {
 
 SceneDesc load(const std::string& text) { return load_scene(write("scene.json", text)).desc; }
 
-const Shape& shape(const SceneDesc& desc, const std::string& name) {
+const Shape& shape(const SceneDesc& desc, const char* name) {
     return *std::ranges::find(desc.shapes, name, &Shape::name);
 }
 
