@@ -11,26 +11,7 @@ namespace {
 
 constexpr int cells = 256;
 
-/// Sine and cosine at the centres of 256 cells of [0, range].
-void tabulate(double range, SineCosine (&table)[cells]) {
-    for (int i = 0; i < cells; ++i) {
-        const double angle = (i + 0.5) * range / cells;
-        table[i] = {static_cast<float>(std::sin(angle)), static_cast<float>(std::cos(angle))};
-    }
-}
-
-DirectionTables tabulate() {
-    DirectionTables tables;
-    tabulate(pi_d, tables.theta);
-    tabulate(2 * pi_d, tables.phi);
-    return tables;
-}
-
-const DirectionTables tables = tabulate();
-
 }  // namespace
-
-const DirectionTables& direction_tables() { return tables; }
 
 DirectionCode encode_direction(const Vec3& direction) {
     const double theta = std::acos(std::clamp(static_cast<double>(direction.z()), -1.0, 1.0));
@@ -44,8 +25,8 @@ DirectionCode encode_direction(const Vec3& direction) {
 }
 
 Vec3 decode_direction(std::uint8_t theta, std::uint8_t phi) {
-    const SineCosine t = tables.theta[theta];
-    const SineCosine p = tables.phi[phi];
+    const SineCosine t = direction_tables().theta[theta];
+    const SineCosine p = direction_tables().phi[phi];
     return {t.sine * p.cosine, t.sine * p.sine, t.cosine};
 }
 

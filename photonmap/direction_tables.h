@@ -13,6 +13,13 @@ struct SineCosine {
 struct DirectionTables {
     SineCosine theta[256];
     SineCosine phi[256];
+
+    // The first half of theta and the first quarter of phi once more, in columns that fit into
+    // registers. The rest mirrors them exactly.
+    alignas(64) float theta_sine[128];
+    float theta_cosine[128];
+    float phi_sine[64];
+    float phi_cosine[64];
 };
 
 /// The one copy; `decode_direction` reads it too.

@@ -131,7 +131,7 @@ void add_facing(const DirectionTables& tables, const Lobe& lobe, const ShadedPho
 void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                  double* rgb) {
     const Vectors n = all_of(lobe.normal), tangent = all_of(lobe.tangent);
-    const Vectors bitangent = all_of(lobe.bitangent);
+    const Vectors bitangent = all_of(lobe.bitangent), wo = all_of(lobe.wo);
     const Floats alpha = all(lobe.alpha), one = all(1);
     const Floats u = all(1 - lobe.cosine);
     const Floats d = all(lobe.cosine + lobe.alpha * (1 - lobe.cosine));
@@ -139,9 +139,10 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     for (size_t i = 0; i < photons.count; i += 8) {
         const Vectors wi = directions(tables, photons.direction + i);
         const Floats v_in = dot(n, wi);
-        const Floats across = sum(dot(tangent, wi), all(lobe.sine));
-        const Floats aside = dot(bitangent, wi);
-        const Floats along = sum(all(lobe.cosine), v_in);
+        const Vectors s{sum(wo.x, wi.x), sum(wo.y, wi.y), sum(wo.z, wi.z)};
+        const Floats across = dot(tangent, s);
+        const Floats aside = dot(bitangent, s);
+        const Floats along = dot(n, s);
         const Floats sine2 = sum(product(across, across), product(aside, aside));
         const Floats square = sum(sine2, product(along, along));
         const Floats spread =

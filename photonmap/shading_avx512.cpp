@@ -23,27 +23,50 @@ Floats dot(const Vectors& a, const Vectors& b) {
     return sum(product(a.x, b.x), sum(product(a.y, b.y), product(a.z, b.z)));
 }
 
-struct Angles {
-    Floats sine, cosine;
-};
-
-/// Sixteen entries, a pair at a time: half the loads of two gathers of floats.
-Angles look_up(const SineCosine* table, Words cell) {
-    const __m512i low = _mm512_i32gather_epi64(_mm512_castsi512_si256(cell), table, 8);
-    const __m512i high = _mm512_i32gather_epi64(_mm512_extracti64x4_epi64(cell, 1), table, 8);
-    const Words even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-    const Words odd = _mm512_add_epi32(even, _mm512_set1_epi32(1));
-    const Floats a = _mm512_castsi512_ps(low);
-    const Floats b = _mm512_castsi512_ps(high);
-    return {_mm512_permutex2var_ps(a, even, b), _mm512_permutex2var_ps(a, odd, b)};
+__mmask16 has_bit(Words words, int bit) {
+    return _mm512_test_epi32_mask(words, _mm512_set1_epi32(bit));
 }
 
+/// `words` with its lower bits turned round where `bit` is set: cells beyond the middle of the range
+/// mirror those before it.
+Words folded(Words words, int bit) {
+    return _mm512_mask_xor_epi32(words, has_bit(words, bit), words, _mm512_set1_epi32(bit - 1));
+}
+
+/// Entries of a table of 32 floats by the lowest five bits.
+Floats entry_of_32(const float* table, Words index) {
+    return _mm512_permutex2var_ps(_mm512_load_ps(table), index, _mm512_load_ps(table + 16));
+}
+Floats entry_of_64(const float* table, Words index) {
+    return _mm512_mask_blend_ps(has_bit(index, 32), entry_of_32(table, index),
+                                entry_of_32(table + 32, index));
+}
+Floats entry_of_128(const float* table, Words index) {
+    return _mm512_mask_blend_ps(has_bit(index, 64), entry_of_64(table, index),
+                                entry_of_64(table + 64, index));
+}
+
+/// `values` with the sign turned where bit 7 of `words` is set.
+Floats negated_by_bit_7(Floats values, Words words) {
+    constexpr int first_xor_both_others = 0x78;
+    return _mm512_castsi512_ps(_mm512_ternarylogic_epi32(
+        _mm512_castps_si512(values), _mm512_slli_epi32(words, 24),
+        _mm512_set1_epi32(static_cast<int>(0x80000000U)), first_xor_both_others));
+}
+
+/// Tables are looked up in registers: a gather loads its sixteen entries one by one.
 Vectors directions(const DirectionTables& tables, const uint16_t* code) {
     const Words cells =
         _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(code)));
-    const Angles theta = look_up(tables.theta, _mm512_and_si512(cells, _mm512_set1_epi32(255)));
-    const Angles phi = look_up(tables.phi, _mm512_srli_epi32(cells, 8));
-    return {product(theta.sine, phi.cosine), product(theta.sine, phi.sine), theta.cosine};
+    const Words theta = folded(cells, 128);
+    const Floats sine = entry_of_128(tables.theta_sine, theta);
+    const Floats z = negated_by_bit_7(entry_of_128(tables.theta_cosine, theta), cells);
+    const Words turn = _mm512_srli_epi32(cells, 8);
+    const Words phi = folded(turn, 64);
+    const Floats along_x = negated_by_bit_7(entry_of_64(tables.phi_cosine, phi),
+                                            _mm512_xor_si512(turn, _mm512_slli_epi32(turn, 1)));
+    const Floats along_y = negated_by_bit_7(entry_of_64(tables.phi_sine, phi), turn);
+    return {product(sine, along_x), product(sine, along_y), z};
 }
 
 /// The lanes of photons that count.
@@ -112,31 +135,40 @@ void add_facing(const DirectionTables& tables, const Lobe& lobe, const ShadedPho
     sums.add_to(rgb);
 }
 
+/// a b + c, rounded once: for what need not be equal to the last bit on every instruction set.
+Floats fused(Floats a, Floats b, Floats c) { return _mm512_fmadd_ps(a, b, c); }
+
+Floats fused_dot(const Vectors& a, const Vectors& b) {
+    return fused(a.x, b.x, fused(a.y, b.y, product(a.z, b.z)));
+}
+
 /// The formula of schlick_factor.
 void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                  double* rgb) {
     const Vectors n = all_of(lobe.normal), tangent = all_of(lobe.tangent);
     const Vectors bitangent = all_of(lobe.bitangent);
-    const Floats alpha = all(lobe.alpha), one = all(1);
+    const Floats alpha = all(lobe.alpha), one = all(1), zero = all(0);
+    const Floats twice_alpha = all(2 * lobe.alpha), twice_rest = all(2 * (1 - lobe.alpha));
+    const Vectors wo = all_of(lobe.wo);
     const Floats u = all(1 - lobe.cosine);
     const Floats d = all(lobe.cosine + lobe.alpha * (1 - lobe.cosine));
     Sums sums;
     for (size_t i = 0; i < photons.count; i += 16) {
         const Vectors wi = directions(tables, photons.direction + i);
         const Floats v_in = dot(n, wi);
-        const Floats across = sum(dot(tangent, wi), all(lobe.sine));
-        const Floats aside = dot(bitangent, wi);
-        const Floats along = sum(all(lobe.cosine), v_in);
-        const Floats sine2 = sum(product(across, across), product(aside, aside));
-        const Floats square = sum(sine2, product(along, along));
-        const Floats spread =
-            sum(product(alpha, square), product(_mm512_sub_ps(one, alpha), sine2));
-        const Floats peak = _mm512_div_ps(square, sum(spread, spread));
+        const Vectors s{sum(wo.x, wi.x), sum(wo.y, wi.y), sum(wo.z, wi.z)};
+        const Floats across = fused_dot(tangent, s);
+        const Floats aside = fused_dot(bitangent, s);
+        const Floats along = fused_dot(n, s);
+        const Floats sine2 = fused(across, across, product(aside, aside));
+        const Floats square = fused(along, along, sine2);
+        const Floats twice_spread = fused(twice_alpha, square, product(twice_rest, sine2));
+        const Floats peak = _mm512_div_ps(square, twice_spread);
         const Floats u_in = _mm512_sub_ps(one, v_in);
-        const Floats d_in = sum(v_in, product(alpha, u_in));
-        const Floats numerator = sum(sum(product(u, v_in), product(u_in, d)), product(peak, peak));
+        const Floats d_in = fused(alpha, u_in, v_in);
+        const Floats numerator = fused(peak, peak, fused(u, v_in, product(u_in, d)));
         const __mmask16 lanes =
-            _mm512_mask_cmp_ps_mask(counted(photons, i), v_in, all(0), _CMP_GT_OQ);
+            _mm512_mask_cmp_ps_mask(counted(photons, i), v_in, zero, _CMP_GT_OQ);
         sums.add(photons, i, lanes, _mm512_div_ps(numerator, d_in));
     }
     sums.add_to(rgb);

@@ -7,16 +7,15 @@
 
 namespace caustics {
 
-/// One receiver point's reflection as the kernels take it: f_r about the shading normal n, seen from
-/// `wo`, divided by the reflectance. `tangent` lies in the plane of n and wo, so that wo =
-/// `sine` tangent + `cosine` n, and `bitangent` is at right angles to both; all three are unit.
+/// One receiver point's reflection as the kernels take it: f_r about the shading normal, seen from
+/// `wo`, divided by the reflectance. The two tangents complete the normal to a frame.
 struct Lobe {
     float normal[3];
     float tangent[3];
     float bitangent[3];
+    float wo[3];
     float cosine;  ///< v = n.wo of [J96, eq. 5], > 0
-    float sine;
-    float alpha;  ///< of Schlick's model
+    float alpha;   ///< of Schlick's model
 };
 
 /// A run of gathered photons; arrays as in GatheredPhotons.

@@ -63,9 +63,10 @@ float schlick_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t th
     const Direction wi = decode(tables, theta, phi);
     const float v_in = dot(lobe.normal, wi);
     if (!(v_in > 0)) return 0;
-    const float across = dot(lobe.tangent, wi) + lobe.sine;
-    const float aside = dot(lobe.bitangent, wi);
-    const float along = lobe.cosine + v_in;
+    const Direction s{lobe.wo[0] + wi.x, lobe.wo[1] + wi.y, lobe.wo[2] + wi.z};
+    const float across = dot(lobe.tangent, s);
+    const float aside = dot(lobe.bitangent, s);
+    const float along = dot(lobe.normal, s);
     const float sine2 = across * across + aside * aside;  // |n x s|^2
     const float square = sine2 + along * along;           // |s|^2
     const float spread = lobe.alpha * square + (1 - lobe.alpha) * sine2;
