@@ -2,15 +2,12 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdio>
-#include <system_error>
 
 #include "core/error.h"
+#include "core/whole_file.h"
 
 namespace caustics {
 namespace {
@@ -28,25 +25,8 @@ std::array<std::string, 3> rgb_channels(const std::string& layer) {
     throw InputError(file.string() + ": cannot be " + doing + " (" + line + ")");
 }
 
-// OpenImageIO encodes to memory, and this writes: its own writers do not report a full disk, and a
-// temporary name would hide the extension they choose the format by.
-void write_whole(const std::vector<unsigned char>& bytes, const fs::path& file) {
-    fs::path temporary = file;
-    temporary += ".tmp-" + std::to_string(getpid());
-    errno = 0;
-    std::FILE* out = std::fopen(temporary.c_str(), "wb");
-    if (out == nullptr) fail(file, "written", std::generic_category().message(errno));
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
-    int error = written ? 0 : errno;
-    if (std::fclose(out) != 0 && error == 0) error = errno;
-    std::error_code failed(error, std::generic_category());
-    if (!failed) fs::rename(temporary, file, failed);
-    if (!failed) return;
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    fail(file, "written", failed.message());
-}
-
+// OpenImageIO encodes to memory: its own writers do not report a full disk, and a temporary name
+// would hide the extension they choose the format by.
 void encode_and_write(const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                       const void* pixels, const fs::path& file) {
     const auto output = OIIO::ImageOutput::create(format);
@@ -57,7 +37,7 @@ void encode_and_write(const std::string& format, const OIIO::ImageSpec& spec, OI
                       output->open(file.filename().string(), spec) &&
                       output->write_image(type, pixels) && output->close();
     if (!done) fail(file, "written", output->geterror());
-    write_whole(bytes, file);
+    write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace

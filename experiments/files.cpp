@@ -1,7 +1,6 @@
 #include "experiments/files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
@@ -10,27 +9,6 @@
 #include "core/error.h"
 
 namespace caustics {
-
-void write_whole_file(const std::filesystem::path& file, const std::string& text) {
-    std::filesystem::path temporary = file;
-    temporary += fmt::format(".tmp-{}", getpid());
-    {
-        std::ofstream out(temporary, std::ios::binary);
-        out << text;
-        out.close();
-        if (!out) {
-            std::error_code ignored;
-            std::filesystem::remove(temporary, ignored);
-            throw InputError(fmt::format("{}: cannot be written", file.string()));
-        }
-    }
-    std::error_code error;
-    std::filesystem::rename(temporary, file, error);
-    if (!error) return;
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw InputError(fmt::format("{}: cannot be written ({})", file.string(), error.message()));
-}
 
 std::string read_whole_file(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);

@@ -3,11 +3,9 @@
 #include <filesystem>
 #include <string>
 
-namespace caustics {
+#include "core/whole_file.h"
 
-/// Writes a text file to a temporary name beside it and renames it, so that the file is whole or
-/// absent. Throws InputError when it cannot be written.
-void write_whole_file(const std::filesystem::path& file, const std::string& text);
+namespace caustics {
 
 /// The content of a file. Throws InputError when it cannot be read.
 std::string read_whole_file(const std::filesystem::path& file);

@@ -1,0 +1,111 @@
+#include "photonmap/photon_map_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "core/error.h"
+#include "core/whole_file.h"
+#include "photon_sets.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+TracedPhotons traced(std::size_t count) {
+    TracedPhotons photons{PhotonStore(count), {}, Spectrum(0.5F, 0.25F, 2)};
+    photons.store.append(test::photon_sets(count, 7)[0].photons);
+    photons.counts = {.emitted = 9,
+                      .aimed = 8,
+                      .missed = 7,
+                      .escaped = 6,
+                      .absorbed = 5,
+                      .depth_limited = 4,
+                      .stored = count};
+    return photons;
+}
+
+std::string content(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string refusal(const std::filesystem::path& file) {
+    try {
+        PhotonMapHeader header;
+        load_photon_map(file, header);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "taken";
+}
+
+class PhotonMapFile : public testing::Test {
+protected:
+    void save(std::size_t count) {
+        save_photon_map(traced(count), 0x1234567890abcdefU, "{\"seed\": 1}", file_);
+    }
+    support::TemporaryFolder folder_;
+    std::filesystem::path file_ = folder_ / "a.photons";
+};
+
+TEST_F(PhotonMapFile, GivesBackWhatWasSaved) {
+    // More than a block, one photon, none.
+    for (const std::size_t count : {std::size_t{70'000}, std::size_t{1}, std::size_t{0}}) {
+        save(count);
+        EXPECT_TRUE(is_photon_map(file_));
+        PhotonMapHeader header;
+        const TracedPhotons loaded = load_photon_map(file_, header);
+        const TracedPhotons saved = traced(count);
+        ASSERT_EQ(loaded.store.size(), count);
+        if (count > 0) {
+            EXPECT_EQ(std::memcmp(loaded.store.photons().data(), saved.store.photons().data(),
+                                  count * sizeof(Photon)),
+                      0);
+        }
+        EXPECT_EQ(header.transport, 0x1234567890abcdefU);
+        EXPECT_EQ(header.origin, "{\"seed\": 1}");
+        EXPECT_TRUE((loaded.flux_unit == saved.flux_unit).all());
+        EXPECT_EQ(loaded.counts.emitted, 9U);
+        EXPECT_EQ(loaded.counts.depth_limited, 4U);
+        EXPECT_EQ(loaded.counts.stored, count);
+    }
+}
+
+TEST_F(PhotonMapFile, RefusesEveryDamagedByteAndEveryCut) {
+    save(3);
+    const std::string good = content(file_);
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        std::string bad = good;
+        bad[i] = static_cast<char>(bad[i] ^ 0x10);
+        write_whole_file(file_, bad);
+        EXPECT_EQ(refusal(file_).rfind(file_.string() + ": ", 0), 0U) << i;
+        write_whole_file(file_, std::string_view(good).substr(0, i));
+        EXPECT_EQ(refusal(file_).rfind(file_.string() + ": ", 0), 0U) << i;
+    }
+    write_whole_file(file_, good + "x");
+    EXPECT_NE(refusal(file_).find("checksum"), std::string::npos);
+    write_whole_file(file_, good);
+    EXPECT_EQ(refusal(file_), "taken");
+}
+
+TEST_F(PhotonMapFile, NamesWhatIsWrong) {
+    write_whole_file(file_, "a picture, say, and a long one at that");
+    EXPECT_FALSE(is_photon_map(file_));
+    EXPECT_NE(refusal(file_).find("no photon map"), std::string::npos);
+    EXPECT_NE(refusal(folder_ / "absent").find("cannot be read"), std::string::npos);
+    save(3);
+    std::string text = content(file_);
+    text[24] = 2;
+    write_whole_file(file_, text);
+    EXPECT_NE(refusal(file_).find("version 2 (known: 1)"), std::string::npos) << refusal(file_);
+    save(3);
+    text = content(file_);
+    write_whole_file(file_, std::string_view(text).substr(0, text.size() - 30));
+    EXPECT_NE(refusal(file_).find("cut short"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace caustics
