@@ -32,7 +32,7 @@ json describe_params(const PhotonMapParams& p) {
     const bool unbiased = p.estimator == PhotonMapParams::Estimator::unbiased;
     json all = {{"nearest", p.nearest},         {"estimator", unbiased ? "unbiased" : "raw"},
                 {"max_bounces", p.max_bounces}, {"emission", "random"},
-                {"interaction", "roulette"},    {"tree", "balanced"}};
+                {"interaction", "roulette"},    {"tree", name(p.tree)}};
     if (p.photons > 0) all["photons"] = p.photons;
     if (p.emitted > 0) all["emitted"] = p.emitted;
     if (p.max_radius > 0) all["max_radius"] = p.max_radius;

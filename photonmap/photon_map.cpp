@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "core/light_path.h"
-#include "photonmap/kd_tree.h"
 #include "photonmap/max_radius.h"
 #include "photonmap/photon_tracing.h"
+#include "photonmap/photon_tree.h"
 #include "photonmap/radiance_estimate.h"
 
 namespace caustics {
@@ -16,12 +16,10 @@ namespace {
 /// A thread's scratch and counters.
 class GatherContext final : public QueryContext {
 public:
-    explicit GatherContext(std::size_t nearest) : scratch(nearest) {}
-
-    void count(const Gathered& gathered) {
+    void count(const GatheredPhotons& gathered) {
         ++gathers_;
-        gathered_photons_ += gathered.photons;
-        if (gathered.photons == 0) ++empty_gathers_;
+        gathered_photons_ += gathered.count;
+        if (gathered.count == 0) ++empty_gathers_;
     }
     void add_to(Counters& counters) const override {
         counters["gathers"] += gathers_;
@@ -29,7 +27,7 @@ public:
         counters["empty_gathers"] += empty_gathers_;
     }
 
-    NearestSet scratch;
+    GatherScratch scratch;
 
 private:
     std::uint64_t gathers_ = 0;
@@ -37,16 +35,15 @@ private:
     std::uint64_t empty_gathers_ = 0;
 };
 
-/// A balanced map and the estimate over it.
+/// A tree of photons and the estimate over it.
 class PhotonMap final : public CausticEstimator {
 public:
-    PhotonMap(TracedPhotons photons, const RadianceEstimate::Settings& settings)
-        : photons_(std::move(photons)),
-          settings_(settings),
-          estimate_(std::as_const(photons_.store).photons(), settings) {}
+    PhotonMap(std::unique_ptr<const PhotonTree> tree, const LightPathCounts& counts,
+              const RadianceEstimate::Settings& settings, Isa isa)
+        : tree_(std::move(tree)), counts_(counts), settings_(settings), estimate_(settings, isa) {}
 
     std::unique_ptr<QueryContext> make_context() const override {
-        return std::make_unique<GatherContext>(settings_.nearest);
+        return std::make_unique<GatherContext>();
     }
 
     void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
@@ -61,26 +58,29 @@ public:
 
     BuildReport build_report() const override {
         BuildReport report;
-        report.bytes = photons_.store.bytes();
-        photons_.counts.add_to(report.counters);
-        report.resolved["max_radius"] = static_cast<double>(settings_.max_radius);
+        report.bytes = tree_->bytes();
+        counts_.add_to(report.counters);
+        tree_->add_to(report.counters);
+        report.resolved["max_radius"] = static_cast<double>(settings_.limits.max_radius);
         return report;
     }
 
 private:
-    using Query = Gathered (RadianceEstimate::*)(const ReceiverPoint&, NearestSet&) const;
+    using Value = Spectrum (RadianceEstimate::*)(const ReceiverPoint&,
+                                                 const GatheredPhotons&) const;
 
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                QueryContext& context, Query query) const {
+                QueryContext& context, Value value) const {
         auto& own = dynamic_cast<GatherContext&>(context);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const Gathered gathered = (estimate_.*query)(points[i], own.scratch);
-            own.count(gathered);
-            out[i] = {gathered.value, black()};
-        }
+        tree_->gather(points, settings_.limits, own.scratch,
+                      [&](std::size_t i, const GatheredPhotons& gathered) {
+                          own.count(gathered);
+                          out[i] = {(estimate_.*value)(points[i], gathered), black()};
+                      });
     }
 
-    TracedPhotons photons_;
+    std::unique_ptr<const PhotonTree> tree_;
+    LightPathCounts counts_;
     RadianceEstimate::Settings settings_;
     RadianceEstimate estimate_;
 };
@@ -125,18 +125,20 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMa
     check(params);
     options.phase("trace");
     TracedPhotons photons = trace(scene, params, options);
-    options.phase("balance");
-    balance(photons.store.photons());
-
     RadianceEstimate::Settings settings;
-    settings.nearest = static_cast<std::size_t>(params.nearest);
+    settings.limits.nearest = static_cast<std::size_t>(params.nearest);
     settings.estimator = params.estimator;
-    settings.max_radius = static_cast<float>(
+    // From the photons in the order of their paths, so that it is the same for every tree.
+    settings.limits.max_radius = static_cast<float>(
         params.max_radius > 0
             ? params.max_radius
             : default_max_radius(photons.store.photons(), scene.bounds(), params.nearest));
     settings.flux_unit = photons.flux_unit / static_cast<float>(photons.counts.emitted);
-    return std::make_unique<PhotonMap>(std::move(photons), settings);
+
+    options.phase("balance");
+    std::unique_ptr<const PhotonTree> tree =
+        build_tree(params.tree, std::move(photons.store), options.isa);
+    return std::make_unique<PhotonMap>(std::move(tree), photons.counts, settings, options.isa);
 }
 
 }  // namespace caustics

@@ -8,8 +8,18 @@
 
 namespace caustics {
 
+/// How a map's photons are ordered for finding the nearest; all give the same answers.
+enum class TreeKind {
+    balanced,    ///< the left-balanced heap of [J96, section 2], 20 bytes a photon
+    unbalanced,  ///< photons inserted in the order of arrival, with child pointers, 28 bytes
+    packed       ///< buckets of photons, searched a register at a time, 20.1 bytes
+};
+
+/// "balanced", "unbalanced", "packed".
+const char* name(TreeKind kind);
+
 /// `photonmap` [J96]: photons traced from the lights through the casters, stored 20 bytes each in
-/// a balanced kd-tree, radiance from the N nearest (eqs. 1-4).
+/// a kd-tree, radiance from the N nearest (eqs. 1-4).
 struct PhotonMapParams {
     enum class Estimator {
         unbiased,  ///< the outermost photon only sets the radius: mean (N-1)/(pi r_N^2)
@@ -17,8 +27,9 @@ struct PhotonMapParams {
     };
     std::uint64_t photons = 100'000;  ///< to store; 0 when `emitted` is given instead
     std::uint64_t emitted = 0;        ///< to emit; 0 when `photons` is given
-    int nearest = 50;                 ///< N; at least 2 for `unbiased`
-    double max_radius = 0;            ///< [m]; 0: chosen from the photons, told in the report
+    TreeKind tree = TreeKind::balanced;
+    int nearest = 50;       ///< N; at least 2 for `unbiased`
+    double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
     Estimator estimator = Estimator::unbiased;
     int max_bounces = 16;  ///< specular events between light and receiver
 };
@@ -27,7 +38,7 @@ struct PhotonMapParams {
 void read(const JsonNode& node, PhotonMapParams& params);
 
 /// Phases "trace" and "balance". Counters: those of LightPathCounts; photons_emitted is the number
-/// that flux is divided by. Throws InputError for params that contradict each other and for a map that
+/// that flux is divided by; `tree_depth` of the unbalanced tree. Throws InputError for params that contradict each other and for a map that
 /// does not fit, UnsupportedScene when the photons asked for cannot be had; with `emitted` an
 /// empty map is an answer, and black.
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,

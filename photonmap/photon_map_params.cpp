@@ -12,6 +12,8 @@ constexpr std::int64_t most_paths = 1'000'000'000'000;
 constexpr std::int64_t most_bounces = 1'000;
 constexpr std::int64_t most_nearest = 1'000'000;
 
+constexpr TreeKind tree_kinds[] = {TreeKind::balanced, TreeKind::unbalanced, TreeKind::packed};
+
 /// Reads a choice of which only the first word is built yet.
 void read_choice(const JsonNode& node, const std::string& key,
                  const std::vector<std::string>& choices) {
@@ -62,6 +64,15 @@ void read_estimate(const JsonNode& node, PhotonMapParams& params) {
 
 }  // namespace
 
+const char* name(TreeKind kind) {
+    switch (kind) {
+        case TreeKind::unbalanced: return "unbalanced";
+        case TreeKind::packed: return "packed";
+        case TreeKind::balanced: break;
+    }
+    return "balanced";
+}
+
 void read(const JsonNode& node, PhotonMapParams& params) {
     read_count(node, params);
     read_estimate(node, params);
@@ -69,7 +80,9 @@ void read(const JsonNode& node, PhotonMapParams& params) {
         params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, most_bounces));
     read_choice(node, "emission", {"random", "stratified"});
     read_choice(node, "interaction", {"roulette", "split"});
-    read_choice(node, "tree", {"balanced", "unbalanced", "packed"});
+    if (const auto tree = node.find("tree"))
+        params.tree = tree_kinds[tree->as_choice(
+            {name(tree_kinds[0]), name(tree_kinds[1]), name(tree_kinds[2])})];
     for (const char* key : {"filter", "adaptive", "tables", "passes", "radius"}) refuse(node, key);
     node.finish();
 }

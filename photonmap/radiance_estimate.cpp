@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "photonmap/kd_tree.h"
-
 namespace caustics {
 
 namespace {
@@ -20,39 +18,33 @@ double resolvable_squared_radius(const Vec3& point, float max_radius) {
 
 }  // namespace
 
-template <typename Weight>
-Gathered RadianceEstimate::gather(const ReceiverPoint& point, NearestSet& scratch,
-                                  const Weight& weight) const {
-    const float max_radius = settings_.max_radius;
-    scratch.reset(max_radius * max_radius);
-    find_nearest(tree_, point.position, scratch, [&point](const Photon& photon) {
-        return incoming(photon).dot(point.geometric_normal) > 0;
-    });
-    std::span<const Neighbour> neighbours = scratch.found();
+WeightedPhotons RadianceEstimate::counted(const GatheredPhotons& gathered) const {
+    WeightedPhotons photons{.photons = gathered};
+    if (gathered.count == settings_.limits.nearest &&
+        settings_.estimator == PhotonMapParams::Estimator::unbiased)
+        photons.left_out = gathered.farthest;
+    return photons;
+}
+
+Spectrum RadianceEstimate::density(const SpectrumSum& sum, const ReceiverPoint& point,
+                                   const GatheredPhotons& gathered) const {
+    const float max_radius = settings_.limits.max_radius;
     double squared_radius = static_cast<double>(max_radius) * static_cast<double>(max_radius);
-    if (neighbours.size() == settings_.nearest) {
-        squared_radius = std::max(static_cast<double>(neighbours.front().squared_distance),
+    if (gathered.count == settings_.limits.nearest)
+        squared_radius = std::max(static_cast<double>(gathered.squared_distance[gathered.farthest]),
                                   resolvable_squared_radius(point.position, max_radius));
-        if (settings_.estimator == PhotonMapParams::Estimator::unbiased)
-            neighbours = neighbours.subspan(1);
-    }
-    SpectrumSum sum = SpectrumSum::Zero();
-    for (const Neighbour& neighbour : neighbours) {
-        const Photon& photon = tree_[neighbour.index];
-        sum += (weight(incoming(photon)) * decode_rgbe(photon.energy)).template cast<double>();
-    }
     const SpectrumSum density = sum * settings_.flux_unit.cast<double>() / (pi_d * squared_radius);
-    return {density.cast<float>(), scratch.found().size()};
+    return density.cast<float>();
 }
 
-Gathered RadianceEstimate::radiance(const ReceiverPoint& point, NearestSet& scratch) const {
-    return gather(point, scratch, [&point](const Vec3& wi) {
-        return evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo, wi);
-    });
+Spectrum RadianceEstimate::radiance(const ReceiverPoint& point,
+                                    const GatheredPhotons& gathered) const {
+    return density(shading_.reflected(point, counted(gathered)), point, gathered);
 }
 
-Gathered RadianceEstimate::irradiance(const ReceiverPoint& point, NearestSet& scratch) const {
-    return gather(point, scratch, [](const Vec3&) { return Spectrum(Spectrum::Ones()); });
+Spectrum RadianceEstimate::irradiance(const ReceiverPoint& point,
+                                      const GatheredPhotons& gathered) const {
+    return density(shading_.arriving(counted(gathered)), point, gathered);
 }
 
 }  // namespace caustics

@@ -1,19 +1,11 @@
 #pragma once
 
-#include <span>
-
 #include "core/caustic_estimator.h"
-#include "photonmap/nearest_set.h"
-#include "photonmap/photon.h"
 #include "photonmap/photon_map.h"
+#include "photonmap/photon_tree.h"
+#include "photonmap/shading.h"
 
 namespace caustics {
-
-/// What a query found.
-struct Gathered {
-    Spectrum value = black();
-    std::size_t photons = 0;
-};
 
 /// Radiance from the N nearest photons, [J96] eqs. 1-4: the sum of f_r times flux over the area
 /// pi r^2 of the disc that holds them.
@@ -29,27 +21,25 @@ struct Gathered {
 class RadianceEstimate {
 public:
     struct Settings {
-        std::size_t nearest = 50;  ///< N
-        float max_radius = 1;      ///< R [m], > 0
+        GatherLimits limits;
         PhotonMapParams::Estimator estimator = PhotonMapParams::Estimator::unbiased;
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1
     };
 
-    /// `tree` is balanced and outlives this.
-    RadianceEstimate(std::span<const Photon> tree, const Settings& settings)
-        : tree_(tree), settings_(settings) {}
+    RadianceEstimate(const Settings& settings, Isa isa) : settings_(settings), shading_(isa) {}
 
-    /// [W m^-2 sr^-1] leaving along the point's `wo`.
-    Gathered radiance(const ReceiverPoint& point, NearestSet& scratch) const;
+    /// [W m^-2 sr^-1] leaving along the point's `wo`, from what a tree gathered at it.
+    Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered) const;
     /// [W m^-2], the same with f_r = 1.
-    Gathered irradiance(const ReceiverPoint& point, NearestSet& scratch) const;
+    Spectrum irradiance(const ReceiverPoint& point, const GatheredPhotons& gathered) const;
 
 private:
-    template <typename Weight>
-    Gathered gather(const ReceiverPoint& point, NearestSet& scratch, const Weight& weight) const;
+    WeightedPhotons counted(const GatheredPhotons& gathered) const;
+    Spectrum density(const SpectrumSum& sum, const ReceiverPoint& point,
+                     const GatheredPhotons& gathered) const;
 
-    std::span<const Photon> tree_;
     Settings settings_;
+    Shading shading_;
 };
 
 }  // namespace caustics

@@ -31,7 +31,9 @@ TEST(PhotonMapParams, AreReadWithTheirDefaultsInPlace) {
     const PhotonMapParams given = params_of(
         R"({"photons": 2000000000, "nearest": 1, "estimator": "raw", "max_radius": 0.25,
             "max_bounces": 4, "emission": "random", "interaction": "roulette",
-            "tree": "balanced"})");
+            "tree": "packed"})");
+    EXPECT_EQ(defaults.tree, TreeKind::balanced);
+    EXPECT_EQ(given.tree, TreeKind::packed);
     EXPECT_EQ(given.photons, 2'000'000'000U);
     EXPECT_EQ(given.emitted, 0U);
     EXPECT_EQ(given.nearest, 1);
@@ -49,9 +51,8 @@ TEST(PhotonMapParams, EmittedReplacesPhotons) {
 
 TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
     for (const std::string word :
-         {R"("emission": "stratified")", R"("interaction": "split")", R"("tree": "unbalanced")",
-          R"("tree": "packed")", R"("filter": "cone")", R"("adaptive": true)", R"("tables": true)",
-          R"("passes": 2)", R"("radius": 0.1)"}) {
+         {R"("emission": "stratified")", R"("interaction": "split")", R"("filter": "cone")",
+          R"("adaptive": true)", R"("tables": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
         const std::string line = refusal("{" + word + "}");
         EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
     }

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
+#include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/rng.h"
-#include "photonmap/kd_tree.h"
-#include "photonmap/photon.h"
+#include "photonmap/arrival_directions.h"
+#include "photonmap/photon_tree.h"
 
 namespace caustics::test {
 
@@ -56,18 +59,48 @@ inline std::vector<PhotonSet> photon_sets(std::size_t count, std::uint64_t seed)
     return sets;
 }
 
-/// The nearest by looking at all photons, in order.
-template <typename Accept>
-std::vector<Neighbour> linear_scan(const std::vector<Photon>& photons, const Vec3& point,
-                                   std::size_t count, float max_squared_distance,
-                                   const Accept& accept) {
-    std::vector<Neighbour> all;
-    for (std::uint32_t i = 0; i < photons.size(); ++i) {
-        const float distance2 = squared_distance(photons[i], point);
-        if (distance2 <= max_squared_distance && accept(photons[i])) all.push_back({distance2, i});
+inline PhotonStore store_of(std::span<const Photon> photons) {
+    PhotonStore store(photons.size());
+    store.append(photons);
+    return store;
+}
+
+/// Each operation rounded to float.
+inline float squared_distance(const Photon& photon, const Vec3& point) {
+    const float x = photon.position[0] - point.x();
+    const float y = photon.position[1] - point.y();
+    const float z = photon.position[2] - point.z();
+    return x * x + y * y + z * z;
+}
+
+/// A gathered photon; energy and direction are compared as PhotonTree orders them.
+struct Found {
+    float squared_distance;
+    std::uint32_t energy;
+    std::uint16_t direction;
+
+    auto operator<=>(const Found&) const = default;
+};
+
+inline Found found(const Photon& photon, const Vec3& point) {
+    Found f{squared_distance(photon, point), 0, 0};
+    std::memcpy(&f.energy, &photon.energy, sizeof f.energy);
+    std::memcpy(&f.direction, &photon.theta, sizeof f.direction);
+    return f;
+}
+
+/// The answer at a point by looking at all photons, nearest first.
+inline std::vector<Found> linear_scan(std::span<const Photon> photons, const ReceiverPoint& point,
+                                      const GatherLimits& limits) {
+    std::vector<Found> all;
+    for (const Photon& photon : photons) {
+        const Found f = found(photon, point.position);
+        if (f.squared_distance <= limits.max_radius * limits.max_radius &&
+            incoming(photon).dot(point.geometric_normal) > 0)
+            all.push_back(f);
     }
-    std::ranges::sort(all, [](const Neighbour& a, const Neighbour& b) { return a < b; });
-    if (all.size() > count) all.resize(count);
+    std::ranges::sort(all);
+    if (all.size() > limits.nearest) all.resize(limits.nearest);
     return all;
 }
 

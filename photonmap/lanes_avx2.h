@@ -1,0 +1,78 @@
+#pragma once
+
+#include <immintrin.h>
+#include <stddef.h>
+#include <stdint.h>
+
+namespace caustics {
+
+/// PlainLanes, eight at a time.
+struct Avx2Lanes {
+    static constexpr size_t width = 8;
+    using Floats = __m256;
+    using Words = __m256i;
+
+    static Floats load(const float* from) { return _mm256_loadu_ps(from); }
+    static Words load(const uint32_t* from) {
+        return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    }
+    static Floats all(float value) { return _mm256_set1_ps(value); }
+    static Words counting_from(uint32_t first) {
+        return _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)),
+                                _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    }
+    static void store(float* to, Floats a) { _mm256_storeu_ps(to, a); }
+    static Floats add(Floats a, Floats b) { return _mm256_add_ps(a, b); }
+    static Floats sub(Floats a, Floats b) { return _mm256_sub_ps(a, b); }
+    static Floats mul(Floats a, Floats b) { return _mm256_mul_ps(a, b); }
+    static Floats min(Floats a, Floats b) { return _mm256_min_ps(a, b); }
+    static Floats max(Floats a, Floats b) { return _mm256_max_ps(a, b); }
+    static uint32_t less(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
+    static uint32_t not_above(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_LE_OQ)); }
+    static size_t count(uint32_t mask) { return static_cast<size_t>(_mm_popcnt_u32(mask)); }
+    static Floats where(uint32_t mask, Floats a, Floats b) {
+        const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        const __m256i chosen = _mm256_cmpeq_epi32(
+            _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), lane_bits), lane_bits);
+        return _mm256_blendv_ps(b, a, _mm256_castsi256_ps(chosen));
+    }
+    static void compress(float* to, uint32_t mask, Floats a) {
+        _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, lanes_of(mask)));
+    }
+    static void compress(uint32_t* to, uint32_t mask, Words a) {
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                            _mm256_permutevar8x32_epi32(a, lanes_of(mask)));
+    }
+    static float least(Floats a) {
+        __m128 b = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+        b = _mm_min_ps(b, _mm_movehl_ps(b, b));
+        return _mm_cvtss_f32(_mm_min_ss(b, _mm_shuffle_ps(b, b, 1)));
+    }
+    static float greatest(Floats a) {
+        __m128 b = _mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+        b = _mm_max_ps(b, _mm_movehl_ps(b, b));
+        return _mm_cvtss_f32(_mm_max_ss(b, _mm_shuffle_ps(b, b, 1)));
+    }
+
+private:
+    static uint32_t bits(__m256 mask) { return static_cast<uint32_t>(_mm256_movemask_ps(mask)); }
+
+    /// For each mask its lanes in order.
+    struct CompressTable {
+        alignas(8) uint8_t lanes[256][8];
+        constexpr CompressTable() : lanes{} {
+            for (unsigned mask = 0; mask < 256; ++mask) {
+                unsigned count = 0;
+                for (unsigned lane = 0; lane < 8; ++lane)
+                    if ((mask >> lane & 1U) != 0) lanes[mask][count++] = static_cast<uint8_t>(lane);
+            }
+        }
+    };
+    static __m256i lanes_of(uint32_t mask) {
+        static constexpr CompressTable table;
+        return _mm256_cvtepu8_epi32(
+            _mm_loadl_epi64(reinterpret_cast<const __m128i*>(table.lanes[mask])));
+    }
+};
+
+}  // namespace caustics

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <immintrin.h>
+#include <stddef.h>
+#include <stdint.h>
+
+namespace caustics {
+
+/// PlainLanes, sixteen at a time.
+struct Avx512Lanes {
+    static constexpr size_t width = 16;
+    using Floats = __m512;
+    using Words = __m512i;
+
+    static Floats load(const float* from) { return _mm512_loadu_ps(from); }
+    static Words load(const uint32_t* from) { return _mm512_loadu_si512(from); }
+    static Floats all(float value) { return _mm512_set1_ps(value); }
+    static Words counting_from(uint32_t first) {
+        return _mm512_add_epi32(
+            _mm512_set1_epi32(static_cast<int>(first)),
+            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+    }
+    static void store(float* to, Floats a) { _mm512_storeu_ps(to, a); }
+    static Floats add(Floats a, Floats b) { return _mm512_add_ps(a, b); }
+    static Floats sub(Floats a, Floats b) { return _mm512_sub_ps(a, b); }
+    static Floats mul(Floats a, Floats b) { return _mm512_mul_ps(a, b); }
+    static Floats min(Floats a, Floats b) { return _mm512_min_ps(a, b); }
+    static Floats max(Floats a, Floats b) { return _mm512_max_ps(a, b); }
+    static uint32_t less(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+    static uint32_t not_above(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+    static size_t count(uint32_t mask) { return static_cast<size_t>(_mm_popcnt_u32(mask)); }
+    static Floats where(uint32_t mask, Floats a, Floats b) {
+        return _mm512_mask_blend_ps(static_cast<__mmask16>(mask), b, a);
+    }
+    static void compress(float* to, uint32_t mask, Floats a) {
+        _mm512_storeu_ps(to, _mm512_maskz_compress_ps(static_cast<__mmask16>(mask), a));
+    }
+    static void compress(uint32_t* to, uint32_t mask, Words a) {
+        _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), a));
+    }
+    static float least(Floats a) { return _mm512_reduce_min_ps(a); }
+    static float greatest(Floats a) { return _mm512_reduce_max_ps(a); }
+};
+
+}  // namespace caustics

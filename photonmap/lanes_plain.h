@@ -1,0 +1,37 @@
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace caustics {
+
+/// Registers of one lane: the plain C++ of the kernels that are written for any width. Masks hold
+/// lane i in bit i. Every width does the same operations, each rounded to float, in the same order,
+/// so that results are the same bits. `compress` puts the masked lanes side by side and may write
+/// a whole register.
+struct PlainLanes {
+    static constexpr size_t width = 1;
+    using Floats = float;
+    using Words = uint32_t;
+
+    static Floats load(const float* from) { return *from; }
+    static Words load(const uint32_t* from) { return *from; }
+    static Floats all(float value) { return value; }
+    static Words counting_from(uint32_t first) { return first; }
+    static void store(float* to, Floats a) { *to = a; }
+    static Floats add(Floats a, Floats b) { return a + b; }
+    static Floats sub(Floats a, Floats b) { return a - b; }
+    static Floats mul(Floats a, Floats b) { return a * b; }
+    static Floats min(Floats a, Floats b) { return a < b ? a : b; }
+    static Floats max(Floats a, Floats b) { return a > b ? a : b; }
+    static uint32_t less(Floats a, Floats b) { return a < b ? 1U : 0U; }
+    static uint32_t not_above(Floats a, Floats b) { return a <= b ? 1U : 0U; }
+    static size_t count(uint32_t mask) { return mask; }
+    static Floats where(uint32_t mask, Floats a, Floats b) { return mask != 0 ? a : b; }
+    static void compress(float* to, uint32_t, Floats a) { *to = a; }
+    static void compress(uint32_t* to, uint32_t, Words a) { *to = a; }
+    static float least(Floats a) { return a; }
+    static float greatest(Floats a) { return a; }
+};
+
+}  // namespace caustics

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/vec.h"
+
+namespace caustics {
+
+/// What one query's answer tells the next: the distance of the N-th nearest photon changes by no more than
+/// the point moves, so that it bounds the next search exactly.
+class NeighbourBound {
+public:
+    /// Squared distance within which the N nearest of `point` lie [m^2], at most `max`.
+    /// `tested` tells whether photons behind `normal` are left out; then only a point with the same
+    /// normal is of use.
+    float at(const Vec3& point, const Vec3& normal, bool tested, float max) const {
+        if (!known_ || tested != tested_ || (tested && normal != normal_)) return max;
+        return std::min(max, reached(distance_ + (point - point_).norm()));
+    }
+
+    /// The largest squared distance of an answer that has all N photons.
+    void set(const Vec3& point, const Vec3& normal, bool tested, float squared_distance) {
+        known_ = true;
+        tested_ = tested;
+        point_ = point;
+        normal_ = normal;
+        distance_ = std::sqrt(squared_distance);
+    }
+    void forget() { known_ = false; }
+    bool known() const { return known_; }
+    float distance() const { return distance_; }
+
+    /// A distance squared, enlarged by more than rounding can take off.
+    static float reached(float distance) { return distance * distance * 1.000004F + 1e-37F; }
+
+private:
+    bool known_ = false;
+    bool tested_ = false;
+    Vec3 point_ = Vec3::Zero();
+    Vec3 normal_ = Vec3::UnitZ();
+    float distance_ = 0;
+};
+
+}  // namespace caustics

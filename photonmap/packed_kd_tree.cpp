@@ -1,0 +1,89 @@
+#include "photonmap/packed_kd_tree.h"
+
+#include <bit>
+
+#include "photonmap/heap_shape.h"
+#include "photonmap/select_photons.h"
+
+namespace caustics {
+
+namespace {
+
+/// Splits the range down to what the kernels order.
+void fill_buckets(BucketRange range, const TreeKernels& kernels, OrderScratch& scratch) {
+    while (range.count > small_range) {
+        const std::span<Photon> photons(reinterpret_cast<Photon*>(range.photons), range.count);
+        const unsigned axis = widest_axis(photons, kernels);
+        const std::uint64_t on_left = left_leaves(range.leaves);
+        const std::size_t middle = on_left * bucket_photons;
+        select_photon(photons, middle, axis);
+        // Now, because the photon moves on when its side is split.
+        range.planes[range.node] =
+            (std::bit_cast<std::uint32_t>(photons[middle].position[axis]) & ~3U) | axis;
+        BucketRange left = range;
+        left.count = middle;
+        left.node = 2 * range.node;
+        left.leaves = on_left;
+        fill_buckets(left, kernels, scratch);
+        range.photons += middle * sizeof(Photon);
+        range.count -= middle;
+        range.node = 2 * range.node + 1;
+        range.leaves -= on_left;
+    }
+    kernels.fill_buckets(range, scratch);
+}
+
+}  // namespace
+
+PackedKdTree::PackedKdTree(PhotonStore photons, Isa isa)
+    : SearchTree(tree_kernels(isa), ArrivalDirections(photons.photons())),
+      photons_(std::move(photons)),
+      planes_(std::make_unique<std::uint32_t[]>(std::max<std::size_t>(1, bucket_count()))),
+      last_bucket_(std::make_unique<unsigned char[]>(bucket_bytes)) {
+    order();
+}
+
+void PackedKdTree::order() {
+    const std::size_t buckets = bucket_count();
+    if (buckets == 0) return;
+    unsigned char* const memory = bytes_of(photons_.photons());
+    const bool last_is_full = photons_.size() % bucket_photons == 0;
+    unsigned char* const last =
+        last_is_full ? memory + (buckets - 1) * bucket_bytes : last_bucket_.get();
+    const auto scratch = std::make_unique<OrderScratch>();
+    fill_buckets({memory, photons_.size(), 1, buckets, planes_.get(), last}, kernels_, *scratch);
+    view_ = {memory, last, planes_.get(), buckets};
+}
+
+std::uint64_t PackedKdTree::bytes() const {
+    return photons_.bytes() + bucket_count() * sizeof(std::uint32_t) + bucket_bytes;
+}
+
+void PackedKdTree::find(const NearestQuery& query, GatherScratch& scratch) const {
+    kernels_.find_packed(view_, query, scratch.found.candidates());
+}
+
+void PackedKdTree::copy_codes(const Candidates& found, std::uint32_t* energy,
+                              std::uint16_t* direction) const {
+    for (std::size_t i = 0; i < found.count; ++i) {
+        const unsigned char* const at = bucket(found.index[i] / bucket_photons);
+        const std::size_t lane = found.index[i] % bucket_photons;
+        std::memcpy(energy + i, at + 12 * bucket_photons + 4 * lane, 4);
+        std::memcpy(direction + i, at + 16 * bucket_photons + 2 * lane, 2);
+    }
+}
+
+std::uint64_t PackedKdTree::code_of(std::uint32_t photon) const {
+    std::uint32_t energy = 0;
+    std::uint16_t direction = 0;
+    const Candidates one{nullptr, &photon, 1, 1};
+    copy_codes(one, &energy, &direction);
+    return code(energy, direction);
+}
+
+void PackedKdTree::gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
+                          GatherScratch& scratch, const Consumer& consume) const {
+    SearchTree::gather(points, limits, scratch, consume);
+}
+
+}  // namespace caustics

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+
+#include "photonmap/aligned_array.h"
+#include "photonmap/search_tree.h"
+
+namespace caustics {
+
+/// A kd-tree over buckets of photons, built in the photons' own memory. A bucket holds x, y, z, energy,
+/// directions and flags of its photons one array after the other, so that a register takes many photons
+/// at once. The tree above is a heap of splitting planes, four bytes a bucket (heap_shape.h): inner
+/// node i's plane is planes[i], its axis in the lowest two bits. The last bucket, when it is not
+/// full, lies apart and is filled up with positions at infinity.
+class PackedKdTree final : public SearchTree {
+public:
+    PackedKdTree(PhotonStore photons, Isa isa);
+
+    /// A batch is split into groups as long as these are wide against the distance of the N-th
+    /// photon; a group's photons are collected by one walk.
+    void gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
+                GatherScratch& scratch, const Consumer& consume) const override;
+    std::size_t size() const override { return photons_.size(); }
+    std::uint64_t bytes() const override;
+
+private:
+    friend class PackedGather;
+
+    void find(const NearestQuery& query, GatherScratch& scratch) const override;
+    void copy_codes(const Candidates& found, std::uint32_t* energy,
+                    std::uint16_t* direction) const override;
+    std::uint64_t code_of(std::uint32_t photon) const override;
+
+    std::size_t bucket_count() const {
+        return (photons_.size() + bucket_photons - 1) / bucket_photons;
+    }
+    const unsigned char* bucket(std::size_t number) const {
+        return number + 1 == bucket_count() ? view_.last_bucket
+                                            : view_.buckets + number * bucket_bytes;
+    }
+    void order();
+
+    PhotonStore photons_;
+    std::unique_ptr<std::uint32_t[]> planes_;
+    std::unique_ptr<unsigned char[]> last_bucket_;
+    PackedView view_{};
+};
+
+}  // namespace caustics

@@ -1,0 +1,177 @@
+#pragma once
+
+#include "photonmap/candidate_loops.h"
+#include "photonmap/heap_shape.h"
+
+namespace caustics {
+
+/// The walk of a packed tree: nearest bucket first, a bucket at a time.
+template <typename Lanes>
+class PackedWalk {
+public:
+    static bool find(const PackedView& tree, const NearestQuery& query, Candidates& found) {
+        PackedWalk walk(tree, query, found);
+        return walk.run();
+    }
+
+private:
+    /// A subtree put off: no photon in it is nearer than `offset` along each axis.
+    struct Pending {
+        float offset[3];
+        float squared_distance;
+        uint64_t node;
+    };
+
+    PackedWalk(const PackedView& tree, const NearestQuery& query, Candidates& found)
+        : tree_(tree),
+          query_(query),
+          found_(found),
+          nearest_bound_(query.max_squared_distance),
+          bound_(with_margin(nearest_bound_)),
+          trigger_(query.nearest) {
+        found.count = 0;
+        limit_trigger();
+    }
+
+    bool run() {
+        if (tree_.bucket_count == 0) return true;
+        Pending at{{0, 0, 0}, 0, 1};
+        for (;;) {
+            const uint64_t leaf = descend(at);
+            scan(leaf + 1 == tree_.bucket_count ? tree_.last_bucket
+                                                : tree_.buckets + leaf * bucket_bytes,
+                 static_cast<uint32_t>(leaf * bucket_photons));
+            if (found_.count >= trigger_ && !shrink()) return false;
+            do {
+                if (pending_count_ == 0) return finish();
+                at = pending_[--pending_count_];
+            } while (at.squared_distance > bound_);
+        }
+    }
+
+    /// Goes down to the bucket on the point's side of every plane. A plane's lowest two bits hold its
+    /// axis: its place is known up to the four numbers that share the other bits.
+    uint64_t descend(const Pending& from) {
+        Pending at = from;
+        while (at.node < tree_.bucket_count) {
+            const uint32_t plane = tree_.planes[at.node];
+            const unsigned axis = plane & 3U;
+            const float one_end = float_of(plane & ~3U), other_end = float_of(plane | 3U);
+            const float low = one_end < other_end ? one_end : other_end;
+            const float high = one_end < other_end ? other_end : one_end;
+            const float x = query_.point[axis];
+            const bool right = x > low;
+            float gap = right ? x - high : low - x;
+            gap = gap > 0 ? gap : 0;
+            Pending& far = pending_[pending_count_];
+            far.offset[0] = at.offset[0];
+            far.offset[1] = at.offset[1];
+            far.offset[2] = at.offset[2];
+            far.offset[axis] = gap;
+            // The same operations as for a photon: rounding keeps the order of distances.
+            far.squared_distance = far.offset[0] * far.offset[0] + far.offset[1] * far.offset[1] +
+                                   far.offset[2] * far.offset[2];
+            at.node = 2 * at.node + (right ? 1 : 0);
+            far.node = at.node ^ 1U;
+            pending_count_ += far.squared_distance <= bound_ ? 1 : 0;
+        }
+        return leaf_number(at.node, tree_.bucket_count);
+    }
+
+    void scan(const unsigned char* bucket, uint32_t first_index) {
+        const auto* const x = reinterpret_cast<const float*>(bucket);
+        const float* const y = x + bucket_photons;
+        const float* const z = y + bucket_photons;
+        const auto limit = Lanes::all(bound_);
+        const auto px = Lanes::all(query_.point[0]);
+        const auto py = Lanes::all(query_.point[1]);
+        const auto pz = Lanes::all(query_.point[2]);
+        const size_t before = found_.count;
+        size_t count = before;
+        for (size_t i = 0; i < bucket_photons; i += Lanes::width) {
+            const auto dx = Lanes::sub(Lanes::load(x + i), px);
+            const auto dy = Lanes::sub(Lanes::load(y + i), py);
+            const auto dz = Lanes::sub(Lanes::load(z + i), pz);
+            const auto d2 =
+                Lanes::add(Lanes::add(Lanes::mul(dx, dx), Lanes::mul(dy, dy)), Lanes::mul(dz, dz));
+            const uint32_t mask = Lanes::not_above(d2, limit);
+            Lanes::compress(found_.squared_distance + count, mask, d2);
+            Lanes::compress(found_.index + count, mask,
+                            Lanes::counting_from(first_index + static_cast<uint32_t>(i)));
+            count += Lanes::count(mask);
+        }
+        found_.count = count;
+        if (query_.side != nullptr && count > before) drop_back_side(bucket, first_index, before);
+    }
+
+    void drop_back_side(const unsigned char* bucket, uint32_t first_index, size_t before) {
+        const unsigned char* const direction = bucket + 16 * bucket_photons;
+        size_t kept = before;
+        for (size_t i = before; i < found_.count; ++i) {
+            const unsigned char* const code = direction + 2 * (found_.index[i] - first_index);
+            found_.squared_distance[kept] = found_.squared_distance[i];
+            found_.index[kept] = found_.index[i];
+            kept += on_front_side(*query_.side, code[0], code[1]) ? 1 : 0;
+        }
+        found_.count = kept;
+    }
+
+    /// Makes room and the search smaller. False when what must be kept does not fit.
+    bool shrink() {
+        const size_t nearest = query_.nearest;
+        if (query_.margin > 0) {
+            const auto kth = Selection<Lanes>::bound_for(found_.squared_distance, found_.count,
+                                                         nearest, nearest + nearest / 8, 0, bound_);
+            if (kth.value < nearest_bound_) nearest_bound_ = kth.value;
+            bound_ = with_margin(nearest_bound_);
+            CandidateLoops<Lanes>::keep_not_above(found_, bound_);
+            trigger_ = found_.count + found_.count / 2 + 2 * bucket_photons;
+            limit_trigger();
+            return found_.count < trigger_;
+        }
+        bound_ = CandidateLoops<Lanes>::shrink(found_, nearest, nearest + nearest / 8, bound_);
+        if (found_.count > nearest + nearest / 8)
+            query_.drop_ties(query_.tie_context, found_, nearest);
+        trigger_ = nearest + nearest / 2 + bucket_photons;
+        limit_trigger();
+        return true;
+    }
+
+    bool finish() {
+        if (query_.margin > 0 || found_.count <= query_.nearest) return true;
+        CandidateLoops<Lanes>::shrink(found_, query_.nearest, query_.nearest, bound_);
+        if (found_.count > query_.nearest)
+            query_.drop_ties(query_.tie_context, found_, query_.nearest);
+        return true;
+    }
+
+    /// A whole bucket must fit behind the candidates that do not trigger.
+    void limit_trigger() {
+        if (trigger_ > found_.capacity - bucket_photons)
+            trigger_ = found_.capacity - bucket_photons;
+    }
+
+    /// Enlarged by more than rounding can take off.
+    float with_margin(float squared_distance) const {
+        if (!(query_.margin > 0)) return squared_distance;
+        const float distance = __builtin_sqrtf(squared_distance) + query_.margin;
+        return distance * distance * 1.000004F + 1e-37F;
+    }
+
+    static float float_of(uint32_t bits) {
+        float value;
+        memcpy(&value, &bits, sizeof value);
+        return value;
+    }
+
+    const PackedView& tree_;
+    const NearestQuery& query_;
+    Candidates& found_;
+    float nearest_bound_;  ///< of the squared distance of the N nearest
+    float bound_;          ///< of the squared distance of what is collected
+    size_t trigger_;
+    Pending pending_[64];
+    size_t pending_count_ = 0;
+};
+
+}  // namespace caustics

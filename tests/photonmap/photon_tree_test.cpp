@@ -1,0 +1,163 @@
+#include "photonmap/photon_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/error.h"
+#include "photon_sets.h"
+
+namespace caustics {
+namespace {
+
+using test::Found;
+using test::linear_scan;
+using test::photon_at;
+using test::photon_sets;
+using test::store_of;
+
+constexpr TreeKind kinds[] = {TreeKind::balanced, TreeKind::unbalanced, TreeKind::packed};
+
+struct NamedTree {
+    std::string name;
+    std::unique_ptr<const PhotonTree> tree;
+};
+
+/// Every kind on every instruction set.
+std::vector<NamedTree> all_trees(std::span<const Photon> photons) {
+    std::vector<NamedTree> trees;
+    for (const TreeKind kind : kinds)
+        for (const Isa isa : supported_isas())
+            trees.push_back({std::string(name(kind)) + " " + name(isa),
+                             build_tree(kind, store_of(photons), isa)});
+    return trees;
+}
+
+ReceiverPoint point_at(const Vec3& x, const Vec3& normal) {
+    ReceiverPoint point;
+    point.position = x;
+    point.geometric_normal = point.shading_normal = point.wo = normal;
+    point.uv = Vec2::Zero();
+    return point;
+}
+
+/// Points near the photons and exactly at photons, side by side as in a tile: `spacing` is in parts of
+/// the photons' extent.
+std::vector<ReceiverPoint> query_points(std::span<const Photon> photons, std::size_t count,
+                                        float spacing, const Vec3& normal, std::uint64_t seed) {
+    Rng rng(seed, Stage::test, photons.size());
+    if (photons.empty()) return {point_at({1, 2, 3}, normal)};
+    const auto any = [&] { return position(photons[rng.next_word() % photons.size()]); };
+    const Vec3 first = any();
+    const Vec3 step = spacing * (any() - first), other = spacing * (any() - first);
+    std::vector<ReceiverPoint> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3 at =
+            first + static_cast<float>(i % 4) * step + static_cast<float>(i / 4) * other;
+        points.push_back(point_at(i % 5 == 4 && spacing > 0.1F ? any() : at, normal));
+    }
+    return points;
+}
+
+std::vector<std::vector<Found>> answers(const PhotonTree& tree,
+                                        std::span<const ReceiverPoint> points,
+                                        const GatherLimits& limits, GatherScratch& scratch) {
+    std::vector<std::vector<Found>> all(points.size());
+    std::vector<int> times(points.size());
+    tree.gather(points, limits, scratch, [&](std::size_t i, const GatheredPhotons& gathered) {
+        ++times[i];
+        for (std::size_t k = 0; k < gathered.count; ++k)
+            all[i].push_back(
+                {gathered.squared_distance[k], gathered.energy[k], gathered.direction[k]});
+        if (!all[i].empty()) {
+            const Found farthest = all[i][gathered.farthest];
+            std::ranges::sort(all[i]);
+            EXPECT_EQ(farthest, all[i].back());
+        }
+    });
+    EXPECT_EQ(times, std::vector<int>(points.size(), 1));
+    return all;
+}
+
+/// Batches of wide and of close points must give what a linear scan gives, in every tree.
+void expect_same_as_scan(std::span<const Photon> photons, const std::vector<NamedTree>& trees,
+                         std::size_t nearest, const Vec3& normal, std::uint64_t seed) {
+    Rng rng(seed, Stage::test, nearest);
+    GatherScratch scratch;
+    for (const float spacing : {1.0F, 0.05F, 1e-3F, 0.0F}) {
+        const auto points = query_points(photons, 18, spacing, normal, seed);
+        GatherLimits limits{.nearest = nearest, .max_radius = 1e18F};
+        if (spacing > 1e-3F && !photons.empty()) {
+            // A radius among the photons' distances.
+            const Photon& any = photons[rng.next_word() % photons.size()];
+            limits.max_radius = std::max(1e-12F, (position(any) - points[0].position).norm());
+        }
+        std::vector<std::vector<Found>> expected;
+        for (const ReceiverPoint& point : points)
+            expected.push_back(linear_scan(photons, point, limits));
+        for (const NamedTree& tree : trees)
+            ASSERT_EQ(answers(*tree.tree, points, limits, scratch), expected)
+                << tree.name << ", spacing " << spacing << ", radius " << limits.max_radius;
+    }
+}
+
+TEST(PhotonTree, FindsTheSamePhotonsAsALinearScan) {
+    for (const std::size_t count : {0U, 1U, 2U, 3U, 4U, 7U, 8U, 31U, 32U, 33U, 100U, 3'001U}) {
+        for (const auto& set : photon_sets(count, 15)) {
+            const auto trees = all_trees(set.photons);
+            for (const std::size_t nearest : {1U, 2U, 5U, 50U, 4'000U}) {
+                SCOPED_TRACE(set.name + ", " + std::to_string(nearest) + " of " +
+                             std::to_string(count));
+                expect_same_as_scan(set.photons, trees, nearest, Vec3::UnitZ(), 16);
+                if (testing::Test::HasFatalFailure()) return;
+            }
+        }
+    }
+}
+
+TEST(PhotonTree, ManySmallRandomSets) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Rng rng(seed, Stage::test, 0);
+        const std::size_t count = rng.next_word() % 200;
+        const std::size_t nearest = 1 + rng.next_word() % 60;
+        const float x = rng.next() - 0.5F, y = rng.next() - 0.5F, z = rng.next() - 0.5F;
+        const Vec3 normal = Vec3(x, y, z).normalized();
+        for (const auto& set : photon_sets(count, 100 + seed)) {
+            SCOPED_TRACE(set.name + ", " + std::to_string(nearest) + " of " +
+                         std::to_string(count) + ", seed " + std::to_string(seed));
+            expect_same_as_scan(set.photons, all_trees(set.photons), nearest, normal, seed);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(PhotonTree, NeedsNoSideTestWhereAllPhotonsComeFromAbove) {
+    for (auto& set : photon_sets(3'000, 17)) {
+        for (Photon& photon : set.photons) photon.theta /= 4;
+        const auto trees = all_trees(set.photons);
+        for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0.6F, 0.8F), Vec3(1, 0, 0)}) {
+            SCOPED_TRACE(set.name);
+            expect_same_as_scan(set.photons, trees, 20, normal, 18);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(PhotonTree, RefusesPositionsThatAreNotFinite) {
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        std::vector<Photon> photons(100, photon_at({1, 2, 3}));
+        photons[37].position[1] = bad;
+        for (const TreeKind kind : kinds) {
+            try {
+                build_tree(kind, store_of(photons), widest_isa());
+                FAIL();
+            } catch (const InputError& error) {
+                EXPECT_NE(std::string(error.what()).find("photon 37 "), std::string::npos);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace caustics
