@@ -1,6 +1,5 @@
 #include "core/mesh_io.h"
 
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <array>
 #include <assimp/Importer.hpp>
@@ -13,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/mesh_source.h"
+#include "core/polygon.h"
 #include "core/vertex_normals.h"
 
 namespace caustics {
@@ -48,19 +48,24 @@ void append(TriangleMesh& mesh, const aiMesh& part) {
         if (part.HasTextureCoords(0))
             mesh.uvs.push_back(to_vec(part.mTextureCoords[0][i]).head<2>());
     }
+    std::vector<Vec3> corners;
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
-        const unsigned* corners = part.mFaces[i].mIndices;
-        if (part.mFaces[i].mNumIndices == 3)
-            mesh.triangles.push_back({first + corners[0], first + corners[1], first + corners[2]});
+        const aiFace& face = part.mFaces[i];
+        corners.clear();
+        for (unsigned c = 0; c < face.mNumIndices; ++c)
+            corners.push_back(mesh.positions[first + face.mIndices[c]]);
+        for (const auto& [a, b, c] : triangulate_polygon(corners))
+            mesh.triangles.push_back(
+                {first + face.mIndices[a], first + face.mIndices[b], first + face.mIndices[c]});
     }
 }
 
-// assimp does nothing here but read what check_obj and check_ply wrote, and triangulate: any other
-// post-processing would merge, reorder or drop.
+// assimp does nothing here but read what check_obj and check_ply wrote: post-processing would merge,
+// reorder or drop (its 5.4 loses triangles of polygons with some hundred corners).
 TriangleMesh import(const MeshSource& source, const char* format, const std::string& name) {
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFileFromMemory(source.text.data(), source.text.size(),
-                                                       aiProcess_Triangulate, format);
+    const aiScene* scene =
+        importer.ReadFileFromMemory(source.text.data(), source.text.size(), 0, format);
     if (scene == nullptr || scene->mNumMeshes != 1)
         throw InputError(name + ": " +
                          (scene == nullptr ? importer.GetErrorString() : "not one mesh"));
@@ -68,7 +73,7 @@ TriangleMesh import(const MeshSource& source, const char* format, const std::str
     append(mesh, *scene->mMeshes[0]);
     if (mesh.triangles.size() != source.triangles)
         throw InputError(name + ": " + std::to_string(source.triangles) + " triangles expected, " +
-                         std::to_string(mesh.triangles.size()) + " made; triangulate it first");
+                         std::to_string(mesh.triangles.size()) + " read");
     return mesh;
 }
 
