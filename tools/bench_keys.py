@@ -1,0 +1,105 @@
+"""What tools/bench_ratios measures: the keys, where their numbers come from, what they must reach."""
+import math
+
+FEW, MANY = "250677", "5036126"
+
+
+def geometric_mean(values):
+    values = list(values)
+    if not values:
+        raise KeyError("no measurements")
+    if len(values) == 1:
+        return values[0]  # to the last digit
+    return math.exp(sum(math.log(value) for value in values) / len(values))
+
+
+class Ratio:
+    """The geometric mean of counter `above` over counter `below`, over the benchmarks that match."""
+
+    def __init__(self, above, below, *prefixes):
+        self.above, self.below, self.prefixes = above, below, prefixes
+
+    def of(self, runs):
+        """`runs`: benchmark name -> counters, of one repetition."""
+        chosen = [run for name, run in runs.items() if name.startswith(self.prefixes)]
+        return geometric_mean(run[self.above] / run[self.below] for run in chosen)
+
+
+class Key:
+    """A key of ratios.json, and its single measurements by name (`parts`): its value is their
+    geometric mean, and it meets a mark when every part does.
+
+    Marks are `must` and `goal`; one number for all instruction sets or one by instruction set; `marks`
+    gives parts marks of their own. Ratios should be at least the mark, or `at_most`.
+    """
+
+    def __init__(self, name, what, program, parts, must=None, goal=None, at_most=False, marks=None,
+                 beside=""):
+        self.name, self.what, self.program, self.parts = name, what, program, parts
+        self.at_most, self.beside = at_most, beside
+        self._marks, self._part_marks = (must, goal), marks or {}
+
+    def marks(self, part, isa):
+        """(must, goal) of a part; None where there is no mark."""
+        def of_isa(mark):
+            return mark.get(isa) if isinstance(mark, dict) else mark
+        return tuple(of_isa(mark) for mark in self._part_marks.get(part, self._marks))
+
+    def meets(self, value, mark):
+        return value <= mark if self.at_most else value >= mark
+
+    def prefixes(self):
+        """Of the benchmarks that the key needs."""
+        return sorted({prefix for part in self.parts.values() for prefix in part.prefixes})
+
+
+def by_isa(avx512, avx2):
+    return {"avx512": avx512, "avx2": avx2}
+
+
+def both(above, below, *prefixes):
+    return {"": Ratio(above, below, *prefixes)}
+
+
+def unbalanced_parts():
+    parts = {}
+    for count in (FEW, MANY):
+        for order in ("random", "shuffled_strata", "r2", "scanline_strata"):
+            if (count, order) == (MANY, "scanline_strata"):
+                continue  # minutes of inserting, a thousand levels deep
+            for caustic in ("a", "b"):
+                name = f"{caustic}/{count}/{order}"
+                parts[f"queries {name}"] = Ratio("unbalanced", "balanced", f"unbalanced/{name}")
+    for count in (FEW, MANY):
+        parts[f"rendering {count}"] = Ratio("unbalanced", "balanced", f"rendering/{count}")
+    return parts
+
+
+KEYS = [
+    Key("balanced_build_vs_nanoflann", "building the balanced tree in place", "kd_tree",
+        both("nanoflann", "balanced", "build/"), by_isa(4, 3), 8),
+    Key("packed_build_vs_nanoflann", "building the packed tree in place", "kd_tree",
+        both("nanoflann", "packed", "build/"), by_isa(8, 5), 16),
+    Key("packed_knn_vs_nanoflann", "k nearest, packed tree; nanoflann at its best leaf size", "kd_tree",
+        both("nanoflann", "packed", "knn/"), by_isa(8, 4), 13),
+    Key("packed_knn_vs_nanoflann_heap", "the same; nanoflann with a binary heap", "kd_tree",
+        both("nanoflann_heap", "packed", "knn/"), by_isa(5, 2.5), 8),
+    Key("packed_tile_vs_nanoflann", "4x4 tiles of 1280x960 queries, k = 100", "kd_tree",
+        both("nanoflann", "packed", "tile/"), by_isa(15, 8), 30),
+    Key("balanced_knn_vs_nanoflann", "k = 100 nearest, balanced tree", "kd_tree",
+        both("nanoflann", "balanced", *(f"knn/{c}/{n}/100/" for c in "ab" for n in (FEW, MANY))), 1.2, 2),
+    Key("query_cost_20x_photons", "time at 5.04 M photons over time at 250 k, k = 100", "kd_tree",
+        {"queries packed": Ratio("packed_5M", "packed_250k", "cost/"),
+         "queries balanced": Ratio("balanced_5M", "balanced_250k", "cost/"),
+         "rendering packed": Ratio("packed_5M", "packed_250k", "rendering/cost"),
+         "rendering balanced": Ratio("balanced_5M", "balanced_250k", "rendering/cost")},
+        1.5, 1.15, at_most=True, beside="the paper's renderings: 1.52"),
+    Key("unbalanced_vs_balanced", "query time on the fly over balanced, k = 100, and whole renderings",
+        "kd_tree", unbalanced_parts(), beside="the paper's renderings: 2.08 (250 k), 5.0 (5 M)"),
+    Key("shading_vs_tables", "100 photons, Schlick, alpha 0.1; scalar code with tables", "shading",
+        both("tables", "ours", "shading/"), by_isa(2, 1.5), 3),
+    Key("shading_vs_libm", "the same; scalar code with sinf and cosf", "shading",
+        both("libm", "ours", "shading/"), by_isa(6, 3), 10),
+    Key("tables_vs_libm", "the parameter `tables`; scalar code with sinf and cosf", "shading",
+        both("libm", "ours_tables", "shading/")),
+]
