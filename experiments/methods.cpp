@@ -30,9 +30,13 @@ json describe_params(const LightTraceParams& p) {
 
 json describe_params(const PhotonMapParams& p) {
     const bool unbiased = p.estimator == PhotonMapParams::Estimator::unbiased;
-    json all = {{"nearest", p.nearest},         {"estimator", unbiased ? "unbiased" : "raw"},
-                {"max_bounces", p.max_bounces}, {"emission", "random"},
-                {"interaction", "roulette"},    {"tree", name(p.tree)}};
+    json all = {{"nearest", p.nearest},
+                {"estimator", unbiased ? "unbiased" : "raw"},
+                {"max_bounces", p.max_bounces},
+                {"emission", "random"},
+                {"interaction", "roulette"},
+                {"tree", name(p.tree)},
+                {"tables", p.tables}};
     if (p.photons > 0) all["photons"] = p.photons;
     if (p.emitted > 0) all["emitted"] = p.emitted;
     if (p.max_radius > 0) all["max_radius"] = p.max_radius;

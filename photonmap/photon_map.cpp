@@ -16,6 +16,10 @@ namespace {
 /// A thread's scratch and counters.
 class GatherContext final : public QueryContext {
 public:
+    explicit GatherContext(bool tables) {
+        if (tables) table.emplace();
+    }
+
     void count(const GatheredPhotons& gathered) {
         ++gathers_;
         gathered_photons_ += gathered.count;
@@ -25,9 +29,13 @@ public:
         counters["gathers"] += gathers_;
         counters["gathered_photons"] += gathered_photons_;
         counters["empty_gathers"] += empty_gathers_;
+        if (!table) return;
+        counters["table_lookups"] += table->lookups();
+        counters["table_fillings"] += table->fillings();
     }
 
     GatherScratch scratch;
+    std::optional<ReflectionTable> table;
 
 private:
     std::uint64_t gathers_ = 0;
@@ -39,21 +47,34 @@ private:
 class PhotonMap final : public CausticEstimator {
 public:
     PhotonMap(std::unique_ptr<const PhotonTree> tree, const LightPathCounts& counts,
-              const RadianceEstimate::Settings& settings, Isa isa)
-        : tree_(std::move(tree)), counts_(counts), settings_(settings), estimate_(settings, isa) {}
+              const RadianceEstimate::Settings& settings, Isa isa, bool tables)
+        : tree_(std::move(tree)),
+          counts_(counts),
+          settings_(settings),
+          estimate_(settings, isa),
+          tables_(tables) {}
 
     std::unique_ptr<QueryContext> make_context() const override {
-        return std::make_unique<GatherContext>();
+        return std::make_unique<GatherContext>(tables_);
     }
 
     void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                   QueryContext& context) const override {
-        answer(points, out, context, &RadianceEstimate::radiance);
+        auto& own = dynamic_cast<GatherContext&>(context);
+        // A batch begins with an empty table, so that the counters do not depend on threads.
+        if (own.table) own.table->clear();
+        answer(points, out, own, [this, &own](const ReceiverPoint& point, const auto& gathered) {
+            return own.table ? estimate_.radiance(point, gathered, *own.table)
+                             : estimate_.radiance(point, gathered);
+        });
     }
 
     void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                     QueryContext& context) const override {
-        answer(points, out, context, &RadianceEstimate::irradiance);
+        answer(points, out, dynamic_cast<GatherContext&>(context),
+               [this](const ReceiverPoint& point, const auto& gathered) {
+                   return estimate_.irradiance(point, gathered);
+               });
     }
 
     BuildReport build_report() const override {
@@ -66,16 +87,13 @@ public:
     }
 
 private:
-    using Value = Spectrum (RadianceEstimate::*)(const ReceiverPoint&,
-                                                 const GatheredPhotons&) const;
-
+    template <typename Value>
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                QueryContext& context, Value value) const {
-        auto& own = dynamic_cast<GatherContext&>(context);
-        tree_->gather(points, settings_.limits, own.scratch,
+                GatherContext& context, const Value& value) const {
+        tree_->gather(points, settings_.limits, context.scratch,
                       [&](std::size_t i, const GatheredPhotons& gathered) {
-                          own.count(gathered);
-                          out[i] = {(estimate_.*value)(points[i], gathered), black()};
+                          context.count(gathered);
+                          out[i] = {value(points[i], gathered), black()};
                       });
     }
 
@@ -83,6 +101,7 @@ private:
     LightPathCounts counts_;
     RadianceEstimate::Settings settings_;
     RadianceEstimate estimate_;
+    bool tables_;
 };
 
 void check(const PhotonMapParams& params) {
@@ -138,7 +157,8 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMa
     options.phase("balance");
     std::unique_ptr<const PhotonTree> tree =
         build_tree(params.tree, std::move(photons.store), options.isa);
-    return std::make_unique<PhotonMap>(std::move(tree), photons.counts, settings, options.isa);
+    return std::make_unique<PhotonMap>(std::move(tree), photons.counts, settings, options.isa,
+                                       params.tables);
 }
 
 }  // namespace caustics

@@ -31,6 +31,9 @@ struct PhotonMapParams {
     int nearest = 50;       ///< N; at least 2 for `unbiased`
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
     Estimator estimator = Estimator::unbiased;
+    /// Shade by tables of f_r over the directions that stored photons can have [J96, section 5],
+    /// one photon after another, instead of a register of photons at a time.
+    bool tables = false;
     int max_bounces = 16;  ///< specular events between light and receiver
 };
 

@@ -83,7 +83,8 @@ void read(const JsonNode& node, PhotonMapParams& params) {
     if (const auto tree = node.find("tree"))
         params.tree = tree_kinds[tree->as_choice(
             {name(tree_kinds[0]), name(tree_kinds[1]), name(tree_kinds[2])})];
-    for (const char* key : {"filter", "adaptive", "tables", "passes", "radius"}) refuse(node, key);
+    if (const auto tables = node.find("tables")) params.tables = tables->as_bool();
+    for (const char* key : {"filter", "adaptive", "passes", "radius"}) refuse(node, key);
     node.finish();
 }
 

@@ -42,6 +42,11 @@ Spectrum RadianceEstimate::radiance(const ReceiverPoint& point,
     return density(shading_.reflected(point, counted(gathered)), point, gathered);
 }
 
+Spectrum RadianceEstimate::radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                                    ReflectionTable& table) const {
+    return density(shading_.reflected(point, counted(gathered), table), point, gathered);
+}
+
 Spectrum RadianceEstimate::irradiance(const ReceiverPoint& point,
                                       const GatheredPhotons& gathered) const {
     return density(shading_.arriving(counted(gathered)), point, gathered);

@@ -30,6 +30,9 @@ public:
 
     /// [W m^-2 sr^-1] leaving along the point's `wo`, from what a tree gathered at it.
     Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered) const;
+    /// The same by a table of f_r.
+    Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                      ReflectionTable& table) const;
     /// [W m^-2], the same with f_r = 1.
     Spectrum irradiance(const ReceiverPoint& point, const GatheredPhotons& gathered) const;
 

@@ -31,7 +31,7 @@ TEST(PhotonMapParams, AreReadWithTheirDefaultsInPlace) {
     const PhotonMapParams given = params_of(
         R"({"photons": 2000000000, "nearest": 1, "estimator": "raw", "max_radius": 0.25,
             "max_bounces": 4, "emission": "random", "interaction": "roulette",
-            "tree": "packed"})");
+            "tree": "packed", "tables": true})");
     EXPECT_EQ(defaults.tree, TreeKind::balanced);
     EXPECT_EQ(given.tree, TreeKind::packed);
     EXPECT_EQ(given.photons, 2'000'000'000U);
@@ -40,6 +40,8 @@ TEST(PhotonMapParams, AreReadWithTheirDefaultsInPlace) {
     EXPECT_EQ(given.estimator, PhotonMapParams::Estimator::raw);
     EXPECT_EQ(given.max_radius, 0.25);
     EXPECT_EQ(given.max_bounces, 4);
+    EXPECT_TRUE(given.tables);
+    EXPECT_FALSE(defaults.tables);
 }
 
 TEST(PhotonMapParams, EmittedReplacesPhotons) {
@@ -52,7 +54,7 @@ TEST(PhotonMapParams, EmittedReplacesPhotons) {
 TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
     for (const std::string word :
          {R"("emission": "stratified")", R"("interaction": "split")", R"("filter": "cone")",
-          R"("adaptive": true)", R"("tables": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
+          R"("adaptive": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
         const std::string line = refusal("{" + word + "}");
         EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
     }
@@ -64,7 +66,8 @@ TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
           R"({"photons": 2000000001})", R"({"emitted": 0})", R"({"nearest": 0})",
           R"({"nearest": 1})", R"({"max_radius": 0})", R"({"max_radius": -1})",
           R"({"max_radius": 1e-30})", R"({"max_radius": 1e30})", R"({"estimator": "biased"})",
-          R"({"tree": "balancd"})", R"({"max_bounces": 0})", R"({"photons": "many"})"}) {
+          R"({"tree": "balancd"})", R"({"max_bounces": 0})", R"({"photons": "many"})",
+          R"({"tables": 1})"}) {
         const std::string line = refusal(json);
         EXPECT_NE(line, "") << json;
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;
