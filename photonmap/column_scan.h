@@ -7,6 +7,21 @@ namespace caustics {
 /// The query of a group's member among the photons that were copied out for the group.
 template <typename Lanes>
 struct ColumnScan {
+    static void copy(const PackedView& tree, const Candidates& found, PhotonColumns& photons) {
+        for (size_t i = 0; i < found.count; ++i) {
+            const size_t number = found.index[i] / bucket_photons;
+            const size_t lane = found.index[i] % bucket_photons;
+            const unsigned char* const bucket = number + 1 == tree.bucket_count
+                                                    ? tree.last_bucket
+                                                    : tree.buckets + number * bucket_bytes;
+            for (unsigned axis = 0; axis < 3; ++axis)
+                memcpy(photons.position[axis] + i, bucket + 4 * (axis * bucket_photons + lane), 4);
+            memcpy(photons.energy + i, bucket + 12 * bucket_photons + 4 * lane, 4);
+            memcpy(photons.direction + i, bucket + 16 * bucket_photons + 2 * lane, 2);
+        }
+        photons.count = found.count;
+    }
+
     static void find(const PhotonColumns& photons, const NearestQuery& query, Candidates& found) {
         const auto limit = Lanes::all(query.max_squared_distance);
         const auto px = Lanes::all(query.point[0]);

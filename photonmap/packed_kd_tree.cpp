@@ -81,9 +81,4 @@ std::uint64_t PackedKdTree::code_of(std::uint32_t photon) const {
     return code(energy, direction);
 }
 
-void PackedKdTree::gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
-                          GatherScratch& scratch, const Consumer& consume) const {
-    SearchTree::gather(points, limits, scratch, consume);
-}
-
 }  // namespace caustics

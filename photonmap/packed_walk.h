@@ -9,9 +9,9 @@ namespace caustics {
 template <typename Lanes>
 class PackedWalk {
 public:
-    static bool find(const PackedView& tree, const NearestQuery& query, Candidates& found) {
+    static float find(const PackedView& tree, const NearestQuery& query, Candidates& found) {
         PackedWalk walk(tree, query, found);
-        return walk.run();
+        return walk.run() ? walk.nearest_bound_ : -1;
     }
 
 private:
@@ -138,7 +138,11 @@ private:
     }
 
     bool finish() {
-        if (query_.margin > 0 || found_.count <= query_.nearest) return true;
+        if (found_.count <= query_.nearest) return true;
+        if (query_.margin > 0) {
+            shrink();
+            return true;
+        }
         CandidateLoops<Lanes>::shrink(found_, query_.nearest, query_.nearest, bound_);
         if (found_.count > query_.nearest)
             query_.drop_ties(query_.tie_context, found_, query_.nearest);

@@ -42,6 +42,20 @@ void SearchTree::make_room(const GatherLimits& limits, GatherScratch& scratch) c
     scratch.direction.reserve(room + 16);
 }
 
+NearestQuery SearchTree::query_at(const Vec3& point, const GatherLimits& limits) const {
+    NearestQuery query{};
+    std::copy_n(point.data(), 3, query.point);
+    query.nearest = nearest(limits);
+    query.max_squared_distance = limits.max_radius * limits.max_radius;
+    query.tie_context = this;
+    query.drop_ties = [](const void* tree, Candidates& found, std::size_t wanted) {
+        const auto& self = *static_cast<const SearchTree*>(tree);
+        keep_smallest_codes(found, wanted,
+                            [&self](std::uint32_t photon) { return self.code_of(photon); });
+    };
+    return query;
+}
+
 void SearchTree::answer(std::span<const ReceiverPoint> points, std::size_t i,
                         const GatherLimits& limits, NeighbourBound& bound, GatherScratch& scratch,
                         const Consumer& consume) const {
@@ -50,17 +64,9 @@ void SearchTree::answer(std::span<const ReceiverPoint> points, std::size_t i,
     const Vec3& normal = point.geometric_normal;
     const bool tested = !directions_.all_in_front(normal);
     const SideTest side = side_test(normal);
-    NearestQuery query{};
-    std::copy_n(x.data(), 3, query.point);
-    query.nearest = nearest(limits);
-    query.max_squared_distance = bound.at(x, normal, tested, limits.max_radius * limits.max_radius);
+    NearestQuery query = query_at(x, limits);
+    query.max_squared_distance = bound.at(x, normal, tested, query.max_squared_distance);
     query.side = tested ? &side : nullptr;
-    query.tie_context = this;
-    query.drop_ties = [](const void* tree, Candidates& found, std::size_t wanted) {
-        const auto& self = *static_cast<const SearchTree*>(tree);
-        keep_smallest_codes(found, wanted,
-                            [&self](std::uint32_t photon) { return self.code_of(photon); });
-    };
     find(query, scratch);
     ++scratch.single_queries;
     const Candidates& found = scratch.found.candidates();

@@ -61,6 +61,7 @@ protected:
     static std::size_t room_for(std::size_t nearest) {
         return nearest + nearest / 2 + 4 * bucket_photons;
     }
+    NearestQuery query_at(const Vec3& point, const GatherLimits& limits) const;
     void make_room(const GatherLimits& limits, GatherScratch& scratch) const;
     /// Answers one point; `bound` is used and renewed.
     void answer(std::span<const ReceiverPoint> points, std::size_t i, const GatherLimits& limits,

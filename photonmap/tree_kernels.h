@@ -98,9 +98,12 @@ struct Farthest {
 
 /// The loops, for one instruction set. Every set gives the same bits.
 struct TreeKernels {
-    /// Finds the nearest in a packed tree. With a margin it gives up (false) when they do not fit.
-    bool (*find_packed)(const PackedView&, const NearestQuery&, Candidates&);
-    /// Offers every photon of the columns to the candidates (index = place in the columns).
+    /// Finds the nearest in a packed tree and returns a squared distance within which they lie. With a
+    /// margin it gives up, and returns a negative number, when the photons do not fit.
+    float (*find_packed)(const PackedView&, const NearestQuery&, Candidates&);
+    /// Copies those photons out of the tree.
+    void (*copy_columns)(const PackedView&, const Candidates&, PhotonColumns&);
+    /// Finds the nearest of the columns; a photon's index is its place there.
     void (*find_in_columns)(const PhotonColumns&, const NearestQuery&, Candidates&);
     /// Drops candidates until `most` or (ties aside) fewer, but at least `nearest` are left, and
     /// returns the largest squared distance that a further one may have.

@@ -10,10 +10,15 @@ namespace caustics {
 template <typename Lanes>
 struct TreeKernelsOf {
     static constexpr TreeKernels value{
-        &PackedWalk<Lanes>::find,        &ColumnScan<Lanes>::find,
-        &CandidateLoops<Lanes>::shrink,  &CandidateLoops<Lanes>::farthest,
-        &SmallOrder<Lanes>::bounds,      &SmallOrder<Lanes>::order,
-        &SmallOrder<Lanes>::fill_buckets};
+        .find_packed = &PackedWalk<Lanes>::find,
+        .copy_columns = &ColumnScan<Lanes>::copy,
+        .find_in_columns = &ColumnScan<Lanes>::find,
+        .shrink = &CandidateLoops<Lanes>::shrink,
+        .farthest = &CandidateLoops<Lanes>::farthest,
+        .bounds = &SmallOrder<Lanes>::bounds,
+        .order_small = &SmallOrder<Lanes>::order,
+        .fill_buckets = &SmallOrder<Lanes>::fill_buckets,
+    };
 };
 
 }  // namespace caustics
