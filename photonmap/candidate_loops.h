@@ -26,7 +26,7 @@ struct CandidateLoops {
 
     static float shrink(Candidates& found, size_t nearest, size_t most, float bound) {
         const auto smaller = Selection<Lanes>::bound_for(found.squared_distance, found.count,
-                                                         nearest, most, 0, bound);
+                                                         found.count, nearest, most, 0, bound);
         keep_not_above(found, smaller.value);
         return smaller.value;
     }

@@ -43,7 +43,7 @@ struct GatherScratch {
     CandidateArrays group_found;
     AlignedArray<float> column[3];
     AlignedArray<std::uint32_t> column_energy;
-    AlignedArray<std::uint16_t> column_direction;
+    AlignedArray<std::uint32_t> column_direction;
 
     std::uint64_t single_queries = 0;
     std::uint64_t grouped_queries = 0;

@@ -62,17 +62,21 @@ struct Selection {
     }
 
     /// A bound that at least `rank` and, unless values are equal, at most `most` of the values are
-    /// not above. All values lie in [least, greatest]; 1 <= rank <= most, rank <= count.
+    /// not above. No value lies below `least`, `within` of them not above `greatest`;
+    /// 1 <= rank <= most, rank <= within.
     struct Bound {
         float value;
         size_t not_above;
     };
-    static Bound bound_for(const float* values, size_t count, size_t rank, size_t most, float least,
-                           float greatest) {
+    static Bound bound_for(const float* values, size_t count, size_t within, size_t rank,
+                           size_t most, float least, float greatest) {
         // The answer lies in (low, high]; `below` values are not above low, `within` not above high.
         int32_t low = order_of(least) - 1, high = order_of(greatest);
         float low_value = least;
-        size_t below = 0, within = count;
+        size_t below = 0;
+        // When few are left between the two, these are looked at by themselves.
+        float few[few_values + Lanes::width];
+        size_t left_out = 0;
         for (unsigned step = 1; within > most && high - 1 > low; ++step) {
             const float high_value = float_of(high);
             int32_t guess = low + static_cast<int32_t>((static_cast<int64_t>(high) - low) / 2);
@@ -87,7 +91,7 @@ struct Selection {
                 if (guess >= high) guess = high - 1;
             }
             const float guess_value = float_of(guess);
-            const size_t found = count_not_above(values, count, guess_value);
+            const size_t found = left_out + count_not_above(values, count, guess_value);
             if (found >= rank) {
                 high = guess;
                 within = found;
@@ -96,6 +100,11 @@ struct Selection {
                 low_value = guess_value;
                 below = found;
             }
+            if (within - below <= few_values && count > 2 * few_values) {
+                count = take_between(values, count, low_value, below > 0, float_of(high), few);
+                values = few;
+                left_out = below;
+            }
         }
         return {float_of(high), within};
     }
@@ -103,12 +112,30 @@ struct Selection {
     /// The value of rank `rank` (1 = the smallest), exactly.
     static KthSmallest kth(const float* values, size_t count, size_t rank, float least,
                            float greatest) {
-        const Bound bound = bound_for(values, count, rank, rank, least, greatest);
+        const Bound bound = bound_for(values, count, count, rank, rank, least, greatest);
         const float value = greatest_not_above(values, count, bound.value);
         return {value, count_less(values, count, value), bound.not_above};
     }
 
 private:
+    static constexpr size_t few_values = 32;
+
+    /// Copies the values above `low` (or, where none counts as below, all) and not above `high`.
+    static size_t take_between(const float* values, size_t count, float low, bool exclude_low,
+                               float high, float* few) {
+        const auto lower = Lanes::all(exclude_low ? low : -__builtin_inff());
+        const auto upper = Lanes::all(high);
+        size_t taken = 0;
+        for (size_t i = 0; i < count; i += Lanes::width) {
+            const auto v = Lanes::load(values + i);
+            const uint32_t mask =
+                Lanes::not_above(v, upper) & ~Lanes::not_above(v, lower) & real_lanes(count - i);
+            Lanes::compress(few + taken, mask, v);
+            taken += Lanes::count(mask);
+        }
+        return taken;
+    }
+
     /// Whole numbers in the order of the floats.
     static int32_t order_of(float value) {
         int32_t bits;

@@ -43,6 +43,13 @@ struct Avx2Lanes {
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                             _mm256_permutevar8x32_epi32(a, lanes_of(mask)));
     }
+    static void compress_halves(uint16_t* to, uint32_t mask, Words a) {
+        const __m256i low = _mm256_and_si256(_mm256_permutevar8x32_epi32(a, lanes_of(mask)),
+                                             _mm256_set1_epi32(0xFFFF));
+        _mm_storeu_si128(
+            reinterpret_cast<__m128i*>(to),
+            _mm_packus_epi32(_mm256_castsi256_si128(low), _mm256_extracti128_si256(low, 1)));
+    }
     static float least(Floats a) {
         __m128 b = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
         b = _mm_min_ps(b, _mm_movehl_ps(b, b));

@@ -38,6 +38,10 @@ struct Avx512Lanes {
     static void compress(uint32_t* to, uint32_t mask, Words a) {
         _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), a));
     }
+    static void compress_halves(uint16_t* to, uint32_t mask, Words a) {
+        const __m512i side_by_side = _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), a);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtepi32_epi16(side_by_side));
+    }
     static float least(Floats a) { return _mm512_reduce_min_ps(a); }
     static float greatest(Floats a) { return _mm512_reduce_max_ps(a); }
 };

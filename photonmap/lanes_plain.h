@@ -30,6 +30,8 @@ struct PlainLanes {
     static Floats where(uint32_t mask, Floats a, Floats b) { return mask != 0 ? a : b; }
     static void compress(float* to, uint32_t, Floats a) { *to = a; }
     static void compress(uint32_t* to, uint32_t, Words a) { *to = a; }
+    /// The words' low halves.
+    static void compress_halves(uint16_t* to, uint32_t, Words a) { *to = static_cast<uint16_t>(a); }
     static float least(Floats a) { return a; }
     static float greatest(Floats a) { return a; }
 };

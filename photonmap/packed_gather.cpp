@@ -82,8 +82,7 @@ bool PackedGather::answer_together(Group group, const Box& box) {
     const Vec3& normal = points_[group.front()].geometric_normal;
     const SideTest side = side_test(normal);
     NearestQuery query = tree_.query_at(centre, limits_);
-    query.max_squared_distance =
-        bound_.at(centre, normal, tested_, query.max_squared_distance);
+    query.max_squared_distance = bound_.at(centre, normal, tested_, query.max_squared_distance);
     query.margin = 2.00001F * radius + 1e-30F;
     query.side = tested_ ? &side : nullptr;
     Candidates& collected = scratch_.group_found.reserve(room_for_group(query.nearest));
@@ -103,6 +102,8 @@ PhotonColumns PackedGather::columns(std::size_t count) {
     scratch_.column_energy.reserve(room);
     scratch_.column_direction.reserve(room);
     scratch_.found.reserve(room);
+    scratch_.energy.reserve(room);
+    scratch_.direction.reserve(room);
     return {{scratch_.column[0].data(), scratch_.column[1].data(), scratch_.column[2].data()},
             scratch_.column_energy.data(),
             scratch_.column_direction.data(),
@@ -116,20 +117,11 @@ void PackedGather::answer_member(std::uint32_t i, const Vec3& centre, float cent
     query.max_squared_distance =
         std::min(bound_.at(point.position, normal, tested_, query.max_squared_distance),
                  NeighbourBound::reached(centre_distance + (point.position - centre).norm()));
-    query.tie_context = &columns_;
-    query.drop_ties = [](const void* context, Candidates& found, std::size_t wanted) {
-        const auto& photons = *static_cast<const PhotonColumns*>(context);
-        PackedKdTree::keep_smallest_codes(found, wanted, [&photons](std::uint32_t place) {
-            return PackedKdTree::code(photons.energy[place], photons.direction[place]);
-        });
-    };
     Candidates& found = scratch_.found.candidates();
-    tree_.kernels_.find_in_columns(columns_, query, found);
+    if (!tree_.kernels_.find_in_columns(columns_, query, found, scratch_.energy.data(),
+                                        scratch_.direction.data()))
+        choose_among_ties(query.nearest, found);
     ++scratch_.grouped_queries;
-    for (std::size_t k = 0; k < found.count; ++k) {
-        scratch_.energy[k] = columns_.energy[found.index[k]];
-        scratch_.direction[k] = columns_.direction[found.index[k]];
-    }
     const GatheredPhotons answer = tree_.gathered(found, scratch_);
     if (answer.count == limits_.nearest) {
         bound_.set(point.position, normal, tested_, answer.squared_distance[answer.farthest]);
@@ -139,6 +131,19 @@ void PackedGather::answer_member(std::uint32_t i, const Vec3& centre, float cent
         last_distance_ = limits_.max_radius;
     }
     consume_(i, answer);
+}
+
+void PackedGather::choose_among_ties(std::size_t nearest, Candidates& found) {
+    const auto direction_of = [this](std::uint32_t place) {
+        return static_cast<std::uint16_t>(columns_.direction[place]);
+    };
+    PackedKdTree::keep_smallest_codes(found, nearest, [&](std::uint32_t place) {
+        return PackedKdTree::code(columns_.energy[place], direction_of(place));
+    });
+    for (std::size_t k = 0; k < found.count; ++k) {
+        scratch_.energy[k] = columns_.energy[found.index[k]];
+        scratch_.direction[k] = direction_of(found.index[k]);
+    }
 }
 
 void PackedKdTree::gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,

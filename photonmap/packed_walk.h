@@ -120,8 +120,9 @@ private:
     bool shrink() {
         const size_t nearest = query_.nearest;
         if (query_.margin > 0) {
-            const auto kth = Selection<Lanes>::bound_for(found_.squared_distance, found_.count,
-                                                         nearest, nearest + nearest / 8, 0, bound_);
+            const auto kth =
+                Selection<Lanes>::bound_for(found_.squared_distance, found_.count, found_.count,
+                                            nearest, nearest + nearest / 8, 0, bound_);
             if (kth.value < nearest_bound_) nearest_bound_ = kth.value;
             bound_ = with_margin(nearest_bound_);
             CandidateLoops<Lanes>::keep_not_above(found_, bound_);

@@ -61,7 +61,7 @@ struct PackedView {
 struct PhotonColumns {
     float* position[3];
     uint32_t* energy;
-    uint16_t* direction;
+    uint32_t* direction;
     size_t count;
 };
 
@@ -103,8 +103,10 @@ struct TreeKernels {
     float (*find_packed)(const PackedView&, const NearestQuery&, Candidates&);
     /// Copies those photons out of the tree.
     void (*copy_columns)(const PackedView&, const Candidates&, PhotonColumns&);
-    /// Finds the nearest of the columns; a photon's index is its place there.
-    void (*find_in_columns)(const PhotonColumns&, const NearestQuery&, Candidates&);
+    /// Finds the nearest of the columns, with their codes. False when equal distances leave a choice;
+    /// then `found` holds, as indices into the columns, more photons than wanted.
+    bool (*find_in_columns)(const PhotonColumns&, const NearestQuery&, Candidates& found,
+                            uint32_t* energy, uint16_t* direction);
     /// Drops candidates until `most` or (ties aside) fewer, but at least `nearest` are left, and
     /// returns the largest squared distance that a further one may have.
     float (*shrink)(Candidates&, size_t nearest, size_t most, float bound);

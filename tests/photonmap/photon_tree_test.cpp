@@ -1,7 +1,10 @@
 #include "photonmap/photon_tree.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "core/error.h"
@@ -141,6 +144,119 @@ TEST(PhotonTree, NeedsNoSideTestWhereAllPhotonsComeFromAbove) {
             if (testing::Test::HasFatalFailure()) return;
         }
     }
+}
+
+/// Photons as below a ball: most in one small spot, the rest far around it.
+std::vector<Photon> spot(std::size_t count) {
+    Rng rng(19, Stage::test, 0);
+    std::vector<Photon> photons;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float angle = 2 * pi * rng.next(), u = rng.next();
+        const float radius = i % 10 == 0 ? u : 0.01F * u * u;
+        photons.push_back(photon_at({radius * std::cos(angle), radius * std::sin(angle), 0}));
+        photons.back().phi = static_cast<std::uint8_t>(rng.next_word());
+        photons.back().theta = static_cast<std::uint8_t>(rng.next_word() % 100);
+    }
+    return photons;
+}
+
+/// Photons as below waves: folds all over the floor.
+std::vector<Photon> folds(std::size_t count) {
+    Rng rng(20, Stage::test, 0);
+    std::vector<Photon> photons;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float x = rng.next(), y = rng.next();
+        photons.push_back(photon_at({x + 0.05F * std::sin(40 * x + 17 * y),
+                                     y + 0.04F * std::sin(29 * y - 31 * x), 1e-7F * x}));
+    }
+    return photons;
+}
+
+/// A picture's tile of 16 x 16 points, row by row.
+std::vector<ReceiverPoint> tile(const Vec3& corner, float spacing) {
+    std::vector<ReceiverPoint> points;
+    for (int i = 0; i < 256; ++i)
+        points.push_back(point_at(
+            corner + spacing * Vec3(static_cast<float>(i % 16), static_cast<float>(i / 16), 0),
+            Vec3::UnitZ()));
+    return points;
+}
+
+TEST(PhotonTree, TilesOverCausticsGetWhatALinearScanGets) {
+    for (const auto& photons : {spot(30'000), folds(30'000)}) {
+        const auto trees = all_trees(photons);
+        for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.2F, 0.3F, 0), Vec3(-0.02F, 0.005F, 0)}) {
+            for (const float spacing : {2e-4F, 2e-3F, 2e-2F}) {
+                const auto points = tile(corner, spacing);
+                const GatherLimits limits{.nearest = 60, .max_radius = 0.05F};
+                std::vector<std::vector<Found>> expected;
+                for (std::size_t i = 0; i < points.size(); i += 5)
+                    expected.push_back(linear_scan(photons, points[i], limits));
+                for (const NamedTree& tree : trees) {
+                    GatherScratch scratch;
+                    const auto found = answers(*tree.tree, points, limits, scratch);
+                    for (std::size_t i = 0; i < points.size(); i += 5)
+                        ASSERT_EQ(found[i], expected[i / 5]) << tree.name << " " << i;
+                }
+            }
+        }
+    }
+}
+
+TEST(PhotonTree, PackedAnswersATileInGroupsWhereItIsNarrow) {
+    const auto tree = build_tree(TreeKind::packed, store_of(folds(30'000)), widest_isa());
+    GatherScratch scratch;
+    const GatherLimits limits{.nearest = 60, .max_radius = 0.05F};
+    answers(*tree, tile({0.5F, 0.5F, 0}, 1e-3F), limits, scratch);
+    EXPECT_GT(scratch.grouped_queries, 200U);
+    scratch.grouped_queries = 0;
+    answers(*tree, tile({0.1F, 0.1F, 0}, 0.05F), limits, scratch);
+    EXPECT_EQ(scratch.grouped_queries, 0U);
+}
+
+TEST(PhotonTree, HoldsAsManyBytesAsItSays) {
+    const std::vector<Photon> photons = folds(100'000);
+    const auto per_photon = [&](TreeKind kind) {
+        const auto tree = build_tree(kind, store_of(photons), widest_isa());
+        EXPECT_EQ(tree->size(), photons.size());
+        return static_cast<double>(tree->bytes()) / 100'000;
+    };
+    EXPECT_EQ(per_photon(TreeKind::balanced), 20);
+    EXPECT_EQ(per_photon(TreeKind::unbalanced), 28);
+    EXPECT_GT(per_photon(TreeKind::packed), 20);
+    EXPECT_LE(per_photon(TreeKind::packed), 20.2);
+}
+
+std::size_t resident_bytes() {
+    std::ifstream file("/proc/self/statm");
+    std::size_t size = 0, resident = 0;
+    file >> size >> resident;
+    return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(PhotonTree, IsBuiltInThePhotonsOwnMemory) {
+    constexpr std::size_t count = 1'500'000;
+    for (const TreeKind kind : {TreeKind::balanced, TreeKind::packed}) {
+        PhotonStore store = store_of(folds(count));
+        const std::size_t before = resident_bytes();
+        const auto tree = build_tree(kind, std::move(store), widest_isa());
+        const std::size_t after = resident_bytes();
+        EXPECT_LE(after, before + (1U << 20U)) << name(kind);
+    }
+}
+
+TEST(PhotonTree, UnbalancedTellsItsDepth) {
+    std::vector<Photon> photons;
+    for (int i = 0; i < 1'000; ++i) photons.push_back(photon_at({static_cast<float>(i), 0, 0}));
+    Counters sorted;
+    build_tree(TreeKind::unbalanced, store_of(photons), widest_isa())->add_to(sorted);
+    EXPECT_EQ(sorted.at("tree_depth"), 1'000U);
+    // Photons at one point do not make a list.
+    Counters coincident;
+    build_tree(TreeKind::unbalanced, store_of(std::vector<Photon>(20'000, photon_at({1, 2, 3}))),
+               widest_isa())
+        ->add_to(coincident);
+    EXPECT_LT(coincident.at("tree_depth"), 400U);
 }
 
 TEST(PhotonTree, RefusesPositionsThatAreNotFinite) {
