@@ -87,7 +87,11 @@ bool PackedGather::answer_together(Group group, const Box& box) {
     query.side = tested_ ? &side : nullptr;
     Candidates& collected = scratch_.group_found.reserve(room_for_group(query.nearest));
     const float nearest2 = tree_.kernels_.find_packed(tree_.view_, query, collected);
-    if (nearest2 < 0) return false;
+    if (nearest2 < 0) {
+        // The photons are denser here than where the distance comes from.
+        last_distance_ /= 4;
+        return false;
+    }
     columns_ = columns(collected.count);
     tree_.kernels_.copy_columns(tree_.view_, collected, columns_);
     const float distance = std::sqrt(nearest2);
