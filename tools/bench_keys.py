@@ -1,7 +1,9 @@
 """What tools/bench_ratios measures: the keys, where their numbers come from, what they must reach."""
 import math
+import re
 
 FEW, MANY = "250677", "5036126"
+MESHES = ("pool33k", "pool524k", "ball65k", "ball261k")
 
 
 def geometric_mean(values):
@@ -25,18 +27,42 @@ class Ratio:
         return geometric_mean(run[self.above] / run[self.below] for run in chosen)
 
 
+class SpeedUp(Ratio):
+    """One thread's time over two threads', as a share of the same ratio of the raw rays."""
+
+    def of(self, runs):
+        def gain(run, counter):
+            return run[counter + "_1"] / run[counter + "_2"]
+        chosen = [run for name, run in runs.items() if name.startswith(self.prefixes)]
+        return geometric_mean(gain(run, self.above) / gain(run, self.below) for run in chosen)
+
+
+class Across:
+    """The geometric mean of one counter of benchmark `above` over that of benchmark `below`, over
+    pairs of names."""
+
+    def __init__(self, counter, pairs):
+        self.counter, self.pairs = counter, pairs
+        self.prefixes = tuple(name for pair in pairs for name in pair)
+
+    def of(self, runs):
+        return geometric_mean(runs[above][self.counter] / runs[below][self.counter]
+                              for above, below in self.pairs if above in runs and below in runs)
+
+
 class Key:
-    """A key of ratios.json, and its single measurements by name (`parts`): its value is their
-    geometric mean, and it meets a mark when every part does.
+    """A key of ratios.json, and its single measurements by name (`parts`): its value is the
+    geometric mean of those whose names match `headline`, and it meets a mark when every part does.
 
     Marks are `must` and `goal`; one number for all instruction sets or one by instruction set; `marks`
     gives parts marks of their own. Ratios should be at least the mark, or `at_most`.
     """
 
     def __init__(self, name, what, program, parts, must=None, goal=None, at_most=False, marks=None,
-                 beside=""):
+                 headline="", beside=""):
         self.name, self.what, self.program, self.parts = name, what, program, parts
         self.at_most, self.beside = at_most, beside
+        self._headline = re.compile(headline)
         self._marks, self._part_marks = (must, goal), marks or {}
 
     def marks(self, part, isa):
@@ -44,6 +70,10 @@ class Key:
         def of_isa(mark):
             return mark.get(isa) if isinstance(mark, dict) else mark
         return tuple(of_isa(mark) for mark in self._part_marks.get(part, self._marks))
+
+    def headline(self, parts):
+        """Of the parts that were measured, those that make the key's own value; all when none does."""
+        return [part for part in parts if self._headline.search(part)] or list(parts)
 
     def meets(self, value, mark):
         return value <= mark if self.at_most else value >= mark
@@ -75,6 +105,16 @@ def unbalanced_parts():
     return parts
 
 
+def tracing_parts():
+    return {f"{emission} {mesh}": Ratio("replay", "trace", f"tracing/{mesh}/{emission}")
+            for emission in ("stratified", "random") for mesh in MESHES}
+
+
+def tracing_marks():
+    marks = {"stratified": (0.65, 0.75), "random": (0.5, 0.6)}
+    return {part: marks[part.split()[0]] for part in tracing_parts()}
+
+
 KEYS = [
     Key("balanced_build_vs_nanoflann", "building the balanced tree in place", "kd_tree",
         both("nanoflann", "balanced", "build/"), by_isa(4, 3), 8),
@@ -93,13 +133,22 @@ KEYS = [
          "queries balanced": Ratio("balanced_5M", "balanced_250k", "cost/"),
          "rendering packed": Ratio("packed_5M", "packed_250k", "rendering/cost"),
          "rendering balanced": Ratio("balanced_5M", "balanced_250k", "rendering/cost")},
-        1.5, 1.15, at_most=True, beside="the paper's renderings: 1.52"),
+        1.5, 1.15, at_most=True, headline="^queries", beside="the paper's renderings: 1.52"),
     Key("unbalanced_vs_balanced", "query time on the fly over balanced, k = 100, and whole renderings",
-        "kd_tree", unbalanced_parts(), beside="the paper's renderings: 2.08 (250 k), 5.0 (5 M)"),
+        "kd_tree", unbalanced_parts(), headline="^queries .*/random$",
+        beside="the paper's renderings: 2.08 (250 k), 5.0 (5 M)"),
     Key("shading_vs_tables", "100 photons, Schlick, alpha 0.1; scalar code with tables", "shading",
         both("tables", "ours", "shading/"), by_isa(2, 1.5), 3),
     Key("shading_vs_libm", "the same; scalar code with sinf and cosf", "shading",
         both("libm", "ours", "shading/"), by_isa(6, 3), 10),
     Key("tables_vs_libm", "the parameter `tables`; scalar code with sinf and cosf", "shading",
         both("libm", "ours_tables", "shading/")),
+    Key("tracing_vs_raw_embree", "the same rays through nothing but Embree, over photon tracing", "tracing",
+        tracing_parts(), marks=tracing_marks()),
+    Key("tracing_two_threads", "speed-up by a second thread, as a share of the raw rays' own", "tracing",
+        {emission: SpeedUp("trace", "replay", *(f"tracing_threads/{mesh}/{emission}" for mesh in MESHES))
+         for emission in ("stratified", "random")}, 0.9, 1),
+    Key("stratified_vs_random_emission", "photons per second", "tracing",
+        {"": Across("trace", [(f"tracing/{mesh}/random", f"tracing/{mesh}/stratified") for mesh in MESHES])},
+        1.5, 2),
 ]

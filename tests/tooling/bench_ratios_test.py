@@ -53,7 +53,16 @@ class Ratios(unittest.TestCase):
         self.assertFalse(entry["must_met"])
         self.assertFalse(entry["parts"]["rendering balanced"]["must_met"])
         self.assertTrue(entry["parts"]["rendering packed"]["must_met"])
-        self.assertAlmostEqual(entry["median"], keys.geometric_mean([1.2, 1.2, 1.2, 1.6]))
+        self.assertAlmostEqual(entry["median"], 1.2)  # of the queries alone
+
+    def test_two_threads_are_compared_with_what_the_raw_rays_gain(self):
+        run = {"trace_1": 3.0, "trace_2": 2.0, "replay_1": 4.0, "replay_2": 2.0}
+        key = key_named("tracing_two_threads")
+        self.assertAlmostEqual(key.parts["random"].of({"tracing_threads/ball65k/random": run}), 0.75)
+
+    def test_emissions_are_compared_across_benchmarks(self):
+        runs = {"tracing/ball65k/random": {"trace": 3.0}, "tracing/ball65k/stratified": {"trace": 1.5}}
+        self.assertAlmostEqual(key_named("stratified_vs_random_emission").parts[""].of(runs), 2.0)
 
     def test_the_table_says_what_is_met(self):
         key = key_named("shading_vs_tables")
