@@ -94,7 +94,7 @@ double stored_share(const Scene& scene, Caustic caustic) {
         Rng rng(seed + 1, Stage::test, path);
         const double u = static_cast<double>(rng.next()), v = static_cast<double>(rng.next());
         const LightParticle particle{aimed_ray(caustic, {u, v}), Spectrum::Ones()};
-        stored += trace_light_path(scene, particle, 16, rng, counts) ? 1 : 0;
+        stored += trace_light_path(scene, particle, {16}, rng, counts) ? 1 : 0;
     }
     return static_cast<double>(stored) / paths;
 }
@@ -149,7 +149,7 @@ std::vector<Photon> caustic_photons(Caustic caustic, Arrival arrival, std::size_
         if (path == aim.most_paths()) throw std::runtime_error("too few strata for the photons");
         Rng rng(seed, Stage::photons, path);
         const LightParticle particle{aimed_ray(caustic, aim(path, rng)), Spectrum::Ones()};
-        if (const auto deposit = trace_light_path(scene, particle, 16, rng, counts))
+        if (const auto deposit = trace_light_path(scene, particle, {16}, rng, counts))
             photons.push_back(photon_of(*deposit));
     }
     return photons;
