@@ -14,7 +14,7 @@ constexpr int max_eye_bounces = 64;
 struct Branch {
     Ray ray;
     Spectrum weight = Spectrum::Ones();
-    std::optional<Spectrum> start_absorption;
+    const Spectrum* start_absorption = nullptr;
     int bounces = 0;
 };
 

@@ -6,11 +6,17 @@
 #include <embree3/rtcore.h>
 #endif
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 #include "core/exact_shape.h"
 #include "core/parallel.h"
@@ -37,6 +43,33 @@ struct ExactGeometry {
     }
 };
 
+// A mesh's vertex in half a cache line. Embree reads the positions where they lie; it may read
+// 16 bytes from each.
+struct Vertex {
+    Vec3 position;
+    float u;
+    Vec3 normal;
+    float v;
+};
+static_assert(sizeof(Vertex) == 32);
+
+struct Mesh {
+    const Shape* shape = nullptr;
+    std::vector<Vertex> vertices;
+    bool smooth = false;  // has normals
+    bool mapped = false;  // has texture coordinates
+
+    explicit Mesh(const Shape& s)
+        : shape(&s), smooth(!s.mesh.normals.empty()), mapped(!s.mesh.uvs.empty()) {
+        vertices.reserve(s.mesh.positions.size());
+        for (std::size_t i = 0; i < s.mesh.positions.size(); ++i) {
+            const Vec2 uv = mapped ? s.mesh.uvs[i] : Vec2(Vec2::Zero());
+            const Vec3 normal = smooth ? s.mesh.normals[i] : Vec3(Vec3::Zero());
+            vertices.push_back({s.mesh.positions[i], uv.x(), normal, uv.y()});
+        }
+    }
+};
+
 void exact_bounds(const RTCBoundsFunctionArguments* args) {
     const auto* geometry = static_cast<const ExactGeometry*>(args->geometryUserPtr);
     const Box box = bounds(*geometry->shape);
@@ -53,6 +86,17 @@ std::optional<ExactHit> exact_hit(const void* user, const RTCRay& ray) {
                                                               ray.tnear, ray.tfar);
 }
 
+// What Embree hands on to the functions of exact shapes; versions 3 and 4 differ here and below.
+#if RTC_VERSION_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+#else
+using EmbreeContext = RTCIntersectContext;
+#endif
+struct Query {
+    EmbreeContext context;  // first, so that a pointer to it is one to the query
+    ExactHit exact;         // of the exact shape hit last
+};
+
 void exact_intersect(const RTCIntersectFunctionNArguments* args) {
     if (args->valid[0] == 0) return;
     auto* rayhit = reinterpret_cast<RTCRayHit*>(args->rayhit);
@@ -61,6 +105,9 @@ void exact_intersect(const RTCIntersectFunctionNArguments* args) {
     rayhit->ray.tfar = static_cast<float>(hit->distance);
     rayhit->hit.geomID = args->geomID;
     rayhit->hit.primID = args->primID;
+    // Embree keeps the rounded distance only. Each hit is nearer than all before it, so that the
+    // last one stays.
+    reinterpret_cast<Query*>(args->context)->exact = *hit;
 }
 
 void exact_occluded(const RTCOccludedFunctionNArguments* args) {
@@ -69,15 +116,14 @@ void exact_occluded(const RTCOccludedFunctionNArguments* args) {
     if (exact_hit(args->geometryUserPtr, *ray)) ray->tfar = -std::numeric_limits<float>::infinity();
 }
 
-RTCGeometry mesh_geometry(RTCDevice device, const TriangleMesh& mesh) {
+RTCGeometry mesh_geometry(RTCDevice device, const Mesh& mesh) {
+    const std::vector<Vertex>& vertices = mesh.vertices;
+    const auto& triangles = mesh.shape->mesh.triangles;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* positions =
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), mesh.positions.size());
-    std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * 3 * sizeof(float));
-    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                              3 * sizeof(unsigned), mesh.triangles.size());
-    std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(unsigned));
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               vertices.data(), 0, sizeof(Vertex), vertices.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               triangles.data(), 0, 3 * sizeof(std::uint32_t), triangles.size());
     return geometry;
 }
 
@@ -91,28 +137,34 @@ RTCGeometry exact_geometry(RTCDevice device, ExactGeometry& exact) {
     return geometry;
 }
 
-RTCRay to_embree(const Ray& ray) {
-    RTCRay r{};
-    r.org_x = ray.origin.x();
-    r.org_y = ray.origin.y();
-    r.org_z = ray.origin.z();
-    r.dir_x = ray.direction.x();
-    r.dir_y = ray.direction.y();
-    r.dir_z = ray.direction.z();
-    r.tnear = 0;
-    r.tfar = ray.max_distance;
-    r.mask = ~0U;
-    return r;
-}
-
-// The version differences of Embree 3 and 4 live in these two functions alone.
-void intersect_scene(RTCScene scene, RTCRayHit& rayhit) {
-#if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(scene, &rayhit);
+// Embree reads the ray by 16 bytes at a time: written the same way, its loads need not wait for
+// single stores to reach the cache.
+void write_ray(const Ray& ray, RTCRay& out) {
+    const Vec3& o = ray.origin;
+    const Vec3& d = ray.direction;
+#ifdef __SSE2__
+    float* const to = reinterpret_cast<float*>(&out);
+    const __m128i all = _mm_set_epi32(0, 0, -1, 0);
+    _mm_store_ps(to, _mm_set_ps(0, o.z(), o.y(), o.x()));
+    _mm_store_ps(to + 4, _mm_set_ps(0, d.z(), d.y(), d.x()));
+    _mm_store_ps(to + 8, _mm_or_ps(_mm_set_ss(ray.max_distance), _mm_castsi128_ps(all)));
 #else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene, &context, &rayhit);
+    out = {o.x(), o.y(), o.z(), 0, d.x(), d.y(), d.z(), 0, ray.max_distance, ~0U, 0, 0};
+#endif
+}
+static_assert(offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, tfar) == 32 &&
+              offsetof(RTCRay, mask) == 36 && sizeof(RTCRay) == 48);
+
+void intersect_scene(RTCScene scene, RTCRayHit& rayhit, Query& query) {
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&query.context);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.context;
+    rtcIntersect1(scene, &rayhit, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    rtcIntersect1(scene, &query.context, &rayhit);
 #endif
 }
 
@@ -126,26 +178,25 @@ void occlude_scene(RTCScene scene, RTCRay& ray) {
 #endif
 }
 
-template <typename T>
-T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& triangle, float u,
-              float v) {
-    return (1 - u - v) * values[triangle[0]] + u * values[triangle[1]] + v * values[triangle[2]];
-}
-
-void fill_mesh_point(const TriangleMesh& mesh, std::uint32_t primitive, float u, float v,
+void fill_mesh_point(const Mesh& mesh, std::uint32_t primitive, float u, float v,
                      SurfacePoint& point) {
-    const std::array<std::uint32_t, 3>& triangle = mesh.triangles[primitive];
-    const Vec3& a = mesh.positions[triangle[0]];
-    point.position = interpolate(mesh.positions, triangle, u, v);
-    point.geometric_normal =
-        (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a).normalized();
+    const std::array<std::uint32_t, 3>& triangle = mesh.shape->mesh.triangles[primitive];
+    const Vertex& a = mesh.vertices[triangle[0]];
+    const Vertex& b = mesh.vertices[triangle[1]];
+    const Vertex& c = mesh.vertices[triangle[2]];
+    const float w = 1 - u - v;
+    point.position = w * a.position + u * b.position + v * c.position;
+    const Vec3 across = (b.position - a.position).cross(c.position - a.position);
+    const float twice_area = across.norm();
+    point.geometric_normal = twice_area > 0 ? Vec3(across * (1 / twice_area)) : across;
     point.shading_normal = point.geometric_normal;
-    if (!mesh.normals.empty()) {
-        const Vec3 n = interpolate(mesh.normals, triangle, u, v);
+    if (mesh.smooth) {
+        const Vec3 n = w * a.normal + u * b.normal + v * c.normal;
         const float length = n.norm();
-        if (length > 0) point.shading_normal = n / length;
+        if (length > 0) point.shading_normal = n * (1 / length);
     }
-    point.uv = mesh.uvs.empty() ? Vec2(u, v) : interpolate(mesh.uvs, triangle, u, v);
+    point.uv = mesh.mapped ? Vec2(w * Vec2(a.u, a.v) + u * Vec2(b.u, b.v) + v * Vec2(c.u, c.v))
+                           : Vec2(u, v);
 }
 
 void fill_exact_point(const ExactGeometry& exact, const Vec3d& local, SurfacePoint& point) {
@@ -163,9 +214,10 @@ void fill_exact_point(const ExactGeometry& exact, const Vec3d& local, SurfacePoi
 struct Intersector::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<ExactGeometry> exact;  ///< one a shape, used by exact shapes
+    std::vector<std::variant<Mesh, ExactGeometry>> geometries;  ///< of the shapes; never move
 
-    explicit Embree(const std::vector<Shape>& shapes) : exact(shapes.size()) {
+    explicit Embree(const std::vector<Shape>& shapes) {
+        geometries.reserve(shapes.size());
         device = rtcNewDevice(nullptr);
         if (device == nullptr) throw std::runtime_error("Embree: no device");
         rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
@@ -183,10 +235,14 @@ struct Intersector::Embree {
     Embree& operator=(const Embree&) = delete;
 
     void attach(const Shape& shape, std::size_t index) {
-        exact[index] = {&shape, shape.to_world.inverse()};
-        RTCGeometry geometry = shape.primitive == Primitive::mesh
-                                   ? mesh_geometry(device, shape.mesh)
-                                   : exact_geometry(device, exact[index]);
+        RTCGeometry geometry = nullptr;
+        if (shape.primitive == Primitive::mesh) {
+            geometries.emplace_back(Mesh(shape));
+            geometry = mesh_geometry(device, std::get<Mesh>(geometries.back()));
+        } else {
+            geometries.emplace_back(ExactGeometry{&shape, shape.to_world.inverse()});
+            geometry = exact_geometry(device, std::get<ExactGeometry>(geometries.back()));
+        }
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(index));
         rtcReleaseGeometry(geometry);
@@ -194,37 +250,36 @@ struct Intersector::Embree {
 };
 
 Intersector::Intersector(const std::vector<Shape>& shapes, const std::vector<float>& offsets)
-    : shapes_(shapes), offsets_(offsets), embree_(std::make_unique<Embree>(shapes)) {}
+    : offsets_(offsets), embree_(std::make_unique<Embree>(shapes)) {}
 
 Intersector::~Intersector() = default;
 
 std::optional<SurfacePoint> Intersector::intersect(const Ray& ray) const {
-    RTCRayHit rayhit{};
-    rayhit.ray = to_embree(ray);
+    RTCRayHit rayhit;
+    write_ray(ray, rayhit.ray);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    intersect_scene(embree_->scene, rayhit);
+    Query query;
+    intersect_scene(embree_->scene, rayhit, query);
     const unsigned index = rayhit.hit.geomID;
     if (index == RTC_INVALID_GEOMETRY_ID) return {};
 
-    SurfacePoint point;
+    std::optional<SurfacePoint> found(std::in_place);
+    SurfacePoint& point = *found;
     point.shape = index;
     point.distance = rayhit.ray.tfar;
     point.offset = offsets_[index];
-    if (shapes_[index].primitive == Primitive::mesh) {
-        fill_mesh_point(shapes_[index].mesh, rayhit.hit.primID, rayhit.hit.u, rayhit.hit.v, point);
-        return point;
-    }
-    // Embree kept the rounded distance only: solve again for the point in double.
-    const ExactGeometry& exact = embree_->exact[index];
-    const auto hit = exact.intersect(ray.origin, ray.direction, 0, ray.max_distance);
-    if (!hit) throw std::logic_error("an exact shape was hit once and missed once");
-    fill_exact_point(exact, hit->local, point);
-    return point;
+    if (const auto* mesh = std::get_if<Mesh>(&embree_->geometries[index]))
+        fill_mesh_point(*mesh, rayhit.hit.primID, rayhit.hit.u, rayhit.hit.v, point);
+    else
+        fill_exact_point(std::get<ExactGeometry>(embree_->geometries[index]), query.exact.local,
+                         point);
+    return found;
 }
 
 bool Intersector::occluded(const Ray& ray) const {
-    RTCRay shadow = to_embree(ray);
+    RTCRay shadow;
+    write_ray(ray, shadow);
     occlude_scene(embree_->scene, shadow);
     return shadow.tfar < 0;
 }

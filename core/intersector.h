@@ -23,7 +23,6 @@ public:
 
 private:
     struct Embree;
-    const std::vector<Shape>& shapes_;
     const std::vector<float>& offsets_;
     std::unique_ptr<Embree> embree_;
 };

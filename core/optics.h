@@ -37,13 +37,13 @@ struct SpecularSplit {
 /// `ng`, `ns`: the surface's geometric and shading normals as stored (not turned towards w).
 SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w);
 
-/// Absorption [1/m] on the side of the surface that `w` points into; 0 for surfaces that bound no
-/// medium (all but dielectrics: empty).
-std::optional<Spectrum> medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& w);
+/// Absorption [1/m] on the side of the surface that `w` points into; nullptr for surfaces that bound
+/// no medium (all but dielectrics).
+const Spectrum* medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& w);
 
 /// Beer's law along a traced segment: the medium is the one on the side of the surface where the
 /// segment ends, else (it ends on no interface) where it starts, else none.
-Spectrum segment_transmittance(const std::optional<Spectrum>& start_absorption,
-                               const std::optional<Spectrum>& end_absorption, float distance);
+Spectrum segment_transmittance(const Spectrum* start_absorption, const Spectrum* end_absorption,
+                               float distance);
 
 }  // namespace caustics

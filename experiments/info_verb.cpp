@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/light_path.h"
+#include "core/aimed_emission.h"
 #include "experiments/cli_options.h"
 #include "experiments/files.h"
 #include "experiments/verbs.h"

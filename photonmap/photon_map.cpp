@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "core/light_path.h"
 #include "photonmap/max_radius.h"
-#include "photonmap/photon_tracing.h"
 #include "photonmap/photon_tree.h"
 #include "photonmap/radiance_estimate.h"
+#include "photonmap/scene_photons.h"
 
 namespace caustics {
 
@@ -115,35 +114,13 @@ void check(const PhotonMapParams& params) {
     if (!(params.max_radius >= 0)) throw InputError("photonmap: max_radius must be positive");
 }
 
-TracedPhotons trace(const Scene& scene, const PhotonMapParams& params, const RunOptions& options) {
-    const AimedEmission emission(scene);
-    if (emission.empty()) {
-        if (params.photons > 0)
-            throw UnsupportedScene(
-                "photonmap: no photon can be stored, because no light shines on a specular "
-                "surface (give `emitted` instead of `photons` to accept an empty map)");
-        LightPathCounts counts;
-        counts.emitted = params.emitted;
-        return {PhotonStore(0), counts, Spectrum::Ones()};
-    }
-    const auto trace_path = [&](std::uint64_t path, LightPathCounts& counts) {
-        Rng rng(options.seed, Stage::photons, path);
-        const std::optional<LightParticle> particle = emission.emit(rng);
-        if (!particle) return std::optional<Deposit>();
-        counts.aimed = 1;
-        return trace_light_path(scene, *particle, params.max_bounces, rng, counts);
-    };
-    const PhotonTarget target{.stored = params.photons, .emitted = params.emitted};
-    return trace_photons(trace_path, emission.total_power(), target, options);
-}
-
 }  // namespace
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,
                                               const RunOptions& options) {
     check(params);
     options.phase("trace");
-    TracedPhotons photons = trace(scene, params, options);
+    TracedPhotons photons = trace_scene(scene, params, options);
     RadianceEstimate::Settings settings;
     settings.limits.nearest = static_cast<std::size_t>(params.nearest);
     settings.estimator = params.estimator;
@@ -152,7 +129,7 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMa
         params.max_radius > 0
             ? params.max_radius
             : default_max_radius(photons.store.photons(), scene.bounds(), params.nearest));
-    settings.flux_unit = photons.flux_unit / static_cast<float>(photons.counts.emitted);
+    settings.flux_unit = photons.flux_per_energy();
 
     options.phase("balance");
     std::unique_ptr<const PhotonTree> tree =

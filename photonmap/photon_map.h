@@ -5,6 +5,7 @@
 
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
+#include "core/light_path.h"
 
 namespace caustics {
 
@@ -25,8 +26,14 @@ struct PhotonMapParams {
         unbiased,  ///< the outermost photon only sets the radius: mean (N-1)/(pi r_N^2)
         raw        ///< eq. 4 as printed; reads high by N/(N-1) in a uniform field
     };
+    enum class Emission {
+        random,
+        stratified  ///< one jittered particle a stratum, in Morton order: less noise, and faster
+    };
     std::uint64_t photons = 100'000;  ///< to store; 0 when `emitted` is given instead
     std::uint64_t emitted = 0;        ///< to emit; 0 when `photons` is given
+    Emission emission = Emission::random;
+    Interaction interaction = Interaction::roulette;
     TreeKind tree = TreeKind::balanced;
     int nearest = 50;       ///< N; at least 2 for `unbiased`
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
@@ -40,8 +47,10 @@ struct PhotonMapParams {
 /// Throws InputError for what cannot be used or is not built yet.
 void read(const JsonNode& node, PhotonMapParams& params);
 
-/// Phases "trace" and "balance". Counters: those of LightPathCounts; photons_emitted is the number
-/// that flux is divided by; `tree_depth` of the unbalanced tree. Throws InputError for params that contradict each other and for a map that
+/// Phases "trace" and "balance". Counters: those of LightPathCounts, and `tree_depth` of the
+/// unbalanced tree; flux is divided by photons_emitted x photons_stored / (photons_stored +
+/// photons_dropped), see scene_photons.h. Throws InputError for params that contradict each other
+/// and for a map that
 /// does not fit, UnsupportedScene when the photons asked for cannot be had; with `emitted` an
 /// empty map is an answer, and black.
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,

@@ -14,16 +14,6 @@ constexpr std::int64_t most_nearest = 1'000'000;
 
 constexpr TreeKind tree_kinds[] = {TreeKind::balanced, TreeKind::unbalanced, TreeKind::packed};
 
-/// Reads a choice of which only the first word is built yet.
-void read_choice(const JsonNode& node, const std::string& key,
-                 const std::vector<std::string>& choices) {
-    const std::optional<JsonNode> child = node.find(key);
-    if (!child) return;
-    const std::size_t choice = child->as_choice(choices);
-    if (choice != 0)
-        child->fail("\"" + choices[choice] + "\" is not built yet (built: \"" + choices[0] + "\")");
-}
-
 void refuse(const JsonNode& node, const std::string& key) {
     if (const std::optional<JsonNode> child = node.find(key))
         child->fail("this parameter of photonmap is not built yet (leave it out)");
@@ -78,8 +68,14 @@ void read(const JsonNode& node, PhotonMapParams& params) {
     read_estimate(node, params);
     if (const auto max_bounces = node.find("max_bounces"))
         params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, most_bounces));
-    read_choice(node, "emission", {"random", "stratified"});
-    read_choice(node, "interaction", {"roulette", "split"});
+    if (const auto emission = node.find("emission"))
+        params.emission = emission->as_choice({"random", "stratified"}) == 0
+                              ? PhotonMapParams::Emission::random
+                              : PhotonMapParams::Emission::stratified;
+    if (const auto interaction = node.find("interaction"))
+        params.interaction = interaction->as_choice({"roulette", "split"}) == 0
+                                 ? Interaction::roulette
+                                 : Interaction::split;
     if (const auto tree = node.find("tree"))
         params.tree = tree_kinds[tree->as_choice(
             {name(tree_kinds[0]), name(tree_kinds[1]), name(tree_kinds[2])})];

@@ -16,12 +16,19 @@ class PhotonStore {
 public:
     static constexpr std::size_t block_photons = 65'536;
 
-    /// Reserves address space for `capacity` photons, in whole blocks. Throws InputError when the
-    /// system does not give it.
-    explicit PhotonStore(std::uint64_t capacity);
+    /// Reserves address space for `capacity` photons, in whole blocks. Where the first `certain`
+    /// of them lie, large pages may be used at once; elsewhere they could take memory for photons
+    /// that never come. Throws InputError when the system does not give it.
+    explicit PhotonStore(std::uint64_t capacity, std::uint64_t certain = 0);
 
-    /// Throws InputError when the capacity is exceeded.
+    /// Makes room for `count` more photons, which the caller writes: different threads may write
+    /// different places at the same time. Throws InputError when the capacity is exceeded.
+    std::span<Photon> extend(std::uint64_t count);
     void append(std::span<const Photon> photons);
+    /// Leaves the first `count` photons and gives the other memory back.
+    void shrink(std::size_t count);
+    /// To call when all photons have come: puts them on large pages as far as they fill them.
+    void settle();
 
     std::span<Photon> photons() { return {memory_.get(), size_}; }
     std::span<const Photon> photons() const { return {memory_.get(), size_}; }
@@ -30,6 +37,7 @@ public:
 
 private:
     struct Unmap {
+        void* mapped = nullptr;
         std::size_t bytes = 0;
         void operator()(Photon* memory) const;
     };

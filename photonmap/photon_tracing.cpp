@@ -1,29 +1,30 @@
 #include "photonmap/photon_tracing.h"
 
 #include <algorithm>
+#include <atomic>
+#include <condition_variable>
 #include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/rng.h"
 
 namespace caustics {
 
 namespace {
 
 constexpr std::uint64_t smallest_chunk = 64;
-constexpr std::uint64_t largest_chunk = 4096;
-constexpr std::uint64_t chunks_per_thread = 4;
-/// A tree's indices have 32 bits, its node numbers' children one more.
-constexpr std::uint64_t most_photons = 2'000'000'000;
-
-/// A run of consecutive paths and what they stored.
-struct Chunk {
-    std::vector<Photon> photons;
-    LightPathCounts counts;
-};
+constexpr int chunk_doublings = 6;
+constexpr std::uint64_t largest_chunk = smallest_chunk << chunk_doublings;
+/// How many chunks may wait for a slow one before them: bounds the scratch memory.
+constexpr std::uint64_t chunks_ahead_per_thread = 3;
+constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
 [[noreturn]] void fail_not_finite(std::uint64_t path, const Deposit& deposit) {
     std::ostringstream message;
@@ -33,94 +34,125 @@ struct Chunk {
     throw std::runtime_error(message.str());
 }
 
-[[noreturn]] void give_up(const LightPathCounts& counts, std::uint64_t wanted) {
-    std::ostringstream message;
-    message << "photonmap: " << counts.emitted << " light paths stored only " << counts.stored
-            << " of " << wanted << " photons: " << counts.emitted - counts.aimed
-            << " thinned out at the light, " << counts.missed << " met no caster first, "
-            << counts.escaped << " left the scene, " << counts.absorbed << " absorbed, "
-            << counts.depth_limited
-            << " cut at max_bounces (give `emitted` instead of `photons` to accept few or none)";
-    throw UnsupportedScene(message.str());
+/// The first path of a chunk: chunks double up to the largest.
+std::uint64_t chunk_start(std::uint64_t chunk) {
+    const auto doubling = std::min<std::uint64_t>(chunk, chunk_doublings);
+    return smallest_chunk * ((std::uint64_t{1} << doubling) - 1) +
+           (chunk - doubling) * largest_chunk;
 }
 
-Photon make_photon(std::uint64_t path, const Deposit& deposit, const Spectrum& energy_per_flux) {
-    if (!deposit.position.allFinite() || !deposit.wi.allFinite() || !is_finite(deposit.flux) ||
-        (deposit.flux < 0).any())
-        fail_not_finite(path, deposit);
-    const DirectionCode wi = encode_direction(deposit.wi);
-    const Vec3& x = deposit.position;
-    return {
-        {x.x(), x.y(), x.z()}, encode_rgbe(deposit.flux * energy_per_flux), wi.theta, wi.phi, 0};
-}
-
+/// Threads trace chunks of paths side by side, each into scratch of its own; a finished chunk gets
+/// its place in the store as soon as all chunks before it have theirs, and is written there
+/// outside the lock. Nobody waits for the others but to keep the scratch small.
 class PhotonTracing {
 public:
-    PhotonTracing(const TracePath& trace_path, const Spectrum& flux_of_one,
-                  const PhotonTarget& target, const RunOptions& options)
-        : trace_path_(trace_path),
+    PhotonTracing(const PathTracer& tracer, const Spectrum& flux_of_one, const PhotonTarget& target,
+                  const RunOptions& options)
+        : tracer_(tracer),
           energy_per_flux_((flux_of_one > 0).select(flux_of_one.inverse(), 1.0F)),
           target_(target),
           options_(options),
-          last_path_(target.stored > 0 ? std::numeric_limits<std::uint64_t>::max()
-                                       : target.emitted),
-          store_(std::min(most_photons, std::max(target.stored, target.emitted))) {}
+          last_path_(target.stored > 0 ? unlimited : target.emitted),
+          threads_(static_cast<std::uint64_t>(std::max(1, options.threads))),
+          store_(target.capacity, target.certain) {}
 
     TracedPhotons run() {
-        std::uint64_t chunk_paths = smallest_chunk;
-        while (!done_) {
-            trace_round(chunk_paths);
-            chunk_paths = std::min(largest_chunk, 2 * chunk_paths);
-            options_.report(share_done());
-            if (!done_ && target_.stored > 0 && counts_.emitted >= target_.patience &&
-                counts_.stored < counts_.emitted / 2000)
-                give_up(counts_, target_.stored);
-        }
+        parallel_for(static_cast<int>(threads_), threads_,
+                     [this](std::size_t, std::size_t) { work(); });
+        store_.settle();
         return {std::move(store_), counts_, energy_per_flux_.inverse()};
     }
 
 private:
-    /// Traces some chunks side by side, then takes them over in their order.
-    void trace_round(std::uint64_t chunk_paths) {
-        const auto threads = static_cast<std::uint64_t>(std::max(1, options_.threads));
-        std::vector<Chunk> chunks(threads * chunks_per_thread);
-        const auto first_path = [&](std::size_t chunk) {
-            return counts_.emitted + std::min(chunk * chunk_paths, last_path_ - counts_.emitted);
-        };
-        const std::uint64_t round_end = first_path(chunks.size());
-        std::vector<std::uint64_t> starts(chunks.size() + 1, round_end);
-        for (std::size_t i = 0; i < chunks.size(); ++i) starts[i] = first_path(i);
-        parallel_for(static_cast<int>(threads), chunks.size(), [&](std::size_t i, std::size_t) {
-            chunks[i] = trace_chunk(starts[i], starts[i + 1], most_photons);
+    using Scratch = std::unique_ptr<PhotonChunk>;
+    /// A chunk that has its place in the store but is not written there yet.
+    struct Placed {
+        Scratch scratch;
+        std::span<Photon> place;
+    };
+
+    void work() {
+        try {
+            for (;;) {
+                const std::uint64_t chunk = next_chunk_++;
+                Scratch scratch = wait_for_turn(chunk);
+                if (!scratch) return;
+                tracer_.trace(chunk_start(chunk), std::min(chunk_start(chunk + 1), last_path_),
+                              *scratch);
+                for (Placed& placed : finish(chunk, std::move(scratch))) {
+                    const auto photons = placed.scratch->photons().first(placed.place.size());
+                    std::ranges::copy(photons, placed.place.begin());
+                    const std::lock_guard lock(mutex_);
+                    spare_.push_back(std::move(placed.scratch));
+                }
+            }
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            done_ = true;
+            turn_.notify_all();
+            throw;
+        }
+    }
+
+    /// Scratch to trace the chunk into, or none when it is not wanted any more; waits while the
+    /// chunk is too far ahead of the others.
+    Scratch wait_for_turn(std::uint64_t chunk) {
+        if (chunk_start(chunk) >= last_path_) return {};
+        std::unique_lock lock(mutex_);
+        turn_.wait(lock, [&] {
+            return done_ || chunk < placed_chunks_ + threads_ * (1 + chunks_ahead_per_thread);
         });
-        for (std::size_t i = 0; i < chunks.size() && !done_; ++i)
-            take(std::move(chunks[i]), starts[i], starts[i + 1]);
-        if (counts_.emitted == last_path_) done_ = true;
+        if (done_) return {};
+        if (spare_.empty()) return std::make_unique<PhotonChunk>(energy_per_flux_);
+        Scratch scratch = std::move(spare_.back());
+        spare_.pop_back();
+        scratch->clear();
+        return scratch;
     }
 
-    /// Traces paths begin..end, but stops before the path that would store photon `limit` + 1.
-    Chunk trace_chunk(std::uint64_t begin, std::uint64_t end, std::uint64_t limit) const {
-        Chunk chunk;
-        for (std::uint64_t path = begin; path < end; ++path) {
-            LightPathCounts counts;
-            const std::optional<Deposit> deposit = trace_path_(path, counts);
-            if (deposit && chunk.photons.size() == limit) break;
-            counts.emitted = 1;
-            counts.stored = deposit ? 1 : 0;
-            chunk.counts.add(counts);
-            if (deposit) chunk.photons.push_back(make_photon(path, *deposit, energy_per_flux_));
+    /// Takes a traced chunk over, and gives places to all whose turn has come.
+    std::vector<Placed> finish(std::uint64_t chunk, Scratch scratch) {
+        std::vector<Placed> placed;
+        const std::lock_guard lock(mutex_);
+        traced_.emplace(chunk, std::move(scratch));
+        while (!done_ && !traced_.empty() && traced_.begin()->first == placed_chunks_) {
+            Scratch first = std::move(traced_.begin()->second);
+            traced_.erase(traced_.begin());
+            const std::span<Photon> place = take(*first);
+            ++placed_chunks_;
+            placed.push_back({std::move(first), place});
+            options_.report(share_done());
         }
-        return chunk;
+        turn_.notify_all();
+        return placed;
     }
 
-    void take(Chunk chunk, std::uint64_t begin, std::uint64_t end) {
-        if (target_.stored > 0) {
-            const std::uint64_t missing = target_.stored - counts_.stored;
-            done_ = chunk.photons.size() > missing;
-            if (done_) chunk = trace_chunk(begin, end, missing);
+    /// Counts a chunk in its turn and reserves its place.
+    std::span<Photon> take(PhotonChunk& chunk) {
+        const std::uint64_t begin = chunk_start(placed_chunks_);
+        const std::uint64_t end = std::min(chunk_start(placed_chunks_ + 1), last_path_);
+        if (target_.stored > 0 && chunk.counts.stored > target_.stored - counts_.stored) {
+            done_ = true;
+            chunk.counts = counts_up_to(begin, target_.stored - counts_.stored);
         }
-        store_.append(chunk.photons);
         counts_.add(chunk.counts);
+        if (end == last_path_) done_ = true;
+        if (!done_ && target_.stored > 0 && counts_.emitted >= target_.patience &&
+            counts_.stored < counts_.emitted / 2000)
+            give_up(counts_, target_.stored);
+        return store_.extend(chunk.counts.stored);
+    }
+
+    /// Counts of the paths from `path` on, before the one that would store photon `limit` + 1.
+    LightPathCounts counts_up_to(std::uint64_t path, std::uint64_t limit) const {
+        LightPathCounts sum;
+        PhotonChunk one(energy_per_flux_);
+        for (;; ++path) {
+            one.clear();
+            tracer_.trace(path, path + 1, one);
+            if (sum.stored + one.counts.stored > limit) return sum;
+            sum.add(one.counts);
+        }
     }
 
     double share_done() const {
@@ -132,23 +164,88 @@ private:
                                   : share(counts_.emitted, target_.emitted);
     }
 
-    const TracePath& trace_path_;
+    const PathTracer& tracer_;
     Spectrum energy_per_flux_;
     PhotonTarget target_;
     const RunOptions& options_;
     std::uint64_t last_path_;
+    std::uint64_t threads_;
+
+    std::atomic<std::uint64_t> next_chunk_{0};
+    std::mutex mutex_;  ///< of all below
+    std::condition_variable turn_;
+    std::map<std::uint64_t, Scratch> traced_;  ///< chunks that wait for their turn
+    std::vector<Scratch> spare_;
+    std::uint64_t placed_chunks_ = 0;
     PhotonStore store_;
     LightPathCounts counts_;
     bool done_ = false;
 };
 
+/// Uniform below `bound`, without the remainder's bias [Lemire 2019].
+std::uint64_t uniform_below(std::uint64_t bound, Rng& rng) {
+    const auto range = static_cast<std::uint32_t>(bound);
+    const std::uint32_t rejected = (0U - range) % range;
+    for (;;) {
+        const std::uint64_t product = std::uint64_t{rng.next_word()} * range;
+        if (static_cast<std::uint32_t>(product) >= rejected) return product >> 32U;
+    }
+}
+
 }  // namespace
 
-TracedPhotons trace_photons(const TracePath& trace_path, const Spectrum& path_flux,
+void PhotonChunk::clear() {
+    counts = {};
+    photons_.clear();
+}
+
+void PhotonChunk::add(std::uint64_t path, const Deposit& deposit) {
+    const Vec3& x = deposit.position;
+    const Spectrum& flux = deposit.flux;
+    // What is not finite makes the sum's difference to itself not a number.
+    const float sum = x.sum() + deposit.wi.sum() + flux.sum();
+    const bool fine =
+        sum - sum == 0 || (x.allFinite() && deposit.wi.allFinite() && is_finite(flux));
+    if (!fine || !(flux.minCoeff() >= 0)) fail_not_finite(path, deposit);
+    const DirectionCode wi = encode_direction(deposit.wi);
+    photons_.push_back(
+        {{x.x(), x.y(), x.z()}, encode_rgbe(flux * energy_per_flux_), wi.theta, wi.phi, 0});
+}
+
+void give_up(const LightPathCounts& counts, std::uint64_t wanted) {
+    std::ostringstream message;
+    message << "photonmap: " << counts.emitted << " light paths stored only " << counts.stored
+            << " of " << wanted << " photons: " << counts.emitted - counts.aimed
+            << " thinned out at the light, " << counts.missed << " met no caster first, "
+            << counts.escaped << " left the scene, " << counts.absorbed << " absorbed, "
+            << counts.depth_limited
+            << " cut at max_bounces (give `emitted` instead of `photons` to accept few or none)";
+    throw UnsupportedScene(message.str());
+}
+
+Spectrum TracedPhotons::flux_per_energy() const {
+    if (counts.emitted == 0 || counts.stored == 0) return flux_unit;
+    const double kept =
+        static_cast<double>(counts.stored) / static_cast<double>(counts.stored + counts.dropped);
+    return flux_unit / static_cast<float>(static_cast<double>(counts.emitted) * kept);
+}
+
+TracedPhotons trace_photons(const PathTracer& tracer, const Spectrum& path_flux,
                             const PhotonTarget& target, const RunOptions& options) {
     // The typical photon gets the largest mantissa, where rounding is finest.
     const Spectrum flux_of_one = path_flux * (256.0F / 255.0F);
-    return PhotonTracing(trace_path, flux_of_one, target, options).run();
+    return PhotonTracing(tracer, flux_of_one, target, options).run();
+}
+
+void drop_photons(TracedPhotons& photons, std::uint64_t wanted, std::uint64_t seed) {
+    const std::span<Photon> all = photons.store.photons();
+    Rng rng(seed, Stage::photon_choice, 0);
+    // Each round drops one of those left: the last steps of a shuffle [Fisher and Yates 1938].
+    for (std::uint64_t left = all.size(); left > wanted; --left)
+        all[uniform_below(left, rng)] = all[left - 1];
+    photons.counts.dropped += all.size() - wanted;
+    photons.counts.stored = wanted;
+    photons.store.shrink(wanted);
 }
 
 }  // namespace caustics

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/aimed_emission.h"
 #include "core/error.h"
 #include "core/light_path.h"
 #include "core/parallel.h"
@@ -122,7 +123,7 @@ private:
             if (!particle) continue;
             ++counts.aimed;
             if (const auto deposit =
-                    trace_light_path(scene_, *particle, params_.max_bounces, rng, counts))
+                    trace_light_path(scene_, *particle, {params_.max_bounces}, rng, counts))
                 sink(*deposit);
         }
     }

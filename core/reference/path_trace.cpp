@@ -72,7 +72,7 @@ float flux_correction(const SurfacePoint& p, const Vec3& towards_receiver,
 Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, Rng& rng) {
     Spectrum weight = Spectrum::Ones();
     Spectrum result = black();
-    std::optional<Spectrum> start_absorption;
+    const Spectrum* start_absorption = nullptr;
     for (int bounces = 0;; ++bounces) {
         const std::optional<SurfacePoint> hit = scene.intersect(ray);
         if (!hit) return result;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/light_path.h"
+#include "core/aimed_emission.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
 #include "tests/support/light_flux.h"
@@ -43,7 +43,7 @@ Spectrum transmitted(const Scene& scene, double degrees, std::uint64_t paths) {
     LightPathCounts counts;
     for (std::uint64_t path = 0; path < paths; ++path) {
         Rng rng(3, Stage::test, path);
-        if (const auto deposit = trace_light_path(scene, particle, 1000, rng, counts))
+        if (const auto deposit = trace_light_path(scene, particle, {1000}, rng, counts))
             sum += deposit->flux.cast<double>();
     }
     EXPECT_EQ(counts.missed, 0U);
@@ -139,7 +139,7 @@ TEST(Slab, EverySegmentIsInTheMediumItEndsIn) {
         LightPathCounts counts;
         const LightParticle particle{spawn_ray({Vec3(0.1F, 0.2F, 3)}, -Vec3::UnitZ()),
                                      Spectrum::Ones()};
-        const auto deposit = trace_light_path(scene, particle, 16, rng, counts);
+        const auto deposit = trace_light_path(scene, particle, {16}, rng, counts);
         if (!deposit || deposit->bounces != 2) continue;
         ++arrived;
         const Spectrum expected = (-(inside * 0.5F) - outside * (3 + 1.5F)).exp();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/aimed_emission.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 
@@ -184,7 +185,7 @@ TEST(LightPath, EveryPathHasOneEnd) {
         std::uint64_t deposits = 0;
         send(emission, [&](const LightParticle& particle, Rng& rng) {
             ++counts.aimed;
-            const auto deposit = trace_light_path(scene, particle, max_bounces, rng, counts);
+            const auto deposit = trace_light_path(scene, particle, {max_bounces}, rng, counts);
             if (!deposit) return;
             ++deposits;
             ASSERT_TRUE(is_finite(deposit->flux));
@@ -215,7 +216,7 @@ TEST(LightPath, RouletteKeepsTheMeanOfEveryChannel) {
     LightPathCounts counts;
     for (std::uint64_t path = 0; path < paths; ++path) {
         Rng rng(1, Stage::test, path);
-        const auto deposit = trace_light_path(scene, particle, 16, rng, counts);
+        const auto deposit = trace_light_path(scene, particle, {16}, rng, counts);
         for (int channel = 0; channel < 3; ++channel)
             flux[static_cast<std::size_t>(channel)].add(
                 deposit ? static_cast<double>(deposit->flux[channel]) : 0.0);
@@ -234,9 +235,9 @@ TEST(LightPath, BlackParticlesAndDeepChainsEnd) {
     Rng rng(1, Stage::test, 0);
     LightPathCounts counts;
     const Ray ray{Vec3(0, 0, 0.5F), Vec3::UnitZ()};
-    EXPECT_FALSE(trace_light_path(scene, {ray, Spectrum(Spectrum::Ones())}, 100, rng, counts));
+    EXPECT_FALSE(trace_light_path(scene, {ray, Spectrum(Spectrum::Ones())}, {100}, rng, counts));
     EXPECT_EQ(counts.depth_limited, 1U);
-    EXPECT_FALSE(trace_light_path(scene, {ray, black()}, 100, rng, counts));
+    EXPECT_FALSE(trace_light_path(scene, {ray, black()}, {100}, rng, counts));
     EXPECT_EQ(counts.absorbed, 1U);
 }
 

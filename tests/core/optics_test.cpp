@@ -159,12 +159,13 @@ TEST(Optics, TheMediumIsTheOneWhereTheSegmentEnds) {
     EXPECT_TRUE((*medium_absorption(glass, n, -n) == inside).all());
     EXPECT_FALSE(medium_absorption(support::mirror(), n, n));
     EXPECT_FALSE(medium_absorption(support::diffuse(0.5F), n, n));
-    const Spectrum end = segment_transmittance(inside, outside, 0.1F);
+    const Spectrum end = segment_transmittance(&inside, &outside, 0.1F);
     EXPECT_FLOAT_EQ(end[0], std::exp(-0.4F));
-    EXPECT_FLOAT_EQ(segment_transmittance(inside, {}, 0.1F)[0], std::exp(-0.1F));
-    EXPECT_EQ(segment_transmittance({}, {}, 0.1F)[0], 1);
+    EXPECT_FLOAT_EQ(segment_transmittance(&inside, nullptr, 0.1F)[0], std::exp(-0.1F));
+    EXPECT_EQ(segment_transmittance(nullptr, nullptr, 0.1F)[0], 1);
     // A lossless end wins over an absorbing start.
-    EXPECT_EQ(segment_transmittance(inside, Spectrum(black()), 0.1F)[0], 1);
+    const Spectrum none = black();
+    EXPECT_EQ(segment_transmittance(&inside, &none, 0.1F)[0], 1);
 }
 
 }  // namespace

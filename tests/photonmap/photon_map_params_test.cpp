@@ -51,10 +51,19 @@ TEST(PhotonMapParams, EmittedReplacesPhotons) {
     EXPECT_NE(refusal(R"({"emitted": 5000, "photons": 10})").find("/emitted"), std::string::npos);
 }
 
+TEST(PhotonMapParams, ChooseTheEmissionAndTheInteraction) {
+    EXPECT_EQ(params_of("{}").emission, PhotonMapParams::Emission::random);
+    EXPECT_EQ(params_of("{}").interaction, Interaction::roulette);
+    const PhotonMapParams given =
+        params_of(R"({"emission": "stratified", "interaction": "split"})");
+    EXPECT_EQ(given.emission, PhotonMapParams::Emission::stratified);
+    EXPECT_EQ(given.interaction, Interaction::split);
+    EXPECT_NE(refusal(R"({"emission": "regular"})").find("stratified"), std::string::npos);
+}
+
 TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
     for (const std::string word :
-         {R"("emission": "stratified")", R"("interaction": "split")", R"("filter": "cone")",
-          R"("adaptive": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
+         {R"("filter": "cone")", R"("adaptive": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
         const std::string line = refusal("{" + word + "}");
         EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
     }

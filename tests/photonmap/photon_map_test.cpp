@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/aimed_emission.h"
 #include "core/error.h"
-#include "core/light_path.h"
 
 namespace caustics {
 namespace {

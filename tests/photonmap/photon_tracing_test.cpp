@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/rng.h"
@@ -12,15 +15,32 @@
 namespace caustics {
 namespace {
 
-/// Paths that store with probability `rate`, white and 1 W.
-TracePath synthetic_paths(float rate, std::uint64_t seed = 1) {
-    return [rate, seed](std::uint64_t path, LightPathCounts& counts) -> std::optional<Deposit> {
-        Rng rng(seed, Stage::test, path);
-        counts.aimed = 1;
-        if (rng.next() >= rate) {
-            counts.missed = 1;
-            return {};
+/// What path number `path` deposits, if it does.
+using OnePath = std::function<std::optional<Deposit>(std::uint64_t path)>;
+
+/// Paths of one photon at most, given one by one; all are aimed, the others miss.
+class GivenPaths final : public PathTracer {
+public:
+    explicit GivenPaths(OnePath one) : one_(std::move(one)) {}
+    void trace(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const override {
+        for (std::uint64_t path = first; path < last; ++path) {
+            const std::optional<Deposit> deposit = one_(path);
+            ++chunk.counts.emitted;
+            ++chunk.counts.aimed;
+            ++(deposit ? chunk.counts.stored : chunk.counts.missed);
+            if (deposit) chunk.add(path, *deposit);
         }
+    }
+
+private:
+    OnePath one_;
+};
+
+/// Paths that store with probability `rate`, white and 1 W.
+OnePath synthetic_paths(float rate, std::uint64_t seed = 1) {
+    return [rate, seed](std::uint64_t path) -> std::optional<Deposit> {
+        Rng rng(seed, Stage::test, path);
+        if (rng.next() >= rate) return {};
         Deposit deposit;
         const float x = rng.next(), y = rng.next();
         deposit.position = {x, y, 0};
@@ -31,10 +51,16 @@ TracePath synthetic_paths(float rate, std::uint64_t seed = 1) {
     };
 }
 
-TracedPhotons trace(const TracePath& paths, const PhotonTarget& target, int threads = 1) {
+TracedPhotons trace(const OnePath& paths, PhotonTarget target, const RunOptions& options,
+                    const Spectrum& flux = Spectrum::Ones()) {
+    target.capacity = std::max(target.stored, target.emitted);
+    return trace_photons(GivenPaths(paths), flux, target, options);
+}
+
+TracedPhotons trace(const OnePath& paths, const PhotonTarget& target, int threads = 1) {
     RunOptions options;
     options.threads = threads;
-    return trace_photons(paths, Spectrum::Ones(), target, options);
+    return trace(paths, target, options);
 }
 
 TEST(PhotonTracing, StoresExactlyAsManyAsAsked) {
@@ -51,14 +77,12 @@ TEST(PhotonTracing, StoresExactlyAsManyAsAsked) {
 }
 
 TEST(PhotonTracing, CountsThePathsBeforeTheNextPhoton) {
-    const TracePath paths = synthetic_paths(0.3F);
+    const OnePath paths = synthetic_paths(0.3F);
     const TracedPhotons traced = trace(paths, {.stored = 100});
     std::uint64_t successes = 0;
     std::uint64_t path = 0;
-    for (;; ++path) {
-        LightPathCounts counts;
-        if (paths(path, counts) && ++successes == 101) break;
-    }
+    for (;; ++path)
+        if (paths(path) && ++successes == 101) break;
     EXPECT_EQ(traced.counts.emitted, path);
 }
 
@@ -75,12 +99,14 @@ TEST(PhotonTracing, GivesTheSamePhotonsForAnyNumberOfThreads) {
     for (const PhotonTarget& target :
          {PhotonTarget{.stored = 30'000}, PhotonTarget{.emitted = 90'000}}) {
         const TracedPhotons one = trace(synthetic_paths(0.4F), target, 1);
-        const TracedPhotons two = trace(synthetic_paths(0.4F), target, 2);
-        ASSERT_EQ(two.store.size(), one.store.size());
-        EXPECT_EQ(two.counts.emitted, one.counts.emitted);
-        EXPECT_EQ(
-            std::memcmp(two.store.photons().data(), one.store.photons().data(), one.store.bytes()),
-            0);
+        for (const int threads : {2, 3, 7}) {
+            const TracedPhotons more = trace(synthetic_paths(0.4F), target, threads);
+            ASSERT_EQ(more.store.size(), one.store.size());
+            EXPECT_EQ(more.counts.emitted, one.counts.emitted);
+            EXPECT_EQ(std::memcmp(more.store.photons().data(), one.store.photons().data(),
+                                  one.store.bytes()),
+                      0);
+        }
     }
 }
 
@@ -108,12 +134,12 @@ TEST(PhotonTracing, StoppingAtACountLeavesTheFluxUnbiased) {
 TEST(PhotonTracing, KeepsFluxOverTwelveOrdersOfMagnitudeAndAnyColour) {
     for (const float watts : {1e-6F, 1.0F, 1e6F}) {
         const Spectrum flux = watts * Spectrum(1, 0.001F, 0);
-        const TracePath paths = [&](std::uint64_t path, LightPathCounts& counts) {
-            std::optional<Deposit> deposit = synthetic_paths(1)(path, counts);
+        const OnePath paths = [&](std::uint64_t path) {
+            std::optional<Deposit> deposit = synthetic_paths(1)(path);
             deposit->flux = flux;
             return deposit;
         };
-        const TracedPhotons traced = trace_photons(paths, flux, {.stored = 10}, {});
+        const TracedPhotons traced = trace(paths, {.stored = 10}, {}, flux);
         const Spectrum kept = decode_rgbe(traced.store.photons().front().energy) * traced.flux_unit;
         EXPECT_NEAR(kept[0] / flux[0], 1, 1e-6);
         EXPECT_NEAR(kept[1] / flux[1], 1, 1e-6);
@@ -139,8 +165,8 @@ TEST(PhotonTracing, GivesUpAndSaysWhy) {
 TEST(PhotonTracing, NamesThePathOfAPhotonThatIsNotFinite) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (int broken = 0; broken < 3; ++broken) {
-        const TracePath paths = [&](std::uint64_t path, LightPathCounts& counts) {
-            std::optional<Deposit> deposit = synthetic_paths(1)(path, counts);
+        const OnePath paths = [&](std::uint64_t path) {
+            std::optional<Deposit> deposit = synthetic_paths(1)(path);
             if (path == 77 && broken == 0) deposit->position.y() = nan;
             if (path == 77 && broken == 1) deposit->flux[2] = nan;
             if (path == 77 && broken == 2) deposit->flux[0] = -1;
@@ -159,14 +185,12 @@ TEST(PhotonTracing, ReportsGrowingProgressAndCanBeInterrupted) {
     RunOptions options;
     std::vector<double> shares;
     options.progress = [&](double share) { shares.push_back(share); };
-    trace_photons(synthetic_paths(0.5F), Spectrum::Ones(), {.stored = 20'000}, options);
+    trace(synthetic_paths(0.5F), {.stored = 20'000}, options);
     EXPECT_TRUE(std::ranges::is_sorted(shares));
     EXPECT_GT(shares.size(), 2U);
     EXPECT_EQ(shares.back(), 1);
     options.progress = [](double) { throw Interrupted(); };
-    EXPECT_THROW(
-        trace_photons(synthetic_paths(0.5F), Spectrum::Ones(), {.stored = 20'000}, options),
-        Interrupted);
+    EXPECT_THROW(trace(synthetic_paths(0.5F), {.stored = 20'000}, options), Interrupted);
 }
 
 }  // namespace

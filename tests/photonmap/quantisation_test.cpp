@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/light_path.h"
+#include "core/aimed_emission.h"
 #include "photonmap/photon_map.h"
 #include "shading_sets.h"
 #include "tests/support/build_scene.h"
@@ -27,7 +27,7 @@ std::vector<Deposit> ball_deposits(std::size_t count) {
         Rng rng(61, Stage::photons, path);
         const std::optional<LightParticle> particle = emission.emit(rng);
         if (!particle) continue;
-        if (const auto deposit = trace_light_path(scene, *particle, 16, rng, counts))
+        if (const auto deposit = trace_light_path(scene, *particle, {16}, rng, counts))
             deposits.push_back(*deposit);
     }
     return deposits;

@@ -72,7 +72,7 @@ ArrivedFlux arrived_flux(const Scene& scene, const Emit& emit, std::uint64_t pat
         const std::optional<LightParticle> particle = emit(rng);
         if (!particle) continue;
         ++result.counts.aimed;
-        const auto deposit = trace_light_path(scene, *particle, max_bounces, rng, result.counts);
+        const auto deposit = trace_light_path(scene, *particle, {max_bounces}, rng, result.counts);
         if (!deposit) continue;
         const int cell = cell_of(*deposit);
         if (cell < 0) continue;

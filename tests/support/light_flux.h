@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/light_path.h"
+#include "core/aimed_emission.h"
 #include "core/rng.h"
 #include "core/scene.h"
 #include "tests/support/statistics.h"

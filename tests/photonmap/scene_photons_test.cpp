@@ -1,0 +1,216 @@
+#include "photonmap/scene_photons.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+#include "core/error.h"
+#include "core/tessellate.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/statistics.h"
+
+namespace caustics {
+namespace {
+
+using Emission = PhotonMapParams::Emission;
+
+struct Mode {
+    Emission emission;
+    Interaction interaction;
+};
+constexpr Mode modes[] = {{Emission::random, Interaction::roulette},
+                          {Emission::stratified, Interaction::roulette},
+                          {Emission::random, Interaction::split},
+                          {Emission::stratified, Interaction::split}};
+
+PhotonMapParams params(const Mode& mode, std::uint64_t photons, std::uint64_t emitted = 0) {
+    PhotonMapParams p;
+    p.photons = photons;
+    p.emitted = emitted;
+    p.emission = mode.emission;
+    p.interaction = mode.interaction;
+    return p;
+}
+
+TracedPhotons trace(const Scene& scene, const PhotonMapParams& p, std::uint64_t seed = 1,
+                    int threads = 1) {
+    RunOptions options;
+    options.seed = seed;
+    options.threads = threads;
+    return trace_scene(scene, p, options);
+}
+
+/// The flux of all photons, mean of the channels [W].
+double flux(const TracedPhotons& photons) {
+    double sum = 0;
+    for (const Photon& photon : photons.store.photons())
+        sum += static_cast<double>(
+            Spectrum(decode_rgbe(photon.energy) * photons.flux_per_energy()).mean());
+    return sum;
+}
+
+Shape floor_under(double z) {
+    return support::horizontal("floor", z, 6, true, support::diffuse(0.5F));
+}
+
+/// Waves of a mesh over a floor.
+SceneDesc pool() {
+    SineHeightfield field;
+    field.waves = {{0.03, {7, 2}, 0.4}, {0.02, {-4, 9}, 2}};
+    field.half_size = {1, 1};
+    SceneDesc desc;
+    desc.shapes = {support::mesh("water", tessellate_heightfield(field, 16), Transform::Identity(),
+                                 support::glass(1.33F, 1, Spectrum(0.4F, 0.1F, 0.05F))),
+                   floor_under(-1)};
+    return desc;
+}
+
+SceneDesc pool_and_point() {
+    SceneDesc desc = pool();
+    desc.point_lights = {support::point_light({0.4, 0.3, 2.5}, 5)};
+    return desc;
+}
+
+SceneDesc pool_and_sun() {
+    SceneDesc desc = pool();
+    desc.directional_lights = {support::directional_light({0.3, -0.2, -1}, 2)};
+    return desc;
+}
+
+/// A ball, a mesh and a mirror that overlap as seen from the lamp.
+SceneDesc crowd_and_lamp() {
+    SceneDesc desc;
+    desc.shapes = {
+        floor_under(-1.2), support::sphere("ball", {0, 0, 0}, 0.6, support::glass(1.5F)),
+        support::mesh("bubble", tessellate_sphere(8),
+                      Transform(Eigen::Translation3d(0.3, 0.2, 1) * Eigen::Scaling(0.4)),
+                      support::glass(1.3F)),
+        support::rectangle("mirror", {-0.8, 0, 0.5}, {0, 0.6, 0}, {0, 0, 0.6},
+                           support::mirror(0.8F)),
+        support::rectangle("lamp", {0.5, 0.3, 2.5}, {0, 0.3, 0}, {0.3, 0, 0}, support::diffuse(0))};
+    desc.shapes.back().radiance = Spectrum(Spectrum::Constant(8));
+    return desc;
+}
+
+/// Two lights, one of them round.
+SceneDesc ball_and_two_lights() {
+    SceneDesc desc;
+    desc.shapes = {floor_under(-1.2), support::sphere("ball", {0, 0, 0}, 0.8, support::glass(1.5F)),
+                   support::sphere("lamp", {2, 1, 2}, 0.3, support::diffuse(0))};
+    desc.shapes.back().radiance = Spectrum(Spectrum::Constant(9));
+    desc.point_lights = {support::point_light({-1, 2, 2}, 3)};
+    return desc;
+}
+
+using MakeScene = SceneDesc (*)();
+constexpr MakeScene scenes[] = {pool_and_point, pool_and_sun, crowd_and_lamp, ball_and_two_lights};
+
+TEST(ScenePhotons, AllWaysOfEmissionAgreeInFluxAndStrataScatterLess) {
+    for (const MakeScene make : scenes) {
+        const Scene scene(make());
+        support::Moments moments[4];
+        for (std::size_t mode = 0; mode < 4; ++mode)
+            for (std::uint64_t seed = 0; seed < 24; ++seed)
+                moments[mode].add(flux(trace(scene, params(modes[mode], 3'000), 100 + seed)));
+        for (std::size_t mode = 1; mode < 4; ++mode) {
+            const double error =
+                std::hypot(moments[0].standard_error(), moments[mode].standard_error());
+            EXPECT_NEAR(moments[mode].mean(), moments[0].mean(), 4 * error) << mode;
+            EXPECT_LT(error, 0.01 * moments[0].mean());
+        }
+        EXPECT_LT(moments[3].deviation(), moments[2].deviation());
+        if (make == pool_and_point || make == pool_and_sun) {
+            EXPECT_LT(moments[1].deviation(), 0.5 * moments[0].deviation());
+            EXPECT_LT(moments[3].deviation(), 0.3 * moments[0].deviation());
+        }
+    }
+}
+
+TEST(ScenePhotons, CountsAreExactAndEndsAddUp) {
+    const Scene scene(crowd_and_lamp());
+    for (const Mode& mode : modes) {
+        for (const std::uint64_t wanted : {1U, 77U, 5'000U}) {
+            const TracedPhotons photons = trace(scene, params(mode, wanted));
+            EXPECT_EQ(photons.store.size(), wanted);
+            EXPECT_EQ(photons.counts.stored, wanted);
+            const LightPathCounts& c = photons.counts;
+            EXPECT_EQ(c.missed + c.escaped + c.absorbed + c.depth_limited + c.stored +
+                          photons.counts.dropped,
+                      c.aimed + c.branched);
+            EXPECT_EQ(c.branched > 0, mode.interaction == Interaction::split);
+        }
+        for (const std::uint64_t emitted : {1U, 1'000U, 7'919U}) {
+            const TracedPhotons photons = trace(scene, params(mode, 0, emitted));
+            EXPECT_EQ(photons.counts.emitted, emitted);
+            EXPECT_EQ(photons.counts.dropped, 0U);
+        }
+    }
+}
+
+TEST(ScenePhotons, AreTheSameBitForBitForAnyNumberOfThreads) {
+    const Scene scene(crowd_and_lamp());
+    for (const Mode& mode : modes)
+        for (const PhotonMapParams& p : {params(mode, 30'000), params(mode, 0, 40'000)}) {
+            const TracedPhotons one = trace(scene, p);
+            for (const int threads : {2, 3}) {
+                const TracedPhotons more = trace(scene, p, 1, threads);
+                ASSERT_EQ(more.store.size(), one.store.size());
+                EXPECT_EQ(more.counts.emitted, one.counts.emitted);
+                EXPECT_EQ(more.counts.branched, one.counts.branched);
+                EXPECT_EQ(std::memcmp(more.store.photons().data(), one.store.photons().data(),
+                                      one.store.bytes()),
+                          0);
+            }
+        }
+}
+
+TEST(ScenePhotons, DepthLimitsAreCounted) {
+    const Scene scene(crowd_and_lamp());
+    for (const Mode& mode : modes) {
+        PhotonMapParams p = params(mode, 0, 20'000);
+        p.max_bounces = 1;
+        EXPECT_GT(trace(scene, p).counts.depth_limited, 1'000U);
+        p.max_bounces = 1'000;
+        EXPECT_EQ(trace(scene, p).counts.depth_limited, 0U);
+    }
+}
+
+TEST(ScenePhotons, GivesUpWhereNothingArrives) {
+    SceneDesc desc = pool_and_point();
+    desc.shapes.pop_back();
+    const Scene scene(std::move(desc));
+    Mode mode{Emission::random, Interaction::split};
+    EXPECT_EQ(trace(scene, params(mode, 0, 1'000)).store.size(), 0U);
+    SceneDesc no_caster;
+    no_caster.shapes = {floor_under(0)};
+    no_caster.point_lights = {support::point_light({0, 0, 1}, 1)};
+    EXPECT_THROW(trace(Scene(std::move(no_caster)), params(mode, 10)), UnsupportedScene);
+}
+
+/// Resident memory of this process [bytes].
+double resident() {
+    std::ifstream file("/proc/self/statm");
+    double whole = 0, pages = 0;
+    file >> whole >> pages;
+    return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(ScenePhotons, TakeNoMoreMemoryThanTheirBytes) {
+    const Scene scene(pool_and_point());
+    for (const Mode& mode : modes)
+        for (const int threads : {1, 2}) {
+            trace(scene, params(mode, 1'000), 1, threads);
+            const double before = resident();
+            const TracedPhotons photons = trace(scene, params(mode, 600'000), 1, threads);
+            const double block = PhotonStore::block_photons * sizeof(Photon);
+            EXPECT_LE(resident() - before,
+                      1.05 * static_cast<double>(photons.store.bytes()) + threads * block);
+        }
+}
+
+}  // namespace
+}  // namespace caustics
