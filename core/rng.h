@@ -35,6 +35,7 @@ enum class Stage : std::uint32_t {
     shading = 5,
     photon_pilot = 6,
     photon_choice = 7,
+    beams = 8,
     test = 100,
 };
 

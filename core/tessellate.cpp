@@ -43,10 +43,19 @@ std::uint32_t add_vertex(TriangleMesh& mesh, const Vec3d& position, const Vec3d&
     return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
+// Notes the subdivision of the triangles that follow.
+void add_patch(TriangleMesh& mesh, int columns, int rows, std::uint32_t cell_triangles) {
+    if (columns == 0 || rows == 0) return;
+    mesh.patches.push_back({static_cast<std::uint32_t>(mesh.triangles.size()),
+                            static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows),
+                            cell_triangles});
+}
+
 // Two triangles a quad over a grid of (columns + 1) vertices a row, whose first vertex is `first`.
 // Counter-clockwise where columns x rows points along the normal.
 void add_grid_triangles(TriangleMesh& mesh, std::uint32_t first, int columns, int rows) {
     const auto stride = static_cast<std::uint32_t>(columns) + 1;
+    add_patch(mesh, columns, rows, 2);
     for (std::uint32_t row = 0; row < static_cast<std::uint32_t>(rows); ++row)
         for (std::uint32_t column = 0; column + 1 < stride; ++column) {
             const std::uint32_t a = first + row * stride + column;
@@ -60,6 +69,7 @@ void add_grid_triangles(TriangleMesh& mesh, std::uint32_t first, int columns, in
 // which carries the uv of the sector's middle.
 template <class AddPole>
 void add_fan(TriangleMesh& mesh, std::uint32_t ring, int sectors, bool pole_left, AddPole pole) {
+    add_patch(mesh, sectors, 1, 1);
     for (int sector = 0; sector < sectors; ++sector) {
         const std::uint32_t tip = pole((sector + 0.5) / sectors);
         const std::uint32_t a = ring + static_cast<std::uint32_t>(sector);
@@ -173,6 +183,21 @@ TriangleMesh tessellate_heightfield(const SineHeightfield& field, int n) {
                        {fraction(i, n), fraction(j, n)});
         }
     add_grid_triangles(mesh, 0, n, n);
+    return mesh;
+}
+
+TriangleMesh tessellate_shape(const Shape& shape, int n) {
+    TriangleMesh mesh;
+    switch (shape.primitive) {
+        case Primitive::rectangle: mesh = tessellate_rectangle(n); break;
+        case Primitive::disk: mesh = tessellate_disk(n); break;
+        case Primitive::sphere: mesh = tessellate_sphere(n); break;
+        case Primitive::cylinder: mesh = tessellate_cylinder(n); break;
+        case Primitive::heightfield: mesh = tessellate_heightfield(shape.field, n); break;
+        case Primitive::mesh: return shape.mesh;
+    }
+    transform(mesh, shape.to_world);
+    if (shape.flip_normals) flip(mesh);
     return mesh;
 }
 

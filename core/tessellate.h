@@ -2,6 +2,7 @@
 
 #include "core/heightfield.h"
 #include "core/mesh.h"
+#include "core/shape.h"
 
 namespace caustics {
 
@@ -22,5 +23,8 @@ TriangleMesh tessellate_cylinder(int n);
 TriangleMesh tessellate_cube(int n);
 /// n x n quads, normals from the exact gradient.
 TriangleMesh tessellate_heightfield(const SineHeightfield& field, int n);
+
+/// The mesh of an exact shape in the world frame, facing as the shape does. A sphere takes n >= 2.
+TriangleMesh tessellate_shape(const Shape& shape, int n);
 
 }  // namespace caustics

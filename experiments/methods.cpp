@@ -43,6 +43,21 @@ json describe_params(const PhotonMapParams& p) {
     return all;
 }
 
+json describe_params(const BeamTreeParams& p) {
+    constexpr const char* bounds[] = {"single", "double", "hybrid", "sphere_swept"};
+    const bool rays = p.merging == ConeTreeSettings::Merging::rays;
+    json all = {{"bound", bounds[static_cast<std::size_t>(p.bound)]},
+                {"merging", rays ? "rays" : "cones"},
+                {"hierarchy", p.hierarchy == BeamTreeParams::Tree::quadtree ? "quadtree" : "binned"},
+                {"leaf", p.leaf == BeamTreeParams::Leaf::n ? "n" : "k"},
+                {"intensity", "area"},
+                {"light_samples", p.light_samples},
+                {"mesh_resolution", p.mesh_resolution},
+                {"max_bounces", p.max_bounces}};
+    if (p.bound == Bound::hybrid) all["spread_threshold"] = p.spread_threshold;
+    return all;
+}
+
 template <typename Params>
 MethodParams read_params(const JsonNode& node) {
     Params params;
@@ -57,7 +72,8 @@ struct Entry {
 constexpr Entry entries[] = {{"none", read_params<NoneParams>},
                              {"pathtrace", read_params<PathTraceParams>},
                              {"lighttrace", read_params<LightTraceParams>},
-                             {"photonmap", read_params<PhotonMapParams>}};
+                             {"photonmap", read_params<PhotonMapParams>},
+                             {"beamtree", read_params<BeamTreeParams>}};
 static_assert(std::size(entries) == std::variant_size_v<MethodParams>);
 
 /// The same method where building it costs next to nothing: what it can serve does not depend on
@@ -67,6 +83,7 @@ MethodParams with_least_work(MethodParams params) {
         map->photons = std::min<std::uint64_t>(map->photons, 1);
         map->emitted = std::min<std::uint64_t>(map->emitted, 1);
     }
+    if (auto* const beams = std::get_if<BeamTreeParams>(&params)) beams->light_samples = 1;
     return params;
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "beamtree/beam_tree.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
 #include "core/reference/light_trace.h"
@@ -16,7 +17,8 @@
 namespace caustics {
 
 /// The only place that names all methods: one alternative each, in the order of method_names().
-using MethodParams = std::variant<NoneParams, PathTraceParams, LightTraceParams, PhotonMapParams>;
+using MethodParams = std::variant<NoneParams, PathTraceParams, LightTraceParams, PhotonMapParams,
+                                  BeamTreeParams>;
 
 struct Method {
     std::string name;

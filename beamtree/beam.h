@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "beamtree/light_sample.h"
+#include "core/spectrum.h"
+#include "core/vec.h"
+
+namespace caustics {
+
+/// What a specular surface has made of the light at one vertex: a ray that leaves it.
+struct VertexRay {
+    Vec3 position;
+    Vec3 direction;  ///< unit, the way the light goes
+};
+
+/// The light that one specular polygon sends on [CC95 sec. 3.1]: rays through its three or four
+/// corners (a triangle, or what is left of one), and the flux they enclose. Four corners are two
+/// triangles, (0, 1, 2) and (0, 2, 3).
+struct Beam {
+    static constexpr std::uint32_t none = ~0U;
+    std::array<std::uint32_t, 4> corners;  ///< into BeamSet::rays; the last may be `none`
+    Spectrum flux = black();               ///< through the polygon, after the event [W]
+    float first_share = 1;                 ///< of the flux, in the first triangle
+    float offset = 0;            ///< rays to and from the polygon end this far off it [m]
+    std::uint32_t triangle = 0;  ///< of the caster's mesh
+    bool inside = false;         ///< goes through the medium behind the caster's front side
+
+    std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
+};
+
+/// The beams of one light sample, one caster and one event, reflection or refraction.
+struct BeamSet {
+    LightSample light;
+    std::uint32_t caster = 0;  ///< index into Scene::shapes
+    bool refracted = false;
+    std::array<Spectrum, 2> absorption = {black(), black()};  ///< outside, inside [1/m]
+    std::vector<VertexRay> rays;  ///< neighbouring beams share them, bit for bit
+    std::vector<Beam> beams;      ///< in the order of the mesh's triangles
+
+    /// Rays of one of a beam's triangles.
+    std::array<const VertexRay*, 3> triangle(const Beam& beam, std::size_t which) const {
+        return {&rays[beam.corners[0]], &rays[beam.corners[1 + which]],
+                &rays[beam.corners[2 + which]]};
+    }
+    std::uint64_t bytes() const {
+        return rays.size() * sizeof(VertexRay) + beams.size() * sizeof(Beam);
+    }
+};
+
+}  // namespace caustics

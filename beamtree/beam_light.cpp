@@ -1,0 +1,86 @@
+#include "beamtree/beam_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "beamtree/caster_mesh.h"
+#include "core/optics.h"
+
+namespace caustics {
+namespace {
+
+// Areas between float positions mean nothing below this. At a perfect focus, where a caustic polygon
+// shrinks to a point, the irradiance is large with it, and finite.
+double resolvable_area(const Vec3& point) {
+    const double side = static_cast<double>(std::numeric_limits<float>::epsilon() *
+                                            std::max(point.cwiseAbs().maxCoeff(), 1e-6F));
+    return side * side;
+}
+
+/// The ray of a hit that arrives at the point.
+struct ArrivingRay {
+    SegmentEnd start;  ///< where the light was bent
+    Vec3 direction;    ///< unit, the way the light goes
+};
+
+ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
+    const Beam& beam = set.beams[hit.beam];
+    const auto rays = set.triangle(beam, hit.triangle);
+    ArrivingRay ray;
+    ray.start.position = Vec3::Zero();
+    ray.direction = Vec3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float weight = hit.weights[static_cast<Eigen::Index>(i)];
+        ray.start.position += weight * rays[i]->position;
+        ray.direction += weight * rays[i]->direction;
+    }
+    ray.direction.normalize();
+    ray.start.geometric_normal =
+        triangle_normal(rays[0]->position, rays[1]->position, rays[2]->position);
+    ray.start.offset = beam.offset;
+    return ray;
+}
+
+}  // namespace
+
+template <typename Weight>
+Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
+                        const Weight& weight) const {
+    std::sort(hits.begin(), hits.end(), [](const BeamHit& a, const BeamHit& b) {
+        return std::tie(a.set, a.beam, a.triangle) < std::tie(b.set, b.beam, b.triangle);
+    });
+    const SegmentEnd receiver{point.position, point.geometric_normal, point.offset};
+    const double least_area = resolvable_area(point.position);
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (const BeamHit& hit : hits) {
+        const BeamSet& set = sets_[hit.set];
+        const Beam& beam = set.beams[hit.beam];
+        const ArrivingRay ray = arriving_ray(set, hit);
+        if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
+        const Spectrum factor = weight(Vec3(-ray.direction));
+        if (is_black(factor)) continue;
+        if (scene_.occluded(receiver, ray.start) || !sees(scene_, ray.start, set.light)) continue;
+        double density = hit.flux_share / std::max(hit.area, least_area);
+        // The caustic polygon lies on the test's plane; the receiver's is turned against it.
+        density *= std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction) /
+                                                hit.plane_normal.dot(ray.direction)));
+        const Spectrum left = transmittance(set.absorption[beam.inside ? 1 : 0],
+                                            (point.position - ray.start.position).norm());
+        sum += (factor * beam.flux * left).template cast<double>() * density;
+    }
+    return sum.cast<float>();
+}
+
+Spectrum BeamLight::irradiance(const ReceiverPoint& point, std::vector<BeamHit>& hits) const {
+    return sum(point, hits, [](const Vec3&) { return Spectrum(Spectrum::Ones()); });
+}
+
+Spectrum BeamLight::radiance(const ReceiverPoint& point, std::vector<BeamHit>& hits) const {
+    return sum(point, hits, [&point](const Vec3& wi) {
+        return evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo, wi);
+    });
+}
+
+}  // namespace caustics

@@ -1,0 +1,209 @@
+#include "beamtree/beam_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <tuple>
+
+namespace caustics {
+namespace {
+
+// Rays flatter than this to the plane count as going along it.
+constexpr double least_steepness = 1e-4;
+
+double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// A ray as the plane sees it.
+struct RayOnPlane {
+    const VertexRay* ray;
+    double height;
+    double steepness;
+    Vec2d at;  ///< where it meets the plane, from the point; only of rays that come down
+
+    bool comes_down() const { return height > 0 && steepness > least_steepness; }
+};
+
+RayOnPlane on_plane(const VertexRay& ray, const TestPlane& plane) {
+    RayOnPlane found{&ray, plane.height(ray.position), plane.steepness(ray.direction),
+                     Vec2d::Zero()};
+    if (found.comes_down())
+        found.at = plane.project(ray.position, found.height / found.steepness, ray.direction);
+    return found;
+}
+
+/// A triangle of a beam projected on the plane.
+struct Projected {
+    int winding = 0;
+    double area = 0;  ///< signed, in the two coordinates
+    Vec3d weights = Vec3d::Zero();
+    double share = 1;  ///< of the triangle that is not clipped away
+};
+
+Projected project_whole(const std::array<RayOnPlane, 3>& rays) {
+    Projected found;
+    const Vec2d& a = rays[0].at;
+    const Vec2d& b = rays[1].at;
+    const Vec2d& c = rays[2].at;
+    found.winding = edge_crossing(a, b) + edge_crossing(b, c) + edge_crossing(c, a);
+    found.area = cross(b - a, c - a) / 2;
+    if (found.winding != 0)
+        found.weights = Vec3d(cross(b, c), cross(c, a), cross(a, b)) / (2 * found.area);
+    return found;
+}
+
+/// A corner of a clipped triangle: where it is on the plane, and which point of the triangle.
+struct ClippedCorner {
+    Vec2d at;
+    Vec3d weights;
+};
+
+// Neighbours clip a shared edge from the same end, so that both find the same bits.
+bool comes_first(const VertexRay& a, const VertexRay& b) {
+    const auto key = [](const VertexRay& r) {
+        return std::tuple(r.position.x(), r.position.y(), r.position.z(), r.direction.x(),
+                          r.direction.y(), r.direction.z());
+    };
+    return key(a) < key(b);
+}
+
+ClippedCorner corner_at(const TestPlane& plane, const RayOnPlane& a, const RayOnPlane& b, double t,
+                        std::size_t index_a, std::size_t index_b) {
+    ClippedCorner corner{Vec2d::Zero(), Vec3d::Zero()};
+    corner.weights[static_cast<Eigen::Index>(index_a)] = 1 - t;
+    corner.weights[static_cast<Eigen::Index>(index_b)] = t;
+    const RayOnPlane& end = t == 0 ? a : b;
+    if ((t == 0 || t == 1) && end.comes_down()) {
+        corner.at = end.at;
+        return corner;
+    }
+    const double height = std::max(0.0, (1 - t) * a.height + t * b.height);
+    const double steepness =
+        std::max(least_steepness, (1 - t) * a.steepness + t * b.steepness);
+    const double s = height / steepness;
+    corner.at = (1 - t) * plane.project(a.ray->position, s, a.ray->direction) +
+                t * plane.project(b.ray->position, s, b.ray->direction);
+    return corner;
+}
+
+// The part of an edge whose rays come down to the plane, appended in the edge's own direction.
+void clip_edge(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays, std::size_t from,
+               std::size_t to, std::array<ClippedCorner, 6>& corners, std::size_t& count) {
+    const bool forward = comes_first(*rays[from].ray, *rays[to].ray);
+    const std::size_t first = forward ? from : to;
+    const std::size_t last = forward ? to : from;
+    double begin = 0;
+    double end = 1;
+    const auto keep_positive = [&](double a, double b) {
+        if (a <= 0 && b <= 0) end = -1;
+        if (a <= 0 && b > 0) begin = std::max(begin, a / (a - b));
+        if (a > 0 && b <= 0) end = std::min(end, a / (a - b));
+    };
+    keep_positive(rays[first].height, rays[last].height);
+    keep_positive(rays[first].steepness - least_steepness,
+                  rays[last].steepness - least_steepness);
+    if (!(begin < end)) return;
+    corners[count] =
+        corner_at(plane, rays[first], rays[last], forward ? begin : end, first, last);
+    corners[count + 1] =
+        corner_at(plane, rays[first], rays[last], forward ? end : begin, first, last);
+    count += 2;
+}
+
+// Which point of the triangle the origin is: barycentric in the fan's triangle that holds it, or
+// comes nearest to it.
+Vec3d weights_at_origin(const std::array<ClippedCorner, 6>& corners, std::size_t count) {
+    Vec3d best = Vec3d::Zero();
+    double best_least = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+        const Vec2d& a = corners[0].at;
+        const Vec2d& b = corners[i].at;
+        const Vec2d& c = corners[i + 1].at;
+        const double area = cross(b - a, c - a);
+        if (area == 0) continue;
+        const Vec3d l = Vec3d(cross(b, c), cross(c, a), cross(a, b)) / area;
+        if (l.minCoeff() <= best_least) continue;
+        best_least = l.minCoeff();
+        best = l[0] * corners[0].weights + l[1] * corners[i].weights +
+               l[2] * corners[i + 1].weights;
+    }
+    best = best.cwiseMax(0);
+    return best.sum() > 0 ? Vec3d(best / best.sum()) : Vec3d::Constant(1.0 / 3);
+}
+
+Projected project_clipped(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays) {
+    std::array<ClippedCorner, 6> corners;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < 3; ++i) clip_edge(plane, rays, i, (i + 1) % 3, corners, count);
+    Projected found;
+    double kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const ClippedCorner& a = corners[i];
+        const ClippedCorner& b = corners[(i + 1) % count];
+        found.winding += edge_crossing(a.at, b.at);
+        found.area += cross(a.at, b.at) / 2;
+        // Twice the share of the triangle's area, in the coordinates (l1, l2).
+        kept += a.weights[1] * b.weights[2] - a.weights[2] * b.weights[1];
+    }
+    found.share = std::abs(kept);
+    if (found.winding != 0) found.weights = weights_at_origin(corners, count);
+    return found;
+}
+
+BeamHit hit_in(const Projected& found, std::size_t triangle, const TestPlane& plane) {
+    BeamHit hit;
+    hit.plane_normal = plane.normal().cast<float>();
+    hit.triangle = static_cast<std::uint8_t>(triangle);
+    hit.winding = static_cast<std::int8_t>(found.winding > 0 ? 1 : -1);
+    hit.weights = found.weights.cast<float>();
+    hit.area = std::abs(found.area) * plane.area_scale();
+    hit.flux_share = found.share;
+    return hit;
+}
+
+}  // namespace
+
+TestPlane::TestPlane(const Vec3& point, const Vec3& normal)
+    : point_(point.cast<double>()), normal_(normal.cast<double>()) {
+    int longest = 0;
+    normal_.cwiseAbs().maxCoeff(&longest);
+    u_ = (longest + 1) % 3;
+    v_ = (longest + 2) % 3;
+    area_scale_ = normal_.norm() / std::abs(normal_[longest]);
+}
+
+int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
+              std::array<BeamHit, 2>& hits) {
+    std::array<Projected, 2> found;
+    bool clipped = false;
+    const std::size_t count = beam.triangle_count();
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto corners = set.triangle(beam, i);
+        const std::array<RayOnPlane, 3> rays = {on_plane(*corners[0], plane),
+                                                on_plane(*corners[1], plane),
+                                                on_plane(*corners[2], plane)};
+        const int down = rays[0].comes_down() + rays[1].comes_down() + rays[2].comes_down();
+        if (down == 3) {
+            found[i] = project_whole(rays);
+        } else {
+            clipped = true;
+            found[i] = project_clipped(plane, rays);
+        }
+    }
+    // Four corners that keep their orientation are one caustic polygon; otherwise each triangle
+    // keeps its own flux.
+    const bool together = count == 2 && !clipped && found[0].area * found[1].area > 0;
+    int written = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (found[i].winding == 0 || found[i].area == 0) continue;
+        BeamHit hit = hit_in(found[i], i, plane);
+        if (together)
+            hit.area = std::abs(found[0].area + found[1].area) * plane.area_scale();
+        else if (count == 2)
+            hit.flux_share *= static_cast<double>(i == 0 ? beam.first_share : 1 - beam.first_share);
+        hits[static_cast<std::size_t>(written++)] = hit;
+    }
+    return written;
+}
+
+}  // namespace caustics

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "beamtree/beam.h"
+
+namespace caustics {
+
+/// The plane through a point on which caustic polygons are formed [CC95 sec. 3.2.2]: across the
+/// receiver's normal, or across a fixed one. `normal` points against the light that arrives.
+class TestPlane {
+public:
+    TestPlane(const Vec3& point, const Vec3& normal);
+
+    const Vec3d& point() const { return point_; }
+    const Vec3d& normal() const { return normal_; }
+    /// Height of a point above the plane, in units of the normal's length (1 to rounding).
+    double height(const Vec3& p) const { return normal_.dot(p.cast<double>() - point_); }
+    /// How steeply a direction goes down to the plane: cosine of its angle to -normal.
+    double steepness(const Vec3& d) const { return -normal_.dot(d.cast<double>()); }
+    /// Two coordinates of p + s d - point, the one along which the normal is longest left out.
+    Vec2d project(const Vec3& p, double s, const Vec3& d) const {
+        return {static_cast<double>(p[u_]) - point_[u_] + s * static_cast<double>(d[u_]),
+                static_cast<double>(p[v_]) - point_[v_] + s * static_cast<double>(d[v_])};
+    }
+    /// Area on the plane over the area in those coordinates.
+    double area_scale() const { return area_scale_; }
+
+private:
+    Vec3d point_;
+    Vec3d normal_;
+    int u_ = 0;
+    int v_ = 1;
+    double area_scale_ = 1;
+};
+
+/// A point inside (a triangle of) a beam.
+struct BeamHit {
+    std::uint32_t set = 0;
+    std::uint32_t beam = 0;
+    std::uint8_t triangle = 0;
+    std::int8_t winding = 1;  ///< -1 or 1: has the beam passed through its caustic or not
+    Vec3 plane_normal;        ///< of the plane of the caustic polygon
+    Vec3 weights;             ///< barycentric, of the triangle's corners: where the light left
+    double area = 0;          ///< of the caustic polygon [m^2]
+    double flux_share = 1;    ///< of the beam's flux that falls on it
+};
+
+/// Does the point that the plane goes through lie inside the beam? Writes up to two hits (a polygon
+/// of four corners may fold over) with their triangle, winding, weights, area and share, and returns
+/// how many.
+///
+/// Half-open crossing rule: an edge that two triangles share is met by exactly one of them, and the
+/// windings of a mesh add up to the winding of its boundary, whatever the rounding, because both
+/// sides compute the edge from the same bits. Rays that do not come down to the plane, and polygons
+/// that the plane cuts, are clipped at it.
+int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
+              std::array<BeamHit, 2>& hits);
+
+/// The signed crossing of the edge a -> b with the half axis y = 0, x > 0; summed round a polygon it
+/// is the winding round the origin.
+inline int edge_crossing(const Vec2d& a, const Vec2d& b) {
+    const bool a_above = a.y() > 0;
+    const bool b_above = b.y() > 0;
+    if (a_above == b_above) return 0;
+    const double side = a.x() * b.y() - a.y() * b.x();
+    if (b_above) return side > 0 ? 1 : 0;
+    return side < 0 ? -1 : 0;
+}
+
+}  // namespace caustics

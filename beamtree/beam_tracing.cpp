@@ -1,0 +1,263 @@
+#include "beamtree/beam_tracing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/optics.h"
+#include "core/parallel.h"
+
+namespace caustics {
+namespace {
+
+enum Event : std::size_t { reflection, refraction };
+constexpr std::array<Event, 2> events = {reflection, refraction};
+
+/// What the surface does with the light at one point.
+struct BentLight {
+    bool front = false;  ///< the light comes to the normal's side
+    std::array<Vec3, 2> direction;
+    std::array<Spectrum, 2> weight = {black(), black()};  ///< strength after each event
+};
+
+/// A beam while it is put together.
+struct Corner {
+    std::uint32_t ray;
+    Spectrum weight;
+};
+
+class BeamTracer {
+public:
+    BeamTracer(const Scene& scene, const CasterMesh& caster, const LightSample& light)
+        : bsdf_(scene.shapes()[caster.shape].bsdf),
+          caster_(caster),
+          mesh_(caster.mesh),
+          light_(light),
+          surface_offset_(scene.offset(caster.shape)) {
+        for (const Event event : events) {
+            sets_[event].light = light;
+            sets_[event].caster = caster.shape;
+            sets_[event].refracted = event == refraction;
+            if (const auto* medium = std::get_if<Dielectric>(&bsdf_.model))
+                sets_[event].absorption = {medium->ext_absorption, medium->absorption};
+            ray_of_vertex_[event].assign(mesh_.positions.size(), Beam::none);
+        }
+    }
+
+    std::array<BeamSet, 2> run() {
+        for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
+            at_vertex_.push_back(bend(mesh_.positions[i], mesh_.normals[i], mesh_.normals[i]));
+        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
+            if (!caster_.left_out[i]) trace_triangle(i);
+        return std::move(sets_);
+    }
+
+private:
+    BentLight bend(const Vec3& position, const Vec3& ng, const Vec3& ns) const {
+        BentLight bent;
+        const Vec3 w = to_light(light_, position);
+        if (w.isZero(0)) return bent;
+        bent.front = ng.dot(w) > 0;
+        const SpecularSplit split = split_specular(bsdf_, ng, ns, w);
+        const std::optional<Spectrum> medium = medium_absorption(bsdf_, ng, w);
+        const Spectrum arriving = strength_along(light_, w) *
+                                  segment_transmittance({}, medium, distance_from(light_, position));
+        bent.direction = {split.reflected, split.refracted};
+        bent.weight = {split.reflected_weight * arriving, split.refracted_weight * arriving};
+        return bent;
+    }
+
+    void trace_triangle(std::uint32_t index) {
+        const auto& triangle = mesh_.triangles[index];
+        const Vec3& a = mesh_.positions[triangle[0]];
+        const Vec3& b = mesh_.positions[triangle[1]];
+        const Vec3& c = mesh_.positions[triangle[2]];
+        const Vec3 ng = triangle_normal(a, b, c);
+        const Vec3 middle = (a + b + c) / 3;
+        const bool front = ng.dot(to_light(light_, middle)) > 0;
+        for (const Event event : events) {
+            std::array<bool, 3> bends{};
+            for (std::size_t i = 0; i < 3; ++i)
+                bends[i] = sends_on(at_vertex_[triangle[i]], event, ng, front);
+            const auto count = std::count(bends.begin(), bends.end(), true);
+            if (count == 0) continue;
+            const std::vector<Corner> corners =
+                count == 3 ? whole(triangle, event) : cut(triangle, bends, event, ng, front);
+            add_beam(corners, index, event, front);
+        }
+    }
+
+    // The rule of split_specular, for a corner whose light was bent by the vertex normal alone: the
+    // light must come to the same side of both normals, and leave on the right side of both.
+    bool sends_on(const BentLight& bent, Event event, const Vec3& ng, bool front) const {
+        const bool leaves_front = ng.dot(bent.direction[event]) > 0;
+        return bent.front == front && leaves_front == (front == (event == reflection)) &&
+               !is_black(bent.weight[event]);
+    }
+
+    std::vector<Corner> whole(const std::array<std::uint32_t, 3>& triangle, Event event) {
+        std::vector<Corner> corners;
+        for (const std::uint32_t vertex : triangle) corners.push_back(shared(vertex, event));
+        return corners;
+    }
+
+    Corner shared(std::uint32_t vertex, Event event) {
+        const BentLight& bent = at_vertex_[vertex];
+        std::uint32_t& ray = ray_of_vertex_[event][vertex];
+        if (ray == Beam::none)
+            ray = add_ray(event, mesh_.positions[vertex], bent.direction[event]);
+        return {ray, bent.weight[event]};
+    }
+
+    std::uint32_t add_ray(Event event, const Vec3& position, const Vec3& direction) {
+        sets_[event].rays.push_back({position, direction});
+        return static_cast<std::uint32_t>(sets_[event].rays.size() - 1);
+    }
+
+    std::vector<Corner> cut(const std::array<std::uint32_t, 3>& triangle,
+                            const std::array<bool, 3>& bends, Event event, const Vec3& ng,
+                            bool front) {
+        std::vector<Corner> corners;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            if (bends[i]) corners.push_back(shared(triangle[i], event));
+            if (bends[i] == bends[j]) continue;
+            const std::uint32_t good = triangle[bends[i] ? i : j];
+            const std::uint32_t bad = triangle[bends[i] ? j : i];
+            corners.push_back(cut_edge(good, bad, event, ng, front));
+        }
+        return corners;
+    }
+
+    // The last point of an edge, from its good end, where light is still sent on.
+    Corner cut_edge(std::uint32_t good, std::uint32_t bad, Event event, const Vec3& ng,
+                    bool front) {
+        Vec3 position = mesh_.positions[good];
+        BentLight bent = at_vertex_[good];
+        float low = 0;
+        float high = 1;
+        for (int step = 0; step < 20; ++step) {
+            const float t = (low + high) / 2;
+            const Vec3 p = mesh_.positions[good] +
+                           t * (mesh_.positions[bad] - mesh_.positions[good]);
+            const Vec3 n = (1 - t) * mesh_.normals[good] + t * mesh_.normals[bad];
+            const Vec3 unit = n.squaredNorm() > 0 ? Vec3(n.normalized()) : n;
+            const BentLight here = bend(p, unit, unit);
+            if (!sends_on(here, event, ng, front)) {
+                high = t;
+                continue;
+            }
+            low = t;
+            position = p;
+            bent = here;
+        }
+        return {add_ray(event, position, bent.direction[event]), bent.weight[event]};
+    }
+
+    void add_beam(const std::vector<Corner>& corners, std::uint32_t triangle, Event event,
+                  bool front) {
+        BeamSet& set = sets_[event];
+        Beam beam;
+        beam.corners = {corners[0].ray, corners[1].ray, corners[2].ray,
+                        corners.size() > 3 ? corners[3].ray : Beam::none};
+        beam.triangle = triangle;
+        beam.inside = front == (event == refraction);
+        beam.offset = surface_offset_ + distance_to_exact_surface(triangle);
+        std::array<Spectrum, 2> flux = {black(), black()};
+        for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
+            const auto rays = set.triangle(beam, i);
+            const auto omega = static_cast<float>(
+                measure(light_, rays[0]->position, rays[1]->position, rays[2]->position));
+            flux[i] = (corners[0].weight + corners[1 + i].weight + corners[2 + i].weight) *
+                      (omega / 3);
+        }
+        beam.flux = flux[0] + flux[1];
+        if (!(beam.flux.mean() > 0)) return;
+        beam.first_share = flux[0].mean() / beam.flux.mean();
+        set.beams.push_back(beam);
+    }
+
+    // Bound of how far the exact shape bulges from its triangle: |edge| |turn of the normal| / 8 for
+    // a circular arc, twice that for others and for what adds up inside the triangle.
+    float distance_to_exact_surface(std::uint32_t index) const {
+        if (!caster_.tessellated) return 0;
+        const auto& triangle = mesh_.triangles[index];
+        float bulge = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = triangle[i];
+            const std::uint32_t b = triangle[(i + 1) % 3];
+            bulge = std::max(bulge, (mesh_.positions[a] - mesh_.positions[b]).norm() *
+                                        (mesh_.normals[a] - mesh_.normals[b]).norm());
+        }
+        return bulge / 4;
+    }
+
+    const Bsdf& bsdf_;
+    const CasterMesh& caster_;
+    const TriangleMesh& mesh_;
+    const LightSample& light_;
+    float surface_offset_;
+    std::vector<BentLight> at_vertex_;
+    std::array<std::vector<std::uint32_t>, 2> ray_of_vertex_;
+    std::array<BeamSet, 2> sets_;
+};
+
+}  // namespace
+
+std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
+                                   const LightSample& light) {
+    return BeamTracer(scene, caster, light).run();
+}
+
+std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
+                                     const std::vector<LightSample>& lights,
+                                     const RunOptions& options) {
+    std::vector<std::array<BeamSet, 2>> pairs(lights.size() * casters.size());
+    parallel_for(options.threads, pairs.size(), [&](std::size_t i, std::size_t) {
+        pairs[i] = trace_beams(scene, casters[i % casters.size()], lights[i / casters.size()]);
+    });
+    std::vector<BeamSet> sets;
+    for (std::array<BeamSet, 2>& pair : pairs)
+        for (BeamSet& set : pair)
+            if (!set.beams.empty()) sets.push_back(std::move(set));
+    return sets;
+}
+
+namespace {
+
+FluxBalance balance_of(const Scene& scene, const BeamSet& set, const Beam& beam) {
+    const auto [a, b, c] = set.triangle(beam, 0);
+    const Vec3 normal = triangle_normal(a->position, b->position, c->position);
+    const SegmentEnd middle{(a->position + b->position + c->position) / 3, normal, beam.offset};
+    if (!sees(scene, middle, set.light)) return {};
+    FluxBalance balance{static_cast<double>(beam.flux.mean()), 0};
+    const Vec3 direction = (a->direction + b->direction + c->direction).normalized();
+    const std::optional<SurfacePoint> hit = scene.intersect(spawn_ray(middle, direction));
+    if (hit && is_caster(scene.shape_at(*hit).bsdf)) balance.to_casters = balance.lit;
+    return balance;
+}
+
+}  // namespace
+
+FluxBalance flux_balance(const Scene& scene, const std::vector<BeamSet>& sets,
+                         const RunOptions& options) {
+    constexpr std::size_t chunk = 1024;
+    FluxBalance sum;
+    for (const BeamSet& set : sets) {
+        std::vector<FluxBalance> parts((set.beams.size() + chunk - 1) / chunk);
+        parallel_for(options.threads, parts.size(), [&](std::size_t part, std::size_t) {
+            const std::size_t end = std::min(set.beams.size(), (part + 1) * chunk);
+            for (std::size_t i = part * chunk; i < end; ++i) {
+                const FluxBalance one = balance_of(scene, set, set.beams[i]);
+                parts[part].lit += one.lit;
+                parts[part].to_casters += one.to_casters;
+            }
+        });
+        for (const FluxBalance& part : parts) {
+            sum.lit += part.lit;
+            sum.to_casters += part.to_casters;
+        }
+    }
+    return sum;
+}
+
+}  // namespace caustics

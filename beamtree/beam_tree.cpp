@@ -1,0 +1,146 @@
+#include "beamtree/beam_tree.h"
+
+#include <algorithm>
+
+#include "beamtree/beam_light.h"
+#include "beamtree/plane_groups.h"
+#include "beamtree/traced_scene.h"
+#include "core/parallel.h"
+
+namespace caustics {
+
+namespace {
+
+/// A thread's scratch and counters.
+class SearchContext final : public QueryContext {
+public:
+    void add_to(Counters& counters) const override {
+        counters["cone_point_tests"] += counts.cone_point_tests;
+        counters["beam_point_tests"] += counts.beam_point_tests;
+        counters["beam_point_hits"] += counts.beam_point_hits;
+    }
+
+    std::vector<std::uint32_t> stack;
+    std::vector<BeamHit> hits;
+    SearchCounts counts;
+};
+
+/// The trees of all lights, casters and events.
+struct Forest {
+    std::vector<ConeTree> trees;
+    std::uint64_t binned = 0;  ///< trees over `binned`
+};
+
+class BeamTree final : public CausticEstimator {
+public:
+    BeamTree(const Scene& scene, TracedScene traced, Forest forest)
+        : traced_(std::move(traced)),
+          forest_(std::move(forest)),
+          light_(scene, traced_.sets) {}
+
+    std::unique_ptr<QueryContext> make_context() const override {
+        return std::make_unique<SearchContext>();
+    }
+
+    void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                  QueryContext& context) const override {
+        answer(points, out, context, &BeamLight::radiance);
+    }
+
+    void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                    QueryContext& context) const override {
+        answer(points, out, context, &BeamLight::irradiance);
+    }
+
+    BuildReport build_report() const override {
+        BuildReport report;
+        traced_.add_to(report);
+        report.counters["trees"] = forest_.trees.size();
+        for (const ConeTree& tree : forest_.trees) {
+            report.counters["nodes"] += tree.node_count();
+            report.counters["height"] = std::max(report.counters["height"], tree.height());
+            report.bytes += tree.bytes();
+        }
+        report.resolved["trees_binned"] = static_cast<double>(forest_.binned);
+        report.resolved["trees_quadtree"] =
+            static_cast<double>(forest_.trees.size() - forest_.binned);
+        return report;
+    }
+
+private:
+    using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
+
+    void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                QueryContext& context, Query query) const {
+        auto& own = dynamic_cast<SearchContext&>(context);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            own.hits.clear();
+            for (const ConeTree& tree : forest_.trees)
+                tree.find(traced_.sets[tree.set_index()], points[i].position,
+                          points[i].geometric_normal, own.stack, own.hits, own.counts);
+            out[i] = {(light_.*query)(points[i], own.hits), black()};
+        }
+    }
+
+    TracedScene traced_;
+    Forest forest_;
+    BeamLight light_;
+};
+
+/// One tree to be built.
+struct TreePlan {
+    std::uint32_t set;
+    PlaneGroup group;
+};
+
+std::vector<TreePlan> plan_trees(const TracedScene& traced, BeamTreeParams::Leaf leaf) {
+    std::vector<TreePlan> plans;
+    for (std::uint32_t i = 0; i < traced.sets.size(); ++i)
+        for (PlaneGroup& group : leaf == BeamTreeParams::Leaf::k
+                                     ? fixed_planes(traced.sets[i])
+                                     : receiver_planes(traced.sets[i]))
+            plans.push_back({i, std::move(group)});
+    return plans;
+}
+
+Forest grow(const Scene& scene, const TracedScene& traced, const BeamTreeParams& params,
+            const RunOptions& options) {
+    ConeTreeSettings settings;
+    settings.bound = params.bound;
+    settings.spread_threshold = params.spread_threshold;
+    settings.merging = params.merging;
+    settings.reach = static_cast<double>(scene.diameter());
+    const std::vector<TreePlan> plans = plan_trees(traced, params.leaf);
+    std::vector<std::optional<ConeTree>> trees(plans.size());
+    std::vector<char> binned(plans.size());
+    parallel_for(options.threads, plans.size(), [&](std::size_t i, std::size_t) {
+        const BeamSet& set = traced.sets[plans[i].set];
+        const std::vector<GridPatch>& patches = traced.caster(set.caster).mesh.patches;
+        const bool regular =
+            params.hierarchy == BeamTreeParams::Tree::quadtree && !patches.empty();
+        binned[i] = regular ? 0 : 1;
+        const Hierarchy hierarchy =
+            regular ? quadtree(set, plans[i].group.beams, patches)
+                    : binned_hierarchy(set, plans[i].group.beams, scene.diameter() / 2);
+        trees[i].emplace(set, plans[i].set, hierarchy, settings, plans[i].group.normal);
+    });
+    Forest forest;
+    for (std::optional<ConeTree>& tree : trees) forest.trees.push_back(std::move(*tree));
+    forest.binned = static_cast<std::uint64_t>(std::count(binned.begin(), binned.end(), 1));
+    return forest;
+}
+
+}  // namespace
+
+std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
+                                              const RunOptions& options) {
+    TracedScene traced =
+        trace_scene(scene, {"beamtree", params.light_samples, params.mesh_resolution,
+                            params.max_bounces},
+                    options);
+    options.phase("tree");
+    Forest forest = grow(scene, traced, params, options);
+    return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));
+}
+
+}  // namespace caustics

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+
+#include "beamtree/cone_tree.h"
+#include "core/caustic_estimator.h"
+#include "core/json_reader.h"
+
+namespace caustics {
+
+/// `beamtree` [CC95]: the light that each specular polygon sends on is a beam; the beams of each
+/// light are found from a receiver point through a tree of cones. One specular event.
+struct BeamTreeParams {
+    enum class Tree {
+        quadtree,  ///< of a regular subdivision; casters that have none get `binned`, and the report
+                   ///< tells how many
+        binned
+    };
+    enum class Leaf {
+        n,  ///< caustic polygons on the plane across the receiver's normal, as the paper says
+        k   ///< on planes across a normal fixed for the tree
+    };
+    Bound bound = Bound::hybrid;
+    double spread_threshold = 10;  ///< of `hybrid` [degrees]
+    ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
+    Tree hierarchy = Tree::quadtree;
+    Leaf leaf = Leaf::n;
+    int light_samples = 16;     ///< for each area light
+    int mesh_resolution = 64;   ///< of exact casters; meshes are taken as they are
+    /// Specular events that light paths may have. 1 asks for just those that beams can give. From 2
+    /// on, a scene where more than a tenth of the flux goes on to a second event is refused, and
+    /// the report tells the share where it is less.
+    int max_bounces = 16;
+};
+
+/// Throws InputError for what cannot be used or is not built yet.
+void read(const JsonNode& node, BeamTreeParams& params);
+
+/// Phases "beams" and "tree". Counters: polygons, beams, trees, nodes, height (of the highest
+/// tree), cone_point_tests, beam_point_tests, beam_point_hits. Throws UnsupportedScene where too
+/// much light meets a second specular surface.
+std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
+                                              const RunOptions& options);
+
+}  // namespace caustics
