@@ -24,9 +24,9 @@ struct Beam {
     std::array<std::uint32_t, 4> corners;  ///< into BeamSet::rays; the last may be `none`
     Spectrum flux = black();               ///< through the polygon, after the event [W]
     float first_share = 1;                 ///< of the flux, in the first triangle
-    float offset = 0;            ///< rays to and from the polygon end this far off it [m]
-    std::uint32_t triangle = 0;  ///< of the caster's mesh
-    bool inside = false;         ///< goes through the medium behind the caster's front side
+    float offset = 0;                      ///< rays to and from the polygon end this far off it [m]
+    std::uint32_t triangle = 0;            ///< of the caster's mesh
+    bool inside = false;  ///< goes through the medium behind the caster's front side
 
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
 };

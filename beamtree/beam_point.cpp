@@ -78,8 +78,7 @@ ClippedCorner corner_at(const TestPlane& plane, const RayOnPlane& a, const RayOn
         return corner;
     }
     const double height = std::max(0.0, (1 - t) * a.height + t * b.height);
-    const double steepness =
-        std::max(least_steepness, (1 - t) * a.steepness + t * b.steepness);
+    const double steepness = std::max(least_steepness, (1 - t) * a.steepness + t * b.steepness);
     const double s = height / steepness;
     corner.at = (1 - t) * plane.project(a.ray->position, s, a.ray->direction) +
                 t * plane.project(b.ray->position, s, b.ray->direction);
@@ -100,11 +99,9 @@ void clip_edge(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays, st
         if (a > 0 && b <= 0) end = std::min(end, a / (a - b));
     };
     keep_positive(rays[first].height, rays[last].height);
-    keep_positive(rays[first].steepness - least_steepness,
-                  rays[last].steepness - least_steepness);
+    keep_positive(rays[first].steepness - least_steepness, rays[last].steepness - least_steepness);
     if (!(begin < end)) return;
-    corners[count] =
-        corner_at(plane, rays[first], rays[last], forward ? begin : end, first, last);
+    corners[count] = corner_at(plane, rays[first], rays[last], forward ? begin : end, first, last);
     corners[count + 1] =
         corner_at(plane, rays[first], rays[last], forward ? end : begin, first, last);
     count += 2;
@@ -124,8 +121,8 @@ Vec3d weights_at_origin(const std::array<ClippedCorner, 6>& corners, std::size_t
         const Vec3d l = Vec3d(cross(b, c), cross(c, a), cross(a, b)) / area;
         if (l.minCoeff() <= best_least) continue;
         best_least = l.minCoeff();
-        best = l[0] * corners[0].weights + l[1] * corners[i].weights +
-               l[2] * corners[i + 1].weights;
+        best =
+            l[0] * corners[0].weights + l[1] * corners[i].weights + l[2] * corners[i + 1].weights;
     }
     best = best.cwiseMax(0);
     return best.sum() > 0 ? Vec3d(best / best.sum()) : Vec3d::Constant(1.0 / 3);

@@ -23,6 +23,7 @@ struct BentLight {
 struct Corner {
     std::uint32_t ray;
     Spectrum weight;
+    Vec3 normal;
 };
 
 class BeamTracer {
@@ -59,8 +60,9 @@ private:
         bent.front = ng.dot(w) > 0;
         const SpecularSplit split = split_specular(bsdf_, ng, ns, w);
         const std::optional<Spectrum> medium = medium_absorption(bsdf_, ng, w);
-        const Spectrum arriving = strength_along(light_, w) *
-                                  segment_transmittance({}, medium, distance_from(light_, position));
+        const Spectrum arriving =
+            strength_along(light_, w) *
+            segment_transmittance({}, medium, distance_from(light_, position));
         bent.direction = {split.reflected, split.refracted};
         bent.weight = {split.reflected_weight * arriving, split.refracted_weight * arriving};
         return bent;
@@ -103,9 +105,8 @@ private:
     Corner shared(std::uint32_t vertex, Event event) {
         const BentLight& bent = at_vertex_[vertex];
         std::uint32_t& ray = ray_of_vertex_[event][vertex];
-        if (ray == Beam::none)
-            ray = add_ray(event, mesh_.positions[vertex], bent.direction[event]);
-        return {ray, bent.weight[event]};
+        if (ray == Beam::none) ray = add_ray(event, mesh_.positions[vertex], bent.direction[event]);
+        return {ray, bent.weight[event], mesh_.normals[vertex]};
     }
 
     std::uint32_t add_ray(Event event, const Vec3& position, const Vec3& direction) {
@@ -132,13 +133,14 @@ private:
     Corner cut_edge(std::uint32_t good, std::uint32_t bad, Event event, const Vec3& ng,
                     bool front) {
         Vec3 position = mesh_.positions[good];
+        Vec3 normal = mesh_.normals[good];
         BentLight bent = at_vertex_[good];
         float low = 0;
         float high = 1;
         for (int step = 0; step < 20; ++step) {
             const float t = (low + high) / 2;
-            const Vec3 p = mesh_.positions[good] +
-                           t * (mesh_.positions[bad] - mesh_.positions[good]);
+            const Vec3 p =
+                mesh_.positions[good] + t * (mesh_.positions[bad] - mesh_.positions[good]);
             const Vec3 n = (1 - t) * mesh_.normals[good] + t * mesh_.normals[bad];
             const Vec3 unit = n.squaredNorm() > 0 ? Vec3(n.normalized()) : n;
             const BentLight here = bend(p, unit, unit);
@@ -148,9 +150,10 @@ private:
             }
             low = t;
             position = p;
+            normal = unit;
             bent = here;
         }
-        return {add_ray(event, position, bent.direction[event]), bent.weight[event]};
+        return {add_ray(event, position, bent.direction[event]), bent.weight[event], normal};
     }
 
     void add_beam(const std::vector<Corner>& corners, std::uint32_t triangle, Event event,
@@ -164,16 +167,53 @@ private:
         beam.offset = surface_offset_ + distance_to_exact_surface(triangle);
         std::array<Spectrum, 2> flux = {black(), black()};
         for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
-            const auto rays = set.triangle(beam, i);
-            const auto omega = static_cast<float>(
-                measure(light_, rays[0]->position, rays[1]->position, rays[2]->position));
-            flux[i] = (corners[0].weight + corners[1 + i].weight + corners[2 + i].weight) *
-                      (omega / 3);
+            flux[i] = triangle_flux({corners[0], corners[1 + i], corners[2 + i]}, event);
         }
         beam.flux = flux[0] + flux[1];
         if (!(beam.flux.mean() > 0)) return;
         beam.first_share = flux[0].mean() / beam.flux.mean();
         set.beams.push_back(beam);
+    }
+
+    // The mean of the corners' weights is right to second order where they are alike. Near total
+    // reflection, where Fresnel's shares run like a root, the surface is asked inside as well.
+    Spectrum triangle_flux(const std::array<Corner, 3>& corners, Event event) const {
+        const std::vector<VertexRay>& rays = sets_[event].rays;
+        const Vec3& a = rays[corners[0].ray].position;
+        const Vec3& b = rays[corners[1].ray].position;
+        const Vec3& c = rays[corners[2].ray].position;
+        float least = corners[0].weight.mean();
+        float most = least;
+        for (const Corner& corner : corners) {
+            least = std::min(least, corner.weight.mean());
+            most = std::max(most, corner.weight.mean());
+        }
+        if (most <= 1.5F * least)
+            return (corners[0].weight + corners[1].weight + corners[2].weight) *
+                   static_cast<float>(measure(light_, a, b, c) / 3);
+        const std::array<Vec3, 3> normals = {corners[0].normal, corners[1].normal,
+                                             corners[2].normal};
+        const auto at = [&](const Vec3& l) -> Vec3 { return l[0] * a + l[1] * b + l[2] * c; };
+        const auto piece = [&](const Vec3& u, const Vec3& v, const Vec3& w) -> Spectrum {
+            const Vec3 l = (u + v + w) / 3;
+            const Vec3 n = l[0] * normals[0] + l[1] * normals[1] + l[2] * normals[2];
+            const Vec3 unit = n.squaredNorm() > 0 ? Vec3(n.normalized()) : n;
+            return bend(at(l), unit, unit).weight[event] *
+                   static_cast<float>(measure(light_, at(u), at(v), at(w)));
+        };
+        constexpr int n = 8;
+        const auto corner = [](int i, int j) -> Vec3 {
+            const Vec2 share(static_cast<float>(i) / n, static_cast<float>(j) / n);
+            return {1 - share.x() - share.y(), share.x(), share.y()};
+        };
+        Spectrum sum = black();
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; i + j < n; ++j) {
+                sum += piece(corner(i, j), corner(i + 1, j), corner(i, j + 1));
+                if (i + j + 2 <= n)
+                    sum += piece(corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
+            }
+        return sum;
     }
 
     // Bound of how far the exact shape bulges from its triangle: |edge| |turn of the normal| / 8 for

@@ -34,9 +34,7 @@ struct Forest {
 class BeamTree final : public CausticEstimator {
 public:
     BeamTree(const Scene& scene, TracedScene traced, Forest forest)
-        : traced_(std::move(traced)),
-          forest_(std::move(forest)),
-          light_(scene, traced_.sets) {}
+        : traced_(std::move(traced)), forest_(std::move(forest)), light_(scene, traced_.sets) {}
 
     std::unique_ptr<QueryContext> make_context() const override {
         return std::make_unique<SearchContext>();
@@ -96,9 +94,8 @@ struct TreePlan {
 std::vector<TreePlan> plan_trees(const TracedScene& traced, BeamTreeParams::Leaf leaf) {
     std::vector<TreePlan> plans;
     for (std::uint32_t i = 0; i < traced.sets.size(); ++i)
-        for (PlaneGroup& group : leaf == BeamTreeParams::Leaf::k
-                                     ? fixed_planes(traced.sets[i])
-                                     : receiver_planes(traced.sets[i]))
+        for (PlaneGroup& group : leaf == BeamTreeParams::Leaf::k ? fixed_planes(traced.sets[i])
+                                                                 : receiver_planes(traced.sets[i]))
             plans.push_back({i, std::move(group)});
     return plans;
 }
@@ -116,8 +113,7 @@ Forest grow(const Scene& scene, const TracedScene& traced, const BeamTreeParams&
     parallel_for(options.threads, plans.size(), [&](std::size_t i, std::size_t) {
         const BeamSet& set = traced.sets[plans[i].set];
         const std::vector<GridPatch>& patches = traced.caster(set.caster).mesh.patches;
-        const bool regular =
-            params.hierarchy == BeamTreeParams::Tree::quadtree && !patches.empty();
+        const bool regular = params.hierarchy == BeamTreeParams::Tree::quadtree && !patches.empty();
         binned[i] = regular ? 0 : 1;
         const Hierarchy hierarchy =
             regular ? quadtree(set, plans[i].group.beams, patches)
@@ -134,10 +130,9 @@ Forest grow(const Scene& scene, const TracedScene& traced, const BeamTreeParams&
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
-    TracedScene traced =
-        trace_scene(scene, {"beamtree", params.light_samples, params.mesh_resolution,
-                            params.max_bounces},
-                    options);
+    TracedScene traced = trace_scene(
+        scene, {"beamtree", params.light_samples, params.mesh_resolution, params.max_bounces},
+        options);
     options.phase("tree");
     Forest forest = grow(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));

@@ -25,10 +25,10 @@ struct BeamTreeParams {
     ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
     Tree hierarchy = Tree::quadtree;
     Leaf leaf = Leaf::n;
-    int light_samples = 16;     ///< for each area light
-    int mesh_resolution = 64;   ///< of exact casters; meshes are taken as they are
+    int light_samples = 16;    ///< for each area light
+    int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
     /// Specular events that light paths may have. 1 asks for just those that beams can give. From 2
-    /// on, a scene where more than a tenth of the flux goes on to a second event is refused, and
+    /// on, a scene where more than half of the flux goes on to a second event is refused, and
     /// the report tells the share where it is less.
     int max_bounces = 16;
 };

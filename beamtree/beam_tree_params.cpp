@@ -36,8 +36,8 @@ void read(const JsonNode& node, BeamTreeParams& params) {
                                ? BeamTreeParams::Tree::quadtree
                                : BeamTreeParams::Tree::binned;
     if (const auto leaf = node.find("leaf"))
-        params.leaf = leaf->as_choice({"n", "k"}) == 0 ? BeamTreeParams::Leaf::n
-                                                       : BeamTreeParams::Leaf::k;
+        params.leaf =
+            leaf->as_choice({"n", "k"}) == 0 ? BeamTreeParams::Leaf::n : BeamTreeParams::Leaf::k;
     if (const auto intensity = node.find("intensity"))
         if (intensity->as_choice({"area", "refined"}) == 1)
             intensity->fail("\"refined\" is not built yet (built: \"area\")");

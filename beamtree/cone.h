@@ -17,7 +17,7 @@ namespace caustics {
 /// All of them rest on one fact: an accepted point is X + V with X in the polygon and V a positive
 /// combination of its vertex rays' directions, so any convex set that holds the vertex rays will do.
 enum class Bound {
-    single,       ///< a cap of ray directions against the cap of directions to the point (figs. 3, 13)
+    single,  ///< a cap of ray directions against the cap of directions to the point (figs. 3, 13)
     double_cone,  ///< two overlaid cones (figs. 6-8), as r + |x| tan(spread)
     hybrid,       ///< single below the spread threshold, double from there on
     sphere_swept  ///< the single cone made exact and cheap: a ball swept along a cone
@@ -70,9 +70,9 @@ struct DoubleCone {
     Vec3 neck = Vec3::Zero();
     float radius = 0;
     Vec3 axis = Vec3::UnitZ();
-    float tangent = -1;   ///< of the spread; < 0: none can be made, the swept sphere serves alone
-    float nearest = 0;    ///< same-side test: no ray starts before this axial distance from the neck
-    float width = 0;      ///< of the widest beam at the neck, across the axis [m]
+    float tangent = -1;  ///< of the spread; < 0: none can be made, the swept sphere serves alone
+    float nearest = 0;   ///< same-side test: no ray starts before this axial distance from the neck
+    float width = 0;     ///< of the widest beam at the neck, across the axis [m]
     float spreading = 0;  ///< largest difference of slopes within a beam
 
     bool exists() const { return tangent >= 0; }

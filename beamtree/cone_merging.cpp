@@ -74,8 +74,8 @@ std::optional<ConeSection> cone_section(const Vec3d& apex, const Vec3d& cone_axi
     const double h = std::abs(height);
     section.major = h * std::sin(spread) * std::cos(spread) / k;
     section.minor = h * std::sin(spread) / std::sqrt(k);
-    section.centre = apex + height * plane_axis +
-                     height * sin_between * cos_between / k * section.major_axis;
+    section.centre =
+        apex + height * plane_axis + height * sin_between * cos_between / k * section.major_axis;
     return section;
 }
 
@@ -117,8 +117,8 @@ MergedCone merge_cones(std::span<const MergedCone> children, const NodeRays& ray
     const Eigen::AlignedBox2d box = box_at(neck);
     if (!bounded || box.isEmpty()) return {parent.cap, {}};
     DoubleCone& wide = parent.wide;
-    const Vec3d centre = plane.origin + neck * plane.axis + box.center().x() * plane.s +
-                         box.center().y() * plane.t;
+    const Vec3d centre =
+        plane.origin + neck * plane.axis + box.center().x() * plane.s + box.center().y() * plane.t;
     // Widths of beams are those at the first neck, moved to this one.
     wide.width += static_cast<float>(std::abs(neck) * static_cast<double>(wide.spreading));
     wide.nearest -= static_cast<float>(neck);

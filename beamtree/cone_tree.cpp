@@ -22,8 +22,8 @@ NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
     for (const std::uint32_t index : beams) {
         const Beam& beam = set.beams[index];
         for (std::size_t i = 0; i < beam.triangle_count(); ++i)
-            rays.triangles.push_back({add(beam.corners[0]), add(beam.corners[1 + i]),
-                                      add(beam.corners[2 + i])});
+            rays.triangles.push_back(
+                {add(beam.corners[0]), add(beam.corners[1 + i]), add(beam.corners[2 + i])});
     }
     return rays;
 }
@@ -50,11 +50,11 @@ ConeTree::ConeTree(const BeamSet& set, std::uint32_t set_index, const Hierarchy&
         Cap cap;
         DoubleCone wide;
         if (from_cones) {
-            merged[i] = from.child_count == 0
-                            ? leaf_cone(rays, settings.reach)
-                            : merge_cones(std::span(merged).subspan(from.first_child,
-                                                                    from.child_count),
-                                          rays, settings.reach);
+            merged[i] =
+                from.child_count == 0
+                    ? leaf_cone(rays, settings.reach)
+                    : merge_cones(std::span(merged).subspan(from.first_child, from.child_count),
+                                  rays, settings.reach);
             cap = merged[i].cap;
             wide = merged[i].wide;
         } else {
@@ -72,8 +72,7 @@ ConeTree::ConeTree(const BeamSet& set, std::uint32_t set_index, const Hierarchy&
     }
 }
 
-void ConeTree::add_bound(Node& node, const NodeRays& rays, const Cap& cap,
-                         const DoubleCone& wide) {
+void ConeTree::add_bound(Node& node, const NodeRays& rays, const Cap& cap, const DoubleCone& wide) {
     if (node.kind == Bound::single) {
         node.bound = static_cast<std::uint32_t>(singles_.size());
         singles_.emplace_back(rays, cap);
@@ -113,8 +112,8 @@ bool ConeTree::may_hold(const Node& node, const BeamSet& set, const TestPlane& p
     const SweptSphere& swept = swept_[node.bound];
     if (node.kind == Bound::double_cone && doubles_[node.bound].exists()) {
         // Polygons that the plane cuts are clipped, which the double cone does not reckon with.
-        const bool cut = std::abs(plane.height(swept.centre)) <=
-                         static_cast<double>(swept.radius) * (1 + 1e-6);
+        const bool cut =
+            std::abs(plane.height(swept.centre)) <= static_cast<double>(swept.radius) * (1 + 1e-6);
         if (!cut)
             if (const auto holds = doubles_[node.bound].holds(plane.point(), plane.normal()))
                 return *holds;

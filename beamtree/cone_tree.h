@@ -53,8 +53,8 @@ private:
     struct Node {
         std::uint32_t first_child = 0;  ///< 0: a leaf
         std::uint32_t child_count = 0;
-        std::uint32_t beam = 0;    ///< of a leaf
-        std::uint32_t bound = 0;   ///< into the arrays of its kind
+        std::uint32_t beam = 0;   ///< of a leaf
+        std::uint32_t bound = 0;  ///< into the arrays of its kind
         Bound kind = Bound::single;
     };
     void add_bound(Node& node, const NodeRays& rays, const Cap& cap, const DoubleCone& wide);

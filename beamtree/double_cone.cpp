@@ -53,8 +53,8 @@ DoubleCone double_cone(const NodeRays& rays, const Cap& cap, double reach) {
         for (std::size_t i = 0; i < lines.size(); ++i) points[i] = lines[i].at(depth);
         return smallest_circle(points);
     };
-    const double neck = find_neck([&](double depth) { return circle_at(depth).radius; }, first,
-                                  last + reach);
+    const double neck =
+        find_neck([&](double depth) { return circle_at(depth).radius; }, first, last + reach);
     const Circle circle = circle_at(neck);
     double width = 0;
     double spreading = 0;

@@ -77,7 +77,8 @@ private:
         const std::uint32_t column = (c.column0 + c.column1 + 1) / 2;
         const std::uint32_t row = (c.row0 + c.row1 + 1) / 2;
         for (const auto& [r0, r1] : {std::pair(c.row0, row), std::pair(row, c.row1)})
-            for (const auto& [c0, c1] : {std::pair(c.column0, column), std::pair(column, c.column1)})
+            for (const auto& [c0, c1] :
+                 {std::pair(c.column0, column), std::pair(column, c.column1)})
                 if (c0 < c1 && r0 < r1) parts.push_back({c.patch, c0, c1, r0, r1});
         return parts;
     }
@@ -176,10 +177,9 @@ private:
             best_bin = bin;
         }
         if (best_axis < 0) return beams.size() / 2;  // all at one place
-        const auto middle =
-            std::stable_partition(beams.begin(), beams.end(), [&](std::uint32_t beam) {
-                return bin_of(beam, box, best_axis) <= best_bin;
-            });
+        const auto middle = std::stable_partition(
+            beams.begin(), beams.end(),
+            [&](std::uint32_t beam) { return bin_of(beam, box, best_axis) <= best_bin; });
         return static_cast<std::size_t>(middle - beams.begin());
     }
 

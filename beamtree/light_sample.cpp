@@ -33,8 +33,7 @@ void sample_area_light(const Scene& scene, const AreaLight& light, LightSample s
 
 }  // namespace
 
-std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light,
-                                       std::uint64_t seed) {
+std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed) {
     std::vector<LightSample> samples;
     for (std::uint32_t i = 0; i < scene.lights().size(); ++i) {
         const Light& light = scene.lights()[i];
@@ -49,8 +48,7 @@ std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light,
             sample.travel = far->direction;
             sample.strength = far->irradiance;
             // Where core/light_path starts the rays of a directional light.
-            sample.start =
-                scene.bounds().center().dot(far->direction) - 0.505F * scene.diameter();
+            sample.start = scene.bounds().center().dot(far->direction) - 0.505F * scene.diameter();
             samples.push_back(sample);
         } else {
             sample_area_light(scene, std::get<AreaLight>(light), sample, per_area_light,

@@ -11,14 +11,14 @@ namespace caustics {
 struct LightSample {
     enum class Kind { point, directional, area };
     Kind kind = Kind::point;
-    Vec3 position = Vec3::Zero();      ///< of a point or area sample
-    Vec3 travel = Vec3::Zero();        ///< of a directional light: unit, the way the light goes
-    Vec3 normal = Vec3::Zero();        ///< unit, of the area light there; else zero
-    float offset = 0;                  ///< of rays that leave the area light [m]
-    float start = 0;                   ///< directional: where its rays begin, along `travel` [m]
-    Spectrum strength = black();       ///< point [W/sr]; area [W/sr] along the normal;
-                                       ///< directional [W/m^2] across the direction
-    std::uint32_t light = 0;           ///< index into Scene::lights
+    Vec3 position = Vec3::Zero();  ///< of a point or area sample
+    Vec3 travel = Vec3::Zero();    ///< of a directional light: unit, the way the light goes
+    Vec3 normal = Vec3::Zero();    ///< unit, of the area light there; else zero
+    float offset = 0;              ///< of rays that leave the area light [m]
+    float start = 0;               ///< directional: where its rays begin, along `travel` [m]
+    Spectrum strength = black();   ///< point [W/sr]; area [W/sr] along the normal;
+                                   ///< directional [W/m^2] across the direction
+    std::uint32_t light = 0;       ///< index into Scene::lights
 };
 
 /// One sample a point or directional light, `per_area_light` samples an area light: a rank-1 lattice

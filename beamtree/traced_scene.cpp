@@ -7,15 +7,14 @@
 namespace caustics {
 namespace {
 
-// Beyond this share of the light a picture without it would mislead.
-constexpr double most_lost = 0.1;
+// With most of the light missing it would be another picture. A mirror ring loses a fifth.
+constexpr double most_lost = 0.5;
 
 void refuse_several_events(const BeamRequest& request, const FluxBalance& balance) {
     if (request.max_bounces == 1 || balance.share() <= most_lost) return;
     const auto percent = std::to_string(std::lround(100 * balance.share()));
     throw UnsupportedScene(
-        request.method +
-        ": beams follow one specular event, and here " + percent +
+        request.method + ": beams follow one specular event, and here " + percent +
         " % of the light they carry goes on to another specular surface (give max_bounces=1 for "
         "the paths with one event alone, or use photonmap)");
 }
@@ -57,8 +56,7 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
     throw std::logic_error("no caster of that shape");
 }
 
-TracedScene trace_scene(const Scene& scene, const BeamRequest& request,
-                        const RunOptions& options) {
+TracedScene trace_scene(const Scene& scene, const BeamRequest& request, const RunOptions& options) {
     options.phase("beams");
     TracedScene traced;
     traced.casters = caster_meshes(scene, request.mesh_resolution);

@@ -29,7 +29,7 @@ struct TracedScene {
     const CasterMesh& caster(std::uint32_t shape) const;
 };
 
-/// Phase "beams". Throws UnsupportedScene where more than a tenth of the flux goes on to another
+/// Phase "beams". Throws UnsupportedScene where more than half of the flux goes on to another
 /// specular surface, unless the request's max_bounces is 1.
 TracedScene trace_scene(const Scene& scene, const BeamRequest& request, const RunOptions& options);
 

@@ -46,16 +46,24 @@ json describe_params(const PhotonMapParams& p) {
 json describe_params(const BeamTreeParams& p) {
     constexpr const char* bounds[] = {"single", "double", "hybrid", "sphere_swept"};
     const bool rays = p.merging == ConeTreeSettings::Merging::rays;
-    json all = {{"bound", bounds[static_cast<std::size_t>(p.bound)]},
-                {"merging", rays ? "rays" : "cones"},
-                {"hierarchy", p.hierarchy == BeamTreeParams::Tree::quadtree ? "quadtree" : "binned"},
-                {"leaf", p.leaf == BeamTreeParams::Leaf::n ? "n" : "k"},
-                {"intensity", "area"},
-                {"light_samples", p.light_samples},
-                {"mesh_resolution", p.mesh_resolution},
-                {"max_bounces", p.max_bounces}};
+    json all = {
+        {"bound", bounds[static_cast<std::size_t>(p.bound)]},
+        {"merging", rays ? "rays" : "cones"},
+        {"hierarchy", p.hierarchy == BeamTreeParams::Tree::quadtree ? "quadtree" : "binned"},
+        {"leaf", p.leaf == BeamTreeParams::Leaf::n ? "n" : "k"},
+        {"intensity", "area"},
+        {"light_samples", p.light_samples},
+        {"mesh_resolution", p.mesh_resolution},
+        {"max_bounces", p.max_bounces}};
     if (p.bound == Bound::hybrid) all["spread_threshold"] = p.spread_threshold;
     return all;
+}
+
+json describe_params(const CausticPolygonsParams& p) {
+    return {{"light_samples", p.light_samples},
+            {"mesh_resolution", p.mesh_resolution},
+            {"receiver_resolution", p.receiver_resolution},
+            {"max_bounces", p.max_bounces}};
 }
 
 template <typename Params>
@@ -73,7 +81,8 @@ constexpr Entry entries[] = {{"none", read_params<NoneParams>},
                              {"pathtrace", read_params<PathTraceParams>},
                              {"lighttrace", read_params<LightTraceParams>},
                              {"photonmap", read_params<PhotonMapParams>},
-                             {"beamtree", read_params<BeamTreeParams>}};
+                             {"beamtree", read_params<BeamTreeParams>},
+                             {"causticpolygons", read_params<CausticPolygonsParams>}};
 static_assert(std::size(entries) == std::variant_size_v<MethodParams>);
 
 /// The same method where building it costs next to nothing: what it can serve does not depend on
@@ -84,6 +93,10 @@ MethodParams with_least_work(MethodParams params) {
         map->emitted = std::min<std::uint64_t>(map->emitted, 1);
     }
     if (auto* const beams = std::get_if<BeamTreeParams>(&params)) beams->light_samples = 1;
+    if (auto* const polygons = std::get_if<CausticPolygonsParams>(&params)) {
+        polygons->light_samples = 1;
+        polygons->receiver_resolution = 2;
+    }
     return params;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "beamtree/beam_tree.h"
+#include "beamtree/caustic_polygons.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
 #include "core/reference/light_trace.h"
@@ -18,7 +19,7 @@ namespace caustics {
 
 /// The only place that names all methods: one alternative each, in the order of method_names().
 using MethodParams = std::variant<NoneParams, PathTraceParams, LightTraceParams, PhotonMapParams,
-                                  BeamTreeParams>;
+                                  BeamTreeParams, CausticPolygonsParams>;
 
 struct Method {
     std::string name;

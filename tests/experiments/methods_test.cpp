@@ -28,6 +28,12 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
         {"pathtrace", {"spp=7", "max_bounces=3"}},
         {"lighttrace", {"paths=1234", "radius=0.25"}},
         {"photonmap", {}},
+        {"beamtree", {}},
+        {"beamtree",
+         {"bound=double", "merging=cones", "hierarchy=binned", "leaf=k", "light_samples=3",
+          "mesh_resolution=20", "max_bounces=1"}},
+        {"beamtree", {"spread_threshold=22.5"}},
+        {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
         {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}}};
     for (const auto& [name, params] : cases) {
         const nlohmann::json described = describe(method(name, params));
@@ -50,8 +56,10 @@ TEST(Methods, TakeValuesAsJsonOrElseAsStrings) {
 }
 
 TEST(Methods, NameTheAlternatives) {
-    EXPECT_EQ(error("photonmpa", {}),
-              "unknown method \"photonmpa\" (known: none, pathtrace, lighttrace, photonmap)");
+    EXPECT_EQ(
+        error("photonmpa", {}),
+        "unknown method \"photonmpa\" (known: none, pathtrace, lighttrace, photonmap, beamtree, "
+        "causticpolygons)");
     const std::string unknown = error("photonmap", {"photns=10"});
     EXPECT_NE(unknown.find("photns"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("photons"), std::string::npos) << unknown;

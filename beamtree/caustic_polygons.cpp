@@ -1,0 +1,210 @@
+#include "beamtree/caustic_polygons.h"
+
+#include <algorithm>
+
+#include "beamtree/beam_light.h"
+#include "beamtree/receiver_polygons.h"
+#include "beamtree/traced_scene.h"
+#include "core/parallel.h"
+
+namespace caustics {
+
+namespace {
+
+/// A beam that meets a diffuse polygon.
+struct BeamNumber {
+    std::uint32_t set;
+    std::uint32_t beam;
+};
+
+/// The beams that meet one diffuse polygon, from either of its sides.
+class Sweep {
+public:
+    Sweep(const ReceiverPolygon& polygon, const std::vector<BeamSet>& sets)
+        : plane_(polygon.a, polygon.normal), sets_(sets) {
+        for (const Vec3& p : {polygon.a, polygon.b, polygon.c})
+            box_.extend(plane_.project(p, 0, Vec3::Zero()));
+        // Points of the polygon are its own to rounding.
+        const double margin = 1e-5 * (1 + box_.diagonal().norm());
+        box_.min().array() -= margin;
+        box_.max().array() += margin;
+    }
+
+    std::vector<BeamNumber> run() {
+        std::vector<BeamNumber> found;
+        for (std::uint32_t s = 0; s < sets_.size(); ++s) {
+            project_rays(sets_[s]);
+            for (std::uint32_t i = 0; i < sets_[s].beams.size(); ++i)
+                if (meets(sets_[s].beams[i])) found.push_back({s, i});
+        }
+        return found;
+    }
+
+private:
+    struct RayFoot {
+        Vec2d at = Vec2d::Zero();
+        double height = 0;
+        double steepness = 0;
+        bool comes_down = false;  ///< to the plane, from its own side
+    };
+
+    void project_rays(const BeamSet& set) {
+        feet_.clear();
+        for (const VertexRay& ray : set.rays) {
+            RayFoot foot;
+            foot.height = plane_.height(ray.position);
+            foot.steepness = plane_.steepness(ray.direction);
+            foot.comes_down = foot.height * foot.steepness > 0;
+            if (foot.comes_down)
+                foot.at = plane_.project(ray.position, foot.height / foot.steepness, ray.direction);
+            feet_.push_back(foot);
+        }
+    }
+
+    // Whether the caustic polygon's box touches the diffuse polygon's. Beams that the plane may cut
+    // are kept for the point test to decide.
+    bool meets(const Beam& beam) const {
+        Eigen::AlignedBox2d box;
+        Eigen::AlignedBox2d sides;  // of (height, steepness)
+        bool whole = true;
+        for (const std::uint32_t corner : beam.corners) {
+            if (corner == Beam::none) continue;
+            const RayFoot& foot = feet_[corner];
+            box.extend(foot.at);
+            sides.extend(Vec2d(foot.height, foot.steepness));
+            whole = whole && foot.comes_down;
+        }
+        const bool from_above = sides.max().minCoeff() > 0;
+        const bool from_below = sides.min().maxCoeff() < 0;
+        if (!from_above && !from_below) return false;
+        return !whole || (from_above && from_below) || box.intersects(box_);
+    }
+
+    TestPlane plane_;
+    const std::vector<BeamSet>& sets_;
+    Eigen::AlignedBox2d box_;
+    std::vector<RayFoot> feet_;
+};
+
+/// A thread's scratch and counters.
+class PolygonContext final : public QueryContext {
+public:
+    void add_to(Counters& counters) const override {
+        counters["beam_point_tests"] += tests;
+        counters["beam_point_hits"] += hit_count;
+    }
+
+    std::vector<BeamHit> hits;
+    std::uint64_t tests = 0;
+    std::uint64_t hit_count = 0;
+};
+
+class CausticPolygons final : public CausticEstimator {
+public:
+    CausticPolygons(const Scene& scene, TracedScene traced, ReceiverPolygons receivers,
+                    std::vector<std::vector<BeamNumber>> lists)
+        : traced_(std::move(traced)),
+          receivers_(std::move(receivers)),
+          lists_(std::move(lists)),
+          light_(scene, traced_.sets) {}
+
+    std::unique_ptr<QueryContext> make_context() const override {
+        return std::make_unique<PolygonContext>();
+    }
+    void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                  QueryContext& context) const override {
+        answer(points, out, context, &BeamLight::radiance);
+    }
+    void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                    QueryContext& context) const override {
+        answer(points, out, context, &BeamLight::irradiance);
+    }
+
+    BuildReport build_report() const override {
+        BuildReport report;
+        traced_.add_to(report);
+        report.bytes += receivers_.bytes();
+        report.counters["receiver_polygons"] = receivers_.polygons().size();
+        report.counters["beam_polygon_tests"] = receivers_.polygons().size() * traced_.beam_count();
+        std::uint64_t& pairs = report.counters["caustic_polygons"];
+        for (const std::vector<BeamNumber>& list : lists_) pairs += list.size();
+        report.bytes += pairs * sizeof(BeamNumber);
+        return report;
+    }
+
+private:
+    using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
+
+    void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                QueryContext& context, Query query) const {
+        auto& own = dynamic_cast<PolygonContext&>(context);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            find(points[i], own);
+            out[i] = {(light_.*query)(points[i], own.hits), black()};
+        }
+    }
+
+    // The caustic polygons that hold the point, on the plane of its diffuse polygon.
+    void find(const ReceiverPoint& point, PolygonContext& own) const {
+        own.hits.clear();
+        if (receivers_.polygons().empty()) return;
+        const std::uint32_t index = receivers_.nearest(point.position, point.geometric_normal);
+        const ReceiverPolygon& polygon = receivers_.polygons()[index];
+        const bool front = polygon.normal.dot(point.geometric_normal) > 0;
+        const Vec3 normal = front ? polygon.normal : Vec3(-polygon.normal);
+        const float off = normal.dot(point.position - polygon.a);
+        const TestPlane plane(point.position - off * normal, normal);
+        std::array<BeamHit, 2> found;
+        for (const BeamNumber& number : lists_[index]) {
+            const BeamSet& set = traced_.sets[number.set];
+            const int count = test_beam(set, set.beams[number.beam], plane, found);
+            ++own.tests;
+            own.hit_count += count > 0 ? 1 : 0;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+                found[i].set = number.set;
+                found[i].beam = number.beam;
+                // The polygon stands for the surface: its irradiance is the surface's.
+                found[i].plane_normal = point.geometric_normal;
+                own.hits.push_back(found[i]);
+            }
+        }
+    }
+
+    TracedScene traced_;
+    ReceiverPolygons receivers_;
+    std::vector<std::vector<BeamNumber>> lists_;  ///< one a diffuse polygon
+    BeamLight light_;
+};
+
+}  // namespace
+
+void read(const JsonNode& node, CausticPolygonsParams& params) {
+    if (const auto samples = node.find("light_samples"))
+        params.light_samples = static_cast<int>(samples->as_integer_in(1, 65'536));
+    if (const auto resolution = node.find("mesh_resolution"))
+        params.mesh_resolution = static_cast<int>(resolution->as_integer_in(2, 4096));
+    if (const auto resolution = node.find("receiver_resolution"))
+        params.receiver_resolution = static_cast<int>(resolution->as_integer_in(2, 4096));
+    if (const auto max_bounces = node.find("max_bounces"))
+        params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, 1'000));
+    node.finish();
+}
+
+std::unique_ptr<const CausticEstimator> build(const Scene& scene,
+                                              const CausticPolygonsParams& params,
+                                              const RunOptions& options) {
+    TracedScene traced = trace_scene(
+        scene,
+        {"causticpolygons", params.light_samples, params.mesh_resolution, params.max_bounces},
+        options);
+    options.phase("polygons");
+    ReceiverPolygons receivers(scene, params.receiver_resolution);
+    std::vector<std::vector<BeamNumber>> lists(receivers.polygons().size());
+    parallel_for(options.threads, lists.size(), [&](std::size_t i, std::size_t) {
+        lists[i] = Sweep(receivers.polygons()[i], traced.sets).run();
+    });
+    return std::make_unique<CausticPolygons>(scene, std::move(traced), std::move(receivers),
+                                             std::move(lists));
+}
+
+}  // namespace caustics

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "core/caustic_estimator.h"
+#include "core/json_reader.h"
+
+namespace caustics {
+
+/// `causticpolygons` [Watt 1990, as CC95 tells it]: every beam is swept through every diffuse polygon
+/// of the polygonised receivers, and those it meets keep it; a point is lit by the caustic polygons
+/// that hold it among those of its own diffuse polygon. The same beams, visibility and flux as
+/// `beamtree`; cost n_s n_d n_l. One specular event.
+struct CausticPolygonsParams {
+    int mesh_resolution = 64;      ///< of exact casters
+    int receiver_resolution = 16;  ///< of exact receivers; meshes are taken as they are
+    int light_samples = 16;        ///< for each area light
+    int max_bounces = 16;          ///< as BeamTreeParams::max_bounces
+};
+
+/// Throws InputError for what cannot be used.
+void read(const JsonNode& node, CausticPolygonsParams& params);
+
+/// Phases "beams" and "polygons". Counters: polygons, receiver_polygons, beams, beam_polygon_tests
+/// (one a beam and diffuse polygon), caustic_polygons (pairs that meet), beam_point_tests,
+/// beam_point_hits. Throws UnsupportedScene as `beamtree`.
+std::unique_ptr<const CausticEstimator> build(const Scene& scene,
+                                              const CausticPolygonsParams& params,
+                                              const RunOptions& options);
+
+}  // namespace caustics

@@ -1,0 +1,226 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "beamtree/beam_tree.h"
+#include "core/tessellate.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/fresnel.h"
+
+namespace caustics {
+namespace {
+
+// Every choice of the beam tree against formulas, point by point, within the 0.5 %.
+std::vector<BeamTreeParams> all_params() {
+    std::vector<BeamTreeParams> all;
+    for (const auto leaf : {BeamTreeParams::Leaf::n, BeamTreeParams::Leaf::k})
+        for (const Bound bound :
+             {Bound::single, Bound::double_cone, Bound::hybrid, Bound::sphere_swept}) {
+            BeamTreeParams params;
+            params.leaf = leaf;
+            params.bound = bound;
+            params.mesh_resolution = 128;
+            all.push_back(params);
+        }
+    return all;
+}
+
+double value(const CausticEstimator& method, const ReceiverPoint& point) {
+    return static_cast<double>(support::irradiance(method, {point})[0].value.mean());
+}
+
+// A beam's light is even over its caustic polygon, so that a point is off by the field's slope times
+// the polygon's size; a mean over cells of floor is off by its square. Means of the method and of
+// the truth over a square cell of 0.15 m, 12 x 12 points.
+constexpr int cell_points = 12;
+
+template <typename Truth>
+void expect_cell(const Scene& scene, const CausticEstimator& method, const Vec3d& middle,
+                 const Truth& truth) {
+    double found = 0;
+    double expected = 0;
+    for (int i = 0; i < cell_points; ++i)
+        for (int j = 0; j < cell_points; ++j) {
+            const Vec3d p = middle + 0.15 * Vec3d((i + 0.5) / cell_points - 0.5,
+                                                  (j + 0.5) / cell_points - 0.5, 0);
+            found += value(method, support::probe(scene, 0, p, Vec3d::UnitZ(), 0));
+            expected += truth(p);
+        }
+    EXPECT_NEAR(found / expected, 1, 0.005) << middle.transpose();
+}
+
+// The mirror |x| <= 1, 0 <= z <= 2 of the plane y = 1 over the floor z = 0: light comes from the
+// image S' of the light, E = I n.w / |S' - p|^2 where the segment crosses the mirror.
+const Vec3d light_position(0.5, 0.25, 1);
+constexpr double intensity = 3;
+
+double mirrored(const Vec3d& p, const Vec3d& normal) {
+    const Vec3d to_image =
+        Vec3d(light_position.x(), 2 - light_position.y(), light_position.z()) - p;
+    const double t = (1 - p.y()) / to_image.y();
+    const Vec3d crossing = p + t * to_image;
+    if (t <= 0 || t >= 1 || std::abs(crossing.x()) > 1 || crossing.z() < 0 || crossing.z() > 2)
+        return 0;
+    return intensity * to_image.dot(normal) / std::pow(to_image.norm(), 3);
+}
+
+Scene mirror_scene(const Bsdf& bsdf, bool mesh) {
+    SceneDesc desc;
+    Shape mirror = support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, bsdf);
+    if (mesh) mirror = support::mesh("mirror", tessellate_rectangle(128), mirror.to_world, bsdf);
+    desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)), mirror,
+                   support::sphere("ball", {0.2, -0.4, 0.5}, 0.3, support::diffuse(0.5F))};
+    desc.point_lights = {support::point_light(light_position, static_cast<float>(intensity))};
+    return Scene(std::move(desc));
+}
+
+bool in_the_balls_shadow(const Vec3d& p) {
+    const Vec3d image(light_position.x(), 2 - light_position.y(), light_position.z());
+    const Vec3d w = (image - p).normalized();
+    const Vec3d to_ball = Vec3d(0.2, -0.4, 0.5) - p;
+    const double along = to_ball.dot(w);
+    return along > 0 && (to_ball - along * w).norm() < 0.42;
+}
+
+TEST(BeamFlatMirror, IsTheMethodOfImages) {
+    for (const bool mesh : {false, true}) {
+        const Scene scene = mirror_scene(support::mirror(), mesh);
+        for (const BeamTreeParams& params : all_params()) {
+            const auto method = build(scene, params, RunOptions{});
+            for (int i = 0; i < 24; ++i) {
+                const Vec3d p(-0.3 + 0.2 * (i % 6), -0.6 + 0.35 * (i / 6), 0);
+                if (!in_the_balls_shadow(p))
+                    expect_cell(scene, *method, p,
+                                [](const Vec3d& q) { return mirrored(q, Vec3d::UnitZ()); });
+            }
+            for (const Vec3d& dark : {Vec3d(-4, 0, 0), Vec3d(0, 2, 0), Vec3d(4, 0.5, 0)})
+                EXPECT_EQ(value(*method, support::probe(scene, 0, dark, Vec3d::UnitZ(), 0)), 0);
+        }
+    }
+}
+
+// A receiver that is not polygonised: the ball, whose normal is another at every point.
+TEST(BeamFlatMirror, LightsACurvedReceiver) {
+    const Scene scene = mirror_scene(support::mirror(), false);
+    const Vec3d image(light_position.x(), 2 - light_position.y(), light_position.z());
+    for (const BeamTreeParams& params : all_params()) {
+        const auto method = build(scene, params, RunOptions{});
+        int lit = 0;
+        double sum = 0;
+        double expected = 0;
+        for (int i = 0; i < 600; ++i) {
+            const double z = -0.9 + 1.8 * i / 600;
+            const double r = std::sqrt(1 - z * z);
+            const Vec3d n(r * std::cos(2.4 * i), r * std::sin(2.4 * i), z);
+            const Vec3d p = Vec3d(0.2, -0.4, 0.5) + 0.3 * n;
+            const double found = value(*method, support::probe(scene, 2, p, n, 0));
+            const double cosine = n.dot((image - p).normalized());
+            if (cosine < -0.01) {
+                EXPECT_EQ(found, 0);
+            }
+            if (cosine < 0.1) continue;
+            ++lit;
+            sum += found;
+            expected += mirrored(p, n);
+        }
+        EXPECT_GT(lit, 160);
+        EXPECT_NEAR(sum / expected, 1, 0.005);
+    }
+}
+
+TEST(BeamFlatMirror, AGlassSheetReflectsByFresnel) {
+    const Scene scene = mirror_scene(support::glass(1.5F), false);
+    BeamTreeParams params;
+    params.mesh_resolution = 128;
+    const auto method = build(scene, params, RunOptions{});
+    for (int i = 0; i < 24; ++i) {
+        const Vec3d p(-0.3 + 0.2 * (i % 6), -0.6 + 0.35 * (i / 6), 0);
+        if (in_the_balls_shadow(p)) continue;
+        expect_cell(scene, *method, p, [](const Vec3d& q) {
+            const Vec3d to_image = Vec3d(0.5, 1.75, 1) - q;
+            return mirrored(q, Vec3d::UnitZ()) *
+                   support::fresnel(to_image.y() / to_image.norm(), 1.5);
+        });
+    }
+}
+
+// 64 samples of a square light against 64 x 64 images of points.
+TEST(BeamFlatMirror, AnAreaLightIsTheSumOfItsSamples) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)),
+                   support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, support::mirror()),
+                   support::rectangle("light", light_position, {0, 0, 0.15}, {0.15, 0, 0},
+                                      support::diffuse(0))};
+    desc.shapes[2].radiance = Spectrum(Spectrum::Constant(20));
+    const Scene scene(desc);
+    BeamTreeParams params;
+    params.light_samples = 64;
+    params.mesh_resolution = 32;
+    const auto method = build(scene, params, RunOptions{});
+    for (int i = 0; i < 40; ++i) {
+        const Vec3d p(-0.3 + 0.12 * (i % 10), -0.8 + 0.35 * (i / 10), 0);
+        double truth = 0;
+        constexpr int n = 64;
+        for (int a = 0; a < n; ++a)
+            for (int b = 0; b < n; ++b) {
+                const Vec3d to_image = Vec3d(0.5 + 0.15 * ((2 * a + 1.0) / n - 1), 1.75,
+                                             1 + 0.15 * ((2 * b + 1.0) / n - 1)) -
+                                       p;
+                truth += 20 * to_image.z() * to_image.y() / std::pow(to_image.squaredNorm(), 2) *
+                         std::pow(0.3 / n, 2);
+            }
+        EXPECT_NEAR(value(*method, support::probe(scene, 0, p, Vec3d::UnitZ(), 0)) / truth, 1,
+                    0.005);
+    }
+}
+
+// A point light at height H above still water over a floor at depth D: see flat_pool_test.
+constexpr double height = 2;
+constexpr double depth = 1;
+constexpr double ior = 1.333;
+
+double floor_irradiance(double r, double absorption) {
+    double low = 1e-6;
+    double high = pi_d / 2 - 1e-9;
+    const auto landing = [](double a) {
+        return height * std::tan(a) + depth * std::tan(std::asin(std::sin(a) / ior));
+    };
+    for (int i = 0; i < 200; ++i) {
+        const double middle = (low + high) / 2;
+        (landing(middle) < r ? low : high) = middle;
+    }
+    const double cos_a = std::cos(low);
+    const double cos_b = support::refracted_cosine(cos_a, ior);
+    const double slope = height / (cos_a * cos_a) + depth * cos_a / (ior * std::pow(cos_b, 3));
+    return 10 * (1 - support::fresnel(cos_a, ior)) * std::sin(low) / (r * slope) *
+           std::exp(-absorption * depth / cos_b);
+}
+
+TEST(BeamFlatPool, IsTheClosedForm) {
+    const float absorption = 0.4F;
+    for (const bool mesh : {false, true}) {
+        SceneDesc desc;
+        Shape water = support::horizontal("water", 0, 6, true, {});
+        if (mesh) water = support::mesh("water", tessellate_rectangle(192), water.to_world, {});
+        water.bsdf = support::glass(static_cast<float>(ior), 1, Spectrum::Constant(absorption));
+        desc.shapes = {support::horizontal("floor", -depth, 12, true, support::diffuse(0.5F)),
+                       water};
+        desc.point_lights = {support::point_light({0, 0, height}, 10)};
+        const Scene scene(std::move(desc));
+        for (BeamTreeParams params : all_params()) {
+            params.mesh_resolution = 192;
+            const auto method = build(scene, params, RunOptions{});
+            for (const double r : {0.1, 0.5, 1.0, 1.5, 2.0, 3.0})
+                for (int i = 0; i < 16; ++i) {
+                    const Vec3d p(r * std::cos(0.4 * i + r), r * std::sin(0.4 * i + r), -depth);
+                    EXPECT_NEAR(value(*method, support::probe(scene, 0, p, Vec3d::UnitZ(), 0)) /
+                                    floor_irradiance(r, static_cast<double>(absorption)),
+                                1, 0.005)
+                        << "r = " << r;
+                }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,187 @@
+#include "beamtree/beam_point.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/beamtree/beam_scenes.h"
+
+namespace caustics {
+namespace {
+
+int winding_of(const BeamSet& set, const TestPlane& plane) {
+    std::array<BeamHit, 2> hits;
+    int sum = 0;
+    for (const Beam& beam : set.beams) {
+        const int count = test_beam(set, beam, plane, hits);
+        for (int i = 0; i < count; ++i) sum += hits[static_cast<std::size_t>(i)].winding;
+    }
+    return sum;
+}
+
+// Parallel light straight down through a still surface: the caustic polygons are the mesh itself.
+BeamScene still_water(int resolution) {
+    SceneDesc desc;
+    desc.shapes = {support::mesh("water", tessellate_rectangle(resolution), Transform::Identity(),
+                                 support::glass(1.25F))};
+    desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+    return {"still water", std::move(desc)};
+}
+
+const BeamSet& refracted(const BeamScene& scene) {
+    for (const BeamSet& set : scene.sets)
+        if (set.refracted) return set;
+    throw std::logic_error("nothing is refracted");
+}
+
+// Vertices, edges and diagonals of a dyadic grid are exact in float: every such point inside the
+// rectangle belongs to one triangle, and those of its upper and right edge to none.
+TEST(BeamPoint, EveryPointOfAFlatGridLiesInOneBeam) {
+    const BeamScene water = still_water(16);
+    const BeamSet& set = refracted(water);
+    for (int i = 1; i < 64; ++i)
+        for (int j = 1; j < 64; ++j) {
+            const Vec3 p(static_cast<float>(i - 32) / 32, static_cast<float>(j - 32) / 32, -1);
+            std::array<BeamHit, 2> hits;
+            int found = 0;
+            for (const Beam& beam : set.beams)
+                found += test_beam(set, beam, TestPlane(p, Vec3::UnitZ()), hits);
+            EXPECT_EQ(found, 1) << p.transpose();
+        }
+}
+
+/// The directed edges that belong to one triangle only.
+std::vector<std::array<std::uint32_t, 2>> boundary(const BeamSet& set) {
+    std::map<std::array<std::uint32_t, 2>, int> edges;
+    for (const Beam& beam : set.beams)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = beam.corners[i];
+            const std::uint32_t b = beam.corners[(i + 1) % 3];
+            if (const auto back = edges.find({b, a}); back != edges.end())
+                edges.erase(back);
+            else
+                edges[{a, b}] = 1;
+        }
+    std::vector<std::array<std::uint32_t, 2>> rest;
+    for (const auto& [edge, count] : edges) rest.push_back(edge);
+    return rest;
+}
+
+// Whatever the folds and the rounding: points at random, on the caustic polygons' corners, on the
+// middles of their edges; planes level and tilted.
+TEST(BeamPoint, WindingsSumToTheBoundarysWinding) {
+    const BeamScene pool("pool", pool_desc(24));
+    const BeamSet& set = refracted(pool);
+    const auto edges = boundary(set);
+    Rng rng(3, Stage::test, 0);
+    const auto on = [](const TestPlane& plane, const VertexRay& ray) {
+        return plane.project(ray.position,
+                             plane.height(ray.position) / plane.steepness(ray.direction),
+                             ray.direction);
+    };
+    int wrong = 0;
+    int folded = 0;
+    for (int i = 0; i < 6000; ++i) {
+        const Beam& beam = set.beams[rng.next_word() % set.beams.size()];
+        const auto rays = set.triangle(beam, 0);
+        const float depth = 1 + rng.next();
+        Vec3 p(2 * rng.next() - 1, 2 * rng.next() - 1, -depth);
+        const auto hit = [depth](const VertexRay& ray) -> Vec3 {
+            const float s = (ray.position.z() + depth) / -ray.direction.z();
+            return ray.position + s * ray.direction;
+        };
+        if (i % 3 == 1) p = hit(*rays[0]);
+        if (i % 3 == 2) p = (hit(*rays[0]) + hit(*rays[1])) / 2;
+        const Vec3 tilted = Vec3(0.3F * rng.next(), 0.2F * rng.next(), 1).normalized();
+        const TestPlane plane(p, i % 2 == 0 ? Vec3(Vec3::UnitZ()) : tilted);
+        int around = 0;
+        for (const auto& [a, b] : edges)
+            around += edge_crossing(on(plane, set.rays[a]), on(plane, set.rays[b]));
+        const int sum = winding_of(set, plane);
+        wrong += sum != around;
+        std::array<BeamHit, 2> hits;
+        int covering = 0;
+        for (const Beam& one : set.beams) covering += test_beam(set, one, plane, hits);
+        folded += covering > 1;
+        EXPECT_GE(covering, std::abs(sum));
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GT(folded, 100);
+}
+
+BeamSet three_rays(const std::array<VertexRay, 3>& rays) {
+    BeamSet set;
+    set.rays.assign(rays.begin(), rays.end());
+    Beam beam;
+    beam.corners = {0, 1, 2, Beam::none};
+    beam.flux = Spectrum::Ones();
+    set.beams = {beam};
+    return set;
+}
+
+TEST(BeamPoint, TellsAreaWindingAndPlaceByHand) {
+    // Rays that cross at height 1: below, the triangle is turned round, and at 0 as large as at 2.
+    const Vec3 focus(0, 0, 1);
+    std::array<VertexRay, 3> rays;
+    const std::array<Vec3, 3> corners = {Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2)};
+    for (std::size_t i = 0; i < 3; ++i)
+        rays[i] = {corners[i], Vec3(focus - corners[i]).normalized()};
+    const BeamSet set = three_rays(rays);
+    std::array<BeamHit, 2> hits;
+    ASSERT_EQ(test_beam(set, set.beams[0], TestPlane({-0.25F, -0.5F, 0}, Vec3::UnitZ()), hits), 1);
+    EXPECT_NEAR(hits[0].area, 0.5, 1e-6);
+    EXPECT_NEAR(hits[0].weights[0], 0.25, 1e-6);
+    EXPECT_NEAR(hits[0].weights[1], 0.25, 1e-6);
+    EXPECT_NEAR(hits[0].weights[2], 0.5, 1e-6);
+    const int below = hits[0].winding;
+    ASSERT_EQ(test_beam(set, set.beams[0], TestPlane({0.1F, 0.1F, 1.5F}, Vec3::UnitZ()), hits), 1);
+    EXPECT_NEAR(hits[0].area, 0.125, 1e-6);
+    EXPECT_EQ(hits[0].winding, below);  // a point reflection turns the plane by 180 degrees
+    EXPECT_EQ(test_beam(set, set.beams[0], TestPlane({0.25F, 0.5F, 0}, Vec3::UnitZ()), hits), 0);
+    // From below, and behind the polygon.
+    EXPECT_EQ(test_beam(set, set.beams[0], TestPlane({-0.25F, -0.5F, 0}, -Vec3::UnitZ()), hits), 0);
+    EXPECT_EQ(test_beam(set, set.beams[0], TestPlane({0.1F, 0.1F, 3}, Vec3::UnitZ()), hits), 0);
+}
+
+// A plane that cuts the polygon in half lets the light of the upper half through.
+TEST(BeamPoint, IsClippedAtTheReceiversPlane) {
+    const Vec3 down = Vec3(0, -0.6F, -0.8F);
+    const BeamSet set =
+        three_rays({VertexRay{{0, 0, -1}, down}, {{1, 0, 1}, down}, {{-1, 0, 1}, down}});
+    std::array<BeamHit, 2> hits;
+    const TestPlane floor({0, -0.3F, 0}, Vec3::UnitZ());
+    ASSERT_EQ(test_beam(set, set.beams[0], floor, hits), 1);
+    // Three quarters of the polygon's area are above the plane; its shadow is a trapezium with sides
+    // 1 and 2 and height 0.75.
+    EXPECT_NEAR(hits[0].flux_share, 0.75, 1e-6);
+    EXPECT_NEAR(hits[0].area, 1.125, 1e-6);
+    EXPECT_NEAR(hits[0].weights.sum(), 1, 1e-6);
+    EXPECT_EQ(test_beam(set, set.beams[0], TestPlane({0, 0.1F, 0}, Vec3::UnitZ()), hits), 0);
+    EXPECT_EQ(test_beam(set, set.beams[0], TestPlane({0, -0.8F, 0}, Vec3::UnitZ()), hits), 0);
+}
+
+// Four corners are one caustic polygon while they do not fold over.
+TEST(BeamPoint, TakesFourCorners) {
+    BeamSet set;
+    for (const Vec3& p : {Vec3(0, 0, 1), Vec3(2, 0, 1), Vec3(2, 1, 1), Vec3(0, 1, 1)})
+        set.rays.push_back({p, -Vec3::UnitZ()});
+    Beam beam;
+    beam.corners = {0, 1, 2, 3};
+    beam.first_share = 0.5F;
+    set.beams = {beam};
+    std::array<BeamHit, 2> hits;
+    for (const Vec3& p : {Vec3(1.5F, 0.2F, 0), Vec3(0.5F, 0.8F, 0), Vec3(1, 0.5F, 0)}) {
+        ASSERT_EQ(test_beam(set, beam, TestPlane(p, Vec3::UnitZ()), hits), 1);
+        EXPECT_NEAR(hits[0].area, 2, 1e-9);
+        EXPECT_EQ(hits[0].flux_share, 1);
+    }
+    EXPECT_EQ(test_beam(set, beam, TestPlane({2.5F, 0.5F, 0}, Vec3::UnitZ()), hits), 0);
+    // Folded along its diagonal: each triangle has its own half of the flux.
+    set.rays[3].position = Vec3(2.5F, 0.25F, 1);
+    ASSERT_GE(test_beam(set, beam, TestPlane({1.5F, 0.2F, 0}, Vec3::UnitZ()), hits), 1);
+    EXPECT_EQ(hits[0].flux_share, 0.5);
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "beamtree/beam_tree.h"
+#include "core/error.h"
+
+namespace caustics {
+namespace {
+
+BeamTreeParams params(const std::string& text) {
+    BeamTreeParams read_params;
+    read(JsonNode::parse_text(text, "test"), read_params);
+    return read_params;
+}
+
+std::string error(const std::string& text) {
+    try {
+        params(text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(BeamTreeParams, AreThePapersByDefault) {
+    const BeamTreeParams p = params("{}");
+    EXPECT_EQ(p.bound, Bound::hybrid);
+    EXPECT_EQ(p.spread_threshold, 10);
+    EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::quadtree);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::n);
+}
+
+TEST(BeamTreeParams, AreRead) {
+    const BeamTreeParams p = params(
+        R"({"bound": "double", "hierarchy": "binned", "leaf": "k", "intensity": "area",
+            "light_samples": 9, "mesh_resolution": 32, "max_bounces": 1, "merging": "cones"})");
+    EXPECT_EQ(p.bound, Bound::double_cone);
+    EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::binned);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::k);
+    EXPECT_EQ(p.light_samples, 9);
+    EXPECT_EQ(p.mesh_resolution, 32);
+    EXPECT_EQ(p.max_bounces, 1);
+    EXPECT_EQ(p.merging, ConeTreeSettings::Merging::cones);
+    EXPECT_EQ(params(R"({"spread_threshold": 4.5})").spread_threshold, 4.5);
+}
+
+TEST(BeamTreeParams, NameTheAlternatives) {
+    EXPECT_NE(error(R"({"bound": "tripple"})").find("sphere_swept"), std::string::npos);
+    EXPECT_NE(error(R"({"bound": "two_slice"})").find("not built yet"), std::string::npos);
+    EXPECT_NE(error(R"({"intensity": "refined"})").find("not built yet"), std::string::npos);
+    EXPECT_NE(error(R"({"bound": "single", "spread_threshold": 5})").find("hybrid"),
+              std::string::npos);
+    EXPECT_NE(error(R"({"spread_threshold": -1})"), "no error");
+    EXPECT_NE(error(R"({"light_samples": 0})"), "no error");
+    EXPECT_NE(error(R"({"samples": 4})").find("light_samples"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace caustics

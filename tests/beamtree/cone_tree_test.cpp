@@ -1,0 +1,119 @@
+#include "beamtree/cone_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "beamtree/cone_merging.h"
+#include "beamtree/plane_groups.h"
+#include "core/sampling.h"
+#include "tests/beamtree/beam_scenes.h"
+
+namespace caustics {
+namespace {
+
+Vec3 random_direction(Rng& rng) { return uniform_cap(2, rng.next(), rng.next()).normalized(); }
+
+// A double cone without its slack loses hits on tilted planes [rays that cross the neck circle and
+// run along it]: the test above would see such a hole.
+TEST(DoubleCone, NeedsItsSlackOnTiltedPlanes) {
+    NodeRays rays;
+    const double slope = std::tan(0.4);
+    for (const auto& [x, y, dy] :
+         {std::tuple(-0.8, 0.6, -slope), {0.8, 0.6, slope}, {0.0, -1.0, 0.0}}) {
+        const Vec3d direction = Vec3d(0, dy, -1).normalized();
+        rays.positions.push_back(Vec3d(x, y, 0) - 3 * Vec3d(0, dy, -1));
+        rays.directions.push_back(direction);
+    }
+    rays.triangles = {{0, 1, 2}};
+    BeamSet set;
+    for (std::size_t i = 0; i < 3; ++i)
+        set.rays.push_back({rays.positions[i].cast<float>(), rays.directions[i].cast<float>()});
+    Beam beam;
+    beam.corners = {0, 1, 2, Beam::none};
+    set.beams = {beam};
+    const DoubleCone cone = double_cone(rays, smallest_cap(rays.directions), 6);
+    ASSERT_TRUE(cone.exists());
+    DoubleCone bare = cone;
+    bare.width = bare.spreading = 0;
+    Rng rng(1, Stage::test, 0);
+    int lost = 0;
+    int hits = 0;
+    for (int i = 0; i < 400'000; ++i) {
+        const float angle = 6.2832F * rng.next();
+        const float tilt = 1.2F * rng.next();
+        const Vec3 normal(std::sin(tilt) * std::cos(angle), std::sin(tilt) * std::sin(angle),
+                          std::cos(tilt));
+        const Vec3 point(2.4F * rng.next() - 1.2F, 2.4F * rng.next() - 1.2F,
+                         0.4F * rng.next() - 0.2F);
+        const TestPlane plane(point, normal);
+        std::array<BeamHit, 2> found;
+        bool cut = false;
+        for (const VertexRay& ray : set.rays) cut = cut || plane.height(ray.position) <= 0;
+        if (cut || test_beam(set, beam, plane, found) == 0) continue;
+        ++hits;
+        EXPECT_TRUE(cone.holds(plane.point(), plane.normal()).value_or(true));
+        lost += !bare.holds(plane.point(), plane.normal()).value_or(true);
+    }
+    EXPECT_GT(hits, 50'000);
+    EXPECT_GT(lost, 0);
+}
+
+// Corrected eqs. 5-10: points of the ellipse lie on the cone and on the plane.
+TEST(ConeSection, LiesOnTheConeAndThePlane) {
+    Rng rng(4, Stage::test, 0);
+    int ellipses = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3d apex = random_direction(rng).cast<double>();
+        const Vec3d plane_axis = random_direction(rng).cast<double>().normalized();
+        const Vec3d cone_axis = random_direction(rng).cast<double>().normalized();
+        const double spread = 0.05 + static_cast<double>(rng.next());
+        const double height = 4 * static_cast<double>(rng.next()) - 2;
+        const auto section = cone_section(apex, cone_axis, spread, plane_axis, height);
+        const double between = std::acos(std::clamp(cone_axis.dot(plane_axis), -1.0, 1.0));
+        EXPECT_EQ(section.has_value(), between + spread < pi_d / 2);
+        if (!section || between + spread > 1.5) continue;
+        ++ellipses;
+        const Vec3d minor_axis = section->major_axis.cross(plane_axis);
+        for (const double angle : {0.0, 1.0, 2.5, 4.0}) {
+            const Vec3d p = section->centre +
+                            section->major * std::cos(angle) * section->major_axis +
+                            section->minor * std::sin(angle) * minor_axis;
+            EXPECT_NEAR((p - apex).dot(plane_axis), height, 1e-11);
+            const double along = std::abs((p - apex).dot(cone_axis));
+            EXPECT_NEAR(along, std::cos(spread) * (p - apex).norm(), 1e-10 * (1 + along));
+        }
+    }
+    EXPECT_GT(ellipses, 200);
+}
+
+TEST(Hierarchy, HoldsEveryBeamOnce) {
+    for (const int resolution : {1, 5, 8}) {
+        const BeamScene pool("pool", pool_desc(resolution));
+        const BeamSet& set = pool.sets[0];
+        const auto beams = receiver_planes(set)[0].beams;
+        for (const Hierarchy& tree : {quadtree(set, beams, pool.casters[0].mesh.patches),
+                                      binned_hierarchy(set, beams, 1)}) {
+            std::vector<std::uint32_t> order = tree.order;
+            std::sort(order.begin(), order.end());
+            EXPECT_EQ(order, beams);
+            std::size_t leaves = 0;
+            for (const Hierarchy::Node& node : tree.nodes) {
+                leaves += node.child_count == 0;
+                std::uint32_t below = 0;
+                for (std::uint32_t c = 0; c < node.child_count; ++c)
+                    below += tree.nodes[node.first_child + c].beam_count;
+                EXPECT_EQ(below, node.child_count > 0 ? node.beam_count : 0);
+            }
+            EXPECT_EQ(leaves, beams.size());
+        }
+        // Quarters down to a cell, then its triangles.
+        const std::uint32_t height = quadtree(set, beams, pool.casters[0].mesh.patches).height();
+        EXPECT_EQ(height, resolution == 1 ? 2U : 5U);
+    }
+}
+
+}  // namespace
+}  // namespace caustics
