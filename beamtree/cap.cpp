@@ -107,7 +107,9 @@ Cap box_cap(std::span<const Vec3d> directions) {
 }
 
 Cap smallest_cap(std::span<const Vec3d> directions) {
-    if (directions.empty()) return {};
+    // The method needs a hemisphere: without one its three loops would go on and on.
+    const Cap box = box_cap(directions);
+    if (box.cosine < 0.05) return box;
     const std::vector<Vec3d> mixed = shuffled(directions);
     return measured(smallest(mixed, through(mixed[0], mixed[0])).axis, directions);
 }

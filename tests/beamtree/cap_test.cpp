@@ -66,6 +66,15 @@ TEST(Cap, OfEqualOrOppositeDirections) {
     EXPECT_TRUE(smallest_cap({}).is_wide());
 }
 
+// In all directions: no smallest cap is sought, which would take forever.
+TEST(Cap, OfManyDirectionsAllRound) {
+    Rng rng(3, Stage::test, 0);
+    const auto directions = random_directions(20'000, 30, rng);
+    const Cap cap = smallest_cap(directions);
+    EXPECT_TRUE(cap.is_wide());
+    for (const Vec3d& u : directions) EXPECT_GE(cap.axis.dot(u), cap.cosine);
+}
+
 TEST(Circle, SmallestIsThatOfBruteForce) {
     Rng rng(2, Stage::test, 0);
     for (int i = 0; i < 200; ++i) {
