@@ -104,7 +104,9 @@ TEST(BeamConvergence, PixelMeansAreOfSecondOrder) {
     double last = 0;
     for (const int resolution : {64, 128, 256}) {
         const double error = rms_difference(pixel_means(refracted_beams(resolution)), truth);
-        if (resolution > 64) EXPECT_GT(std::log2(last / error), 1.8) << resolution;
+        if (resolution > 64) {
+            EXPECT_GT(std::log2(last / error), 1.8) << resolution;
+        }
         last = error;
     }
 }
