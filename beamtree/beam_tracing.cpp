@@ -59,10 +59,10 @@ private:
         if (w.isZero(0)) return bent;
         bent.front = ng.dot(w) > 0;
         const SpecularSplit split = split_specular(bsdf_, ng, ns, w);
-        const std::optional<Spectrum> medium = medium_absorption(bsdf_, ng, w);
+        const Spectrum* const medium = medium_absorption(bsdf_, ng, w);
         const Spectrum arriving =
             strength_along(light_, w) *
-            segment_transmittance({}, medium, distance_from(light_, position));
+            segment_transmittance(nullptr, medium, distance_from(light_, position));
         bent.direction = {split.reflected, split.refracted};
         bent.weight = {split.reflected_weight * arriving, split.refracted_weight * arriving};
         return bent;
