@@ -83,7 +83,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     text += "methods\n";
     for (const std::string& name : method_names()) {
         const auto reason = why_unsupported(scene, parse_method(name, parameters_node({})));
-        text += fmt::format("  {:<12} {}\n", name, reason ? "no: " + *reason : "yes");
+        text += fmt::format("  {:<16} {}\n", name, reason ? "no: " + *reason : "yes");
     }
     return text;
 }

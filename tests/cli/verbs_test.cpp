@@ -79,7 +79,7 @@ TEST(Info, TellsWhatTheSceneHolds) {
     const ProgramResult result = causticbench({"info", scene});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     for (const char* word : {"exact sphere", "caster", "receiver", "point at", "16 x 12",
-                             "photonmap    yes", "pathtrace    no: "})
+                             "photonmap        yes", "pathtrace        no: "})
         EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
 }
 
