@@ -248,13 +248,19 @@ std::string canonical_json(const json& value) {
     std::string text;
     switch (value.type()) {
         case json::value_t::object:
-            for (const auto& [key, child] : value.items())
-                text += (text.empty() ? "" : ",") + json(key).dump() + ":" + canonical_json(child);
-            return "{" + text + "}";
+            for (const auto& [key, child] : value.items()) {
+                text += text.empty() ? "{" : ",";
+                text += json(key).dump();
+                text += ':';
+                text += canonical_json(child);
+            }
+            return text.empty() ? "{}" : text + "}";
         case json::value_t::array:
-            for (const json& child : value)
-                text += (text.empty() ? "" : ",") + canonical_json(child);
-            return "[" + text + "]";
+            for (const json& child : value) {
+                text += text.empty() ? "[" : ",";
+                text += canonical_json(child);
+            }
+            return text.empty() ? "[]" : text + "]";
         case json::value_t::number_float: {
             const double number = value.get<double>();
             constexpr double exact_integers = 9007199254740992.0;
