@@ -30,13 +30,18 @@ json describe_params(const LightTraceParams& p) {
 
 json describe_params(const PhotonMapParams& p) {
     const bool unbiased = p.estimator == PhotonMapParams::Estimator::unbiased;
-    json all = {{"nearest", p.nearest},
-                {"estimator", unbiased ? "unbiased" : "raw"},
+    const bool stratified = p.emission == PhotonMapParams::Emission::stratified;
+    json all = {{"estimator", unbiased ? "unbiased" : "raw"},
+                {"filter", name(p.filter)},
                 {"max_bounces", p.max_bounces},
-                {"emission", "random"},
-                {"interaction", "roulette"},
+                {"emission", stratified ? "stratified" : "random"},
+                {"interaction", p.interaction == Interaction::split ? "split" : "roulette"},
                 {"tree", name(p.tree)},
                 {"tables", p.tables}};
+    if (p.radius > 0)
+        all["radius"] = p.radius;
+    else
+        all["nearest"] = p.nearest;
     if (p.photons > 0) all["photons"] = p.photons;
     if (p.emitted > 0) all["emitted"] = p.emitted;
     if (p.max_radius > 0) all["max_radius"] = p.max_radius;

@@ -22,6 +22,7 @@ struct PlainLanes {
     static Floats add(Floats a, Floats b) { return a + b; }
     static Floats sub(Floats a, Floats b) { return a - b; }
     static Floats mul(Floats a, Floats b) { return a * b; }
+    static Floats sqrt(Floats a) { return __builtin_sqrtf(a); }
     static Floats min(Floats a, Floats b) { return a < b ? a : b; }
     static Floats max(Floats a, Floats b) { return a > b ? a : b; }
     static uint32_t less(Floats a, Floats b) { return a < b ? 1U : 0U; }

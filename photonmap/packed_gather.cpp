@@ -13,7 +13,9 @@ constexpr float widest_group = 1;
 constexpr std::size_t smallest_group = 4;
 constexpr std::size_t largest_group = 64;
 
-std::size_t room_for_group(std::size_t nearest) { return 8 * nearest + 2'048; }
+std::size_t room_for_group(std::size_t nearest, std::size_t photons) {
+    return std::min(8 * nearest, photons) + 2'048;
+}
 
 }  // namespace
 
@@ -85,7 +87,8 @@ bool PackedGather::answer_together(Group group, const Box& box) {
     query.max_squared_distance = bound_.at(centre, normal, tested_, query.max_squared_distance);
     query.margin = 2.00001F * radius + 1e-30F;
     query.side = tested_ ? &side : nullptr;
-    Candidates& collected = scratch_.group_found.reserve(room_for_group(query.nearest));
+    Candidates& collected =
+        scratch_.group_found.reserve(room_for_group(query.nearest, tree_.size()));
     const float nearest2 = tree_.kernels_.find_packed(tree_.view_, query, collected);
     if (nearest2 < 0) {
         // The photons are denser here than where the distance comes from.

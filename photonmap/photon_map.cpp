@@ -16,7 +16,7 @@ namespace {
 class GatherContext final : public QueryContext {
 public:
     explicit GatherContext(bool tables) {
-        if (tables) table.emplace();
+        if (tables) estimate.table.emplace();
     }
 
     void count(const GatheredPhotons& gathered) {
@@ -28,13 +28,13 @@ public:
         counters["gathers"] += gathers_;
         counters["gathered_photons"] += gathered_photons_;
         counters["empty_gathers"] += empty_gathers_;
-        if (!table) return;
-        counters["table_lookups"] += table->lookups();
-        counters["table_fillings"] += table->fillings();
+        if (!estimate.table) return;
+        counters["table_lookups"] += estimate.table->lookups();
+        counters["table_fillings"] += estimate.table->fillings();
     }
 
     GatherScratch scratch;
-    std::optional<ReflectionTable> table;
+    EstimateScratch estimate;
 
 private:
     std::uint64_t gathers_ = 0;
@@ -61,19 +61,13 @@ public:
                   QueryContext& context) const override {
         auto& own = dynamic_cast<GatherContext&>(context);
         // A batch begins with an empty table, so that the counters do not depend on threads.
-        if (own.table) own.table->clear();
-        answer(points, out, own, [this, &own](const ReceiverPoint& point, const auto& gathered) {
-            return own.table ? estimate_.radiance(point, gathered, *own.table)
-                             : estimate_.radiance(point, gathered);
-        });
+        if (own.estimate.table) own.estimate.table->clear();
+        answer(points, out, own, &RadianceEstimate::radiance);
     }
 
     void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                     QueryContext& context) const override {
-        answer(points, out, dynamic_cast<GatherContext&>(context),
-               [this](const ReceiverPoint& point, const auto& gathered) {
-                   return estimate_.irradiance(point, gathered);
-               });
+        answer(points, out, dynamic_cast<GatherContext&>(context), &RadianceEstimate::irradiance);
     }
 
     BuildReport build_report() const override {
@@ -81,18 +75,22 @@ public:
         report.bytes = tree_->bytes();
         counts_.add_to(report.counters);
         tree_->add_to(report.counters);
-        report.resolved["max_radius"] = static_cast<double>(settings_.limits.max_radius);
+        if (settings_.limits.nearest != GatherLimits::all)
+            report.resolved["max_radius"] = static_cast<double>(settings_.limits.max_radius);
         return report;
     }
 
 private:
-    template <typename Value>
+    using Value = Spectrum (RadianceEstimate::*)(const ReceiverPoint&, const GatheredPhotons&,
+                                                 EstimateScratch&) const;
+
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                GatherContext& context, const Value& value) const {
+                GatherContext& context, Value value) const {
         tree_->gather(points, settings_.limits, context.scratch,
                       [&](std::size_t i, const GatheredPhotons& gathered) {
                           context.count(gathered);
-                          out[i] = {value(points[i], gathered), black()};
+                          out[i] = {(estimate_.*value)(points[i], gathered, context.estimate),
+                                    black()};
                       });
     }
 
@@ -112,6 +110,19 @@ void check(const PhotonMapParams& params) {
             "photonmap: nearest must be at least 1, and 2 with the estimator "
             "\"unbiased\", which leaves the outermost photon out");
     if (!(params.max_radius >= 0)) throw InputError("photonmap: max_radius must be positive");
+    if (!(params.radius >= 0)) throw InputError("photonmap: radius must be positive");
+    if (params.radius > 0 && params.max_radius > 0)
+        throw InputError("photonmap: radius takes the place of max_radius: give one of them");
+}
+
+GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const PhotonStore& photons) {
+    if (params.radius > 0) return {GatherLimits::all, static_cast<float>(params.radius)};
+    // From the photons in the order of their paths, so that it is the same for every tree.
+    const double max_radius =
+        params.max_radius > 0
+            ? params.max_radius
+            : default_max_radius(photons.photons(), scene.bounds(), params.nearest);
+    return {static_cast<std::size_t>(params.nearest), static_cast<float>(max_radius)};
 }
 
 }  // namespace
@@ -122,13 +133,9 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMa
     options.phase("trace");
     TracedPhotons photons = trace_scene(scene, params, options);
     RadianceEstimate::Settings settings;
-    settings.limits.nearest = static_cast<std::size_t>(params.nearest);
     settings.estimator = params.estimator;
-    // From the photons in the order of their paths, so that it is the same for every tree.
-    settings.limits.max_radius = static_cast<float>(
-        params.max_radius > 0
-            ? params.max_radius
-            : default_max_radius(photons.store.photons(), scene.bounds(), params.nearest));
+    settings.filter = params.filter;
+    settings.limits = limits(params, scene, photons.store);
     settings.flux_unit = photons.flux_per_energy();
 
     options.phase("balance");

@@ -19,8 +19,14 @@ enum class TreeKind {
 /// "balanced", "unbalanced", "packed".
 const char* name(TreeKind kind);
 
+/// How photons weigh by their distance (density_filter.h).
+enum class FilterKind { none, cone, gaussian, epanechnikov };
+
+/// "none", "cone", "gaussian", "epanechnikov".
+const char* name(FilterKind kind);
+
 /// `photonmap` [J96]: photons traced from the lights through the casters, stored 20 bytes each in
-/// a kd-tree, radiance from the N nearest (eqs. 1-4).
+/// a kd-tree, radiance from the N nearest (eqs. 1-4) or from all within a radius.
 struct PhotonMapParams {
     enum class Estimator {
         unbiased,  ///< the outermost photon only sets the radius: mean (N-1)/(pi r_N^2)
@@ -37,6 +43,8 @@ struct PhotonMapParams {
     TreeKind tree = TreeKind::balanced;
     int nearest = 50;       ///< N; at least 2 for `unbiased`
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
+    double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
+    FilterKind filter = FilterKind::none;
     Estimator estimator = Estimator::unbiased;
     /// Shade by tables of f_r over the directions that stored photons can have [J96, section 5],
     /// one photon after another, instead of a register of photons at a time.

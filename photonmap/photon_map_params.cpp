@@ -12,6 +12,8 @@ constexpr std::int64_t most_paths = 1'000'000'000'000;
 constexpr std::int64_t most_bounces = 1'000;
 constexpr std::int64_t most_nearest = 1'000'000;
 
+constexpr FilterKind filter_kinds[] = {FilterKind::none, FilterKind::cone, FilterKind::gaussian,
+                                       FilterKind::epanechnikov};
 constexpr TreeKind tree_kinds[] = {TreeKind::balanced, TreeKind::unbalanced, TreeKind::packed};
 
 void refuse(const JsonNode& node, const std::string& key) {
@@ -31,6 +33,15 @@ void read_count(const JsonNode& node, PhotonMapParams& params) {
     }
 }
 
+double length(const JsonNode& node, const std::string& otherwise) {
+    const double value = node.as_number();
+    const auto stored = static_cast<float>(value);
+    // The square must be a float above 0 too: that is what distances are compared with.
+    if (!(stored > 0 && stored * stored > 0) || !std::isfinite(stored * stored))
+        node.fail("must be a length above 0 [m] (" + otherwise + ")");
+    return value;
+}
+
 void read_estimate(const JsonNode& node, PhotonMapParams& params) {
     using Estimator = PhotonMapParams::Estimator;
     if (const auto estimator = node.find("estimator"))
@@ -43,13 +54,19 @@ void read_estimate(const JsonNode& node, PhotonMapParams& params) {
                 "must be at least 2 with the estimator \"unbiased\", which leaves the "
                 "outermost photon out (or choose \"raw\")");
     }
-    if (const auto max_radius = node.find("max_radius")) {
-        params.max_radius = max_radius->as_number();
-        const auto stored = static_cast<float>(params.max_radius);
-        // The square must be a float above 0 too: that is what distances are compared with.
-        if (!(stored > 0 && stored * stored > 0) || !std::isfinite(stored * stored))
-            max_radius->fail("must be a length above 0 [m] (leave it out to have it chosen)");
-    }
+    if (const auto max_radius = node.find("max_radius"))
+        params.max_radius = length(*max_radius, "leave it out to have it chosen");
+}
+
+void read_radius(const JsonNode& node, PhotonMapParams& params) {
+    const auto radius = node.find("radius");
+    if (!radius) return;
+    for (const char* const other : {"nearest", "max_radius"})
+        if (node.find(other))
+            radius->fail(
+                std::string("takes all photons within it, in place of the nearest: leave ") +
+                other + " out, or radius");
+    params.radius = length(*radius, "leave it out to take the nearest photons");
 }
 
 }  // namespace
@@ -63,9 +80,24 @@ const char* name(TreeKind kind) {
     return "balanced";
 }
 
+const char* name(FilterKind kind) {
+    switch (kind) {
+        case FilterKind::cone: return "cone";
+        case FilterKind::gaussian: return "gaussian";
+        case FilterKind::epanechnikov: return "epanechnikov";
+        case FilterKind::none: break;
+    }
+    return "none";
+}
+
 void read(const JsonNode& node, PhotonMapParams& params) {
     read_count(node, params);
     read_estimate(node, params);
+    read_radius(node, params);
+    if (const auto filter = node.find("filter"))
+        params.filter =
+            filter_kinds[filter->as_choice({name(filter_kinds[0]), name(filter_kinds[1]),
+                                            name(filter_kinds[2]), name(filter_kinds[3])})];
     if (const auto max_bounces = node.find("max_bounces"))
         params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, most_bounces));
     if (const auto emission = node.find("emission"))
@@ -80,7 +112,7 @@ void read(const JsonNode& node, PhotonMapParams& params) {
         params.tree = tree_kinds[tree->as_choice(
             {name(tree_kinds[0]), name(tree_kinds[1]), name(tree_kinds[2])})];
     if (const auto tables = node.find("tables")) params.tables = tables->as_bool();
-    for (const char* key : {"filter", "adaptive", "passes", "radius"}) refuse(node, key);
+    for (const char* key : {"adaptive", "passes"}) refuse(node, key);
     node.finish();
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -16,6 +17,9 @@ namespace caustics {
 
 /// Which photons belong to an answer: the N nearest of those within the maximum radius.
 struct GatherLimits {
+    /// As N: all photons within the maximum radius.
+    static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+
     std::size_t nearest = 50;  ///< N >= 1
     float max_radius = 1;      ///< [m], > 0; its square must be finite
 };

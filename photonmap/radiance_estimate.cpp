@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "photonmap/density_filter.h"
+
 namespace caustics {
 
 namespace {
@@ -18,38 +20,47 @@ double resolvable_squared_radius(const Vec3& point, float max_radius) {
 
 }  // namespace
 
-WeightedPhotons RadianceEstimate::counted(const GatheredPhotons& gathered) const {
-    WeightedPhotons photons{.photons = gathered};
-    if (gathered.count == settings_.limits.nearest &&
-        settings_.estimator == PhotonMapParams::Estimator::unbiased)
-        photons.left_out = gathered.farthest;
-    return photons;
+RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
+                                              const GatheredPhotons& gathered,
+                                              EstimateScratch& scratch) const {
+    const float max_radius = settings_.limits.max_radius;
+    Disc disc{.photons = {.photons = gathered},
+              .squared_radius = static_cast<double>(max_radius) * static_cast<double>(max_radius)};
+    if (gathered.count == settings_.limits.nearest) {
+        disc.squared_radius =
+            std::max(static_cast<double>(gathered.squared_distance[gathered.farthest]),
+                     resolvable_squared_radius(point.position, max_radius));
+        if (settings_.estimator == PhotonMapParams::Estimator::unbiased)
+            disc.photons.left_out = gathered.farthest;
+    }
+    if (settings_.filter != FilterKind::none) {
+        constexpr std::size_t widest_register = 16;
+        scratch.weight.reserve(gathered.count + widest_register);
+        shading_.weigh(filter_polynomial(settings_.filter), gathered, disc.squared_radius,
+                       scratch.weight.data());
+        disc.photons.weight = scratch.weight.data();
+    }
+    return disc;
 }
 
-Spectrum RadianceEstimate::density(const SpectrumSum& sum, const ReceiverPoint& point,
-                                   const GatheredPhotons& gathered) const {
-    const float max_radius = settings_.limits.max_radius;
-    double squared_radius = static_cast<double>(max_radius) * static_cast<double>(max_radius);
-    if (gathered.count == settings_.limits.nearest)
-        squared_radius = std::max(static_cast<double>(gathered.squared_distance[gathered.farthest]),
-                                  resolvable_squared_radius(point.position, max_radius));
-    const SpectrumSum density = sum * settings_.flux_unit.cast<double>() / (pi_d * squared_radius);
+Spectrum RadianceEstimate::density(const SpectrumSum& sum, const Disc& disc) const {
+    const SpectrumSum density =
+        sum * settings_.flux_unit.cast<double>() / (pi_d * disc.squared_radius);
     return density.cast<float>();
 }
 
-Spectrum RadianceEstimate::radiance(const ReceiverPoint& point,
-                                    const GatheredPhotons& gathered) const {
-    return density(shading_.reflected(point, counted(gathered)), point, gathered);
-}
-
 Spectrum RadianceEstimate::radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
-                                    ReflectionTable& table) const {
-    return density(shading_.reflected(point, counted(gathered), table), point, gathered);
+                                    EstimateScratch& scratch) const {
+    const Disc around = disc(point, gathered, scratch);
+    if (scratch.table)
+        return density(shading_.reflected(point, around.photons, *scratch.table), around);
+    return density(shading_.reflected(point, around.photons), around);
 }
 
-Spectrum RadianceEstimate::irradiance(const ReceiverPoint& point,
-                                      const GatheredPhotons& gathered) const {
-    return density(shading_.arriving(counted(gathered)), point, gathered);
+Spectrum RadianceEstimate::irradiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                                      EstimateScratch& scratch) const {
+    const Disc around = disc(point, gathered, scratch);
+    return density(shading_.arriving(around.photons), around);
 }
 
 }  // namespace caustics

@@ -1,19 +1,32 @@
 #pragma once
 
+#include <optional>
+
 #include "core/caustic_estimator.h"
+#include "photonmap/aligned_array.h"
 #include "photonmap/photon_map.h"
 #include "photonmap/photon_tree.h"
 #include "photonmap/shading.h"
 
 namespace caustics {
 
+/// A thread's arrays for estimates.
+struct EstimateScratch {
+    AlignedArray<float> weight;
+    std::optional<ReflectionTable> table;  ///< of f_r, where reflection is to be looked up
+};
+
 /// Radiance from the N nearest photons, [J96] eqs. 1-4: the sum of f_r times flux over the area
-/// pi r^2 of the disc that holds them.
+/// pi r^2 of the disc that holds them; each photon weighs as the filter says (density_filter.h).
 ///
-/// `raw` is eq. 4: r is the distance of the N-th photon. It reads high by N/(N-1), because the
-/// disc is drawn through a photon; `unbiased` leaves that outermost photon out of the sum. When
-/// fewer than N lie within the maximum radius R, both sum all over pi R^2. In a uniform field
-/// `unbiased` is exactly so for any N and R.
+/// `raw` is eq. 4: r is the distance of the N-th photon. It reads high by w(1) / (N-1), w(1) being the
+/// filter's weight at the rim, because the disc is drawn through a photon. `unbiased` leaves
+/// that outermost photon out of the sum. When fewer than N lie within the maximum radius R, both sum
+/// all over pi R^2. In a uniform field `unbiased` is exactly so for any N, R and filter: given r,
+/// or given how many lie within R, the photons inside are spread evenly over the disc, where weights
+/// have a mean of 1, so that the filter changes no mean; and without a filter, with the density 1
+/// and a = pi r^2, the mean of (N-1)/a over the N-th photons inside the disc of area A = pi R^2 is
+/// P(at least N-1 in A), that of the number n < N in A over A is P(at most N-2 in A).
 ///
 /// Photons that came from behind the point's geometric normal do not count. Photons carry flux,
 /// so density is per area of the geometric surface, and f_r is taken about the shading normal.
@@ -23,23 +36,28 @@ public:
     struct Settings {
         GatherLimits limits;
         PhotonMapParams::Estimator estimator = PhotonMapParams::Estimator::unbiased;
+        FilterKind filter = FilterKind::none;
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1
     };
 
     RadianceEstimate(const Settings& settings, Isa isa) : settings_(settings), shading_(isa) {}
 
     /// [W m^-2 sr^-1] leaving along the point's `wo`, from what a tree gathered at it.
-    Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered) const;
-    /// The same by a table of f_r.
     Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
-                      ReflectionTable& table) const;
+                      EstimateScratch& scratch) const;
     /// [W m^-2], the same with f_r = 1.
-    Spectrum irradiance(const ReceiverPoint& point, const GatheredPhotons& gathered) const;
+    Spectrum irradiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                        EstimateScratch& scratch) const;
 
 private:
-    WeightedPhotons counted(const GatheredPhotons& gathered) const;
-    Spectrum density(const SpectrumSum& sum, const ReceiverPoint& point,
-                     const GatheredPhotons& gathered) const;
+    /// The photons that count, and the disc over which their flux is spread.
+    struct Disc {
+        WeightedPhotons photons;
+        double squared_radius = 0;  ///< [m^2]
+    };
+    Disc disc(const ReceiverPoint& point, const GatheredPhotons& gathered,
+              EstimateScratch& scratch) const;
+    Spectrum density(const SpectrumSum& sum, const Disc& disc) const;
 
     Settings settings_;
     Shading shading_;

@@ -65,6 +65,14 @@ const std::array<float, 256> mantissa_units = [] {
 
 Shading::Shading(Isa isa) : kernels_(kernels_for(isa)) {}
 
+void Shading::weigh(const FilterPolynomial& filter, const GatheredPhotons& photons,
+                    double squared_radius, float* weight) const {
+    // Where photons fall into one point the radius may be too small for a float's reciprocal.
+    constexpr auto smallest = static_cast<double>(std::numeric_limits<float>::min());
+    const auto inverse = static_cast<float>(1 / std::max(squared_radius, smallest));
+    kernels_.weigh(filter, {photons.squared_distance, photons.count, inverse, weight});
+}
+
 SpectrumSum Shading::arriving(const WeightedPhotons& photons) const {
     return sum_in_runs(kernels_.arriving, Lobe{}, photons);
 }

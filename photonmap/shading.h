@@ -24,6 +24,10 @@ class Shading {
 public:
     explicit Shading(Isa isa);
 
+    /// Weights of photons in a disc of that squared radius [m^2], padded as they are.
+    void weigh(const FilterPolynomial& filter, const GatheredPhotons& photons,
+               double squared_radius, float* weight) const;
+
     /// Sum of flux x weight, in the map's unit of flux.
     SpectrumSum arriving(const WeightedPhotons& photons) const;
 

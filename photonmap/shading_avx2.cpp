@@ -1,6 +1,7 @@
 #include <immintrin.h>
 
-#include "photonmap/shading_kernel.h"
+#include "photonmap/filter_loop.h"
+#include "photonmap/lanes_avx2.h"
 
 namespace caustics {
 
@@ -158,6 +159,6 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
 
 }  // namespace
 
-const ShadingKernels avx2_shading{add_arriving, add_facing, add_schlick};
+const ShadingKernels avx2_shading{add_arriving, add_facing, add_schlick, weigh_photons<Avx2Lanes>};
 
 }  // namespace caustics

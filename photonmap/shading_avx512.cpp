@@ -1,6 +1,7 @@
 #include <immintrin.h>
 
-#include "photonmap/shading_kernel.h"
+#include "photonmap/filter_loop.h"
+#include "photonmap/lanes_avx512.h"
 
 namespace caustics {
 
@@ -176,6 +177,7 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
 
 }  // namespace
 
-const ShadingKernels avx512_shading{add_arriving, add_facing, add_schlick};
+const ShadingKernels avx512_shading{add_arriving, add_facing, add_schlick,
+                                    weigh_photons<Avx512Lanes>};
 
 }  // namespace caustics

@@ -40,10 +40,30 @@ using ShadingKernel = void(const DirectionTables& tables, const Lobe& lobe,
 
 inline constexpr size_t longest_run = 512;
 
+/// A filter's weight as a polynomial of (d/r)^2, or of d/r where `of_distance`.
+struct FilterPolynomial {
+    static constexpr size_t most_coefficients = 8;
+    float coefficient[most_coefficients];  ///< of the powers 0, 1, ..., degree
+    size_t degree;
+    bool of_distance;
+};
+
+/// Photons whose weights are wanted. Arrays as in GatheredPhotons.
+struct FilteredPhotons {
+    const float* squared_distance;
+    size_t count;
+    float inverse_squared_radius;
+    float* weight;
+};
+
+/// Writes the photons' weights, by Horner's rule; the same bits on every instruction set.
+using WeighingKernel = void(const FilterPolynomial& filter, const FilteredPhotons& photons);
+
 struct ShadingKernels {
     ShadingKernel* arriving;
     ShadingKernel* facing;
     ShadingKernel* schlick;
+    WeighingKernel* weigh;
 };
 
 extern const ShadingKernels plain_shading;

@@ -1,7 +1,8 @@
 #include <bit>
 #include <cstring>
 
-#include "photonmap/shading_kernel.h"
+#include "photonmap/filter_loop.h"
+#include "photonmap/lanes_plain.h"
 
 namespace caustics {
 
@@ -82,6 +83,7 @@ float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t the
     return dot(lobe.normal, decode(tables, theta, phi)) > 0 ? 1.0F : 0.0F;
 }
 
-const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick};
+const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick,
+                                   weigh_photons<PlainLanes>};
 
 }  // namespace caustics

@@ -34,7 +34,8 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
           "mesh_resolution=20", "max_bounces=1"}},
         {"beamtree", {"spread_threshold=22.5"}},
         {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
-        {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}}};
+        {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}},
+        {"photonmap", {"radius=0.25", "filter=cone", "emission=stratified", "interaction=split"}}};
     for (const auto& [name, params] : cases) {
         const nlohmann::json described = describe(method(name, params));
         const Method again = parse_method(name, JsonNode::parse_text(described.dump(), "test"));

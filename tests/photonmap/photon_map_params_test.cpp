@@ -61,9 +61,20 @@ TEST(PhotonMapParams, ChooseTheEmissionAndTheInteraction) {
     EXPECT_NE(refusal(R"({"emission": "regular"})").find("stratified"), std::string::npos);
 }
 
+TEST(PhotonMapParams, ChooseTheFilterAndARadiusInPlaceOfTheNearest) {
+    EXPECT_EQ(params_of("{}").filter, FilterKind::none);
+    EXPECT_EQ(params_of("{}").radius, 0);
+    EXPECT_EQ(params_of(R"({"filter": "epanechnikov"})").filter, FilterKind::epanechnikov);
+    EXPECT_EQ(params_of(R"({"filter": "cone", "radius": 0.5})").radius, 0.5);
+    for (const std::string other : {R"("nearest": 50)", R"("max_radius": 1)"}) {
+        const std::string line = refusal(R"({"radius": 0.1, )" + other + "}");
+        EXPECT_NE(line.find("/radius"), std::string::npos) << line;
+        EXPECT_NE(line.find("in place of the nearest"), std::string::npos) << line;
+    }
+}
+
 TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
-    for (const std::string word :
-         {R"("filter": "cone")", R"("adaptive": true)", R"("passes": 2)", R"("radius": 0.1)"}) {
+    for (const std::string word : {R"("adaptive": true)", R"("passes": 2)"}) {
         const std::string line = refusal("{" + word + "}");
         EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
     }
@@ -71,12 +82,14 @@ TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
 
 TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
     for (const std::string json :
-         {R"({"photon": 1})", R"({"photons": 0})", R"({"photons": -1})", R"({"photons": 1.5})",
-          R"({"photons": 2000000001})", R"({"emitted": 0})", R"({"nearest": 0})",
-          R"({"nearest": 1})", R"({"max_radius": 0})", R"({"max_radius": -1})",
-          R"({"max_radius": 1e-30})", R"({"max_radius": 1e30})", R"({"estimator": "biased"})",
-          R"({"tree": "balancd"})", R"({"max_bounces": 0})", R"({"photons": "many"})",
-          R"({"tables": 1})"}) {
+         {R"({"photon": 1})",           R"({"photons": 0})",          R"({"photons": -1})",
+          R"({"photons": 1.5})",        R"({"photons": 2000000001})", R"({"emitted": 0})",
+          R"({"nearest": 0})",          R"({"nearest": 1})",          R"({"max_radius": 0})",
+          R"({"max_radius": -1})",      R"({"max_radius": 1e-30})",   R"({"max_radius": 1e30})",
+          R"({"estimator": "biased"})", R"({"tree": "balancd"})",     R"({"max_bounces": 0})",
+          R"({"photons": "many"})",     R"({"tables": 1})",           R"({"filter": "box"})",
+          R"({"radius": 0})",           R"({"radius": -1})",          R"({"radius": 1e-30})",
+          R"({"radius": "wide"})"}) {
         const std::string line = refusal(json);
         EXPECT_NE(line, "") << json;
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;

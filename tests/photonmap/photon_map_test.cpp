@@ -152,6 +152,22 @@ TEST(PhotonMap, CountsQueriesAndTellsItsPhasesAndRadius) {
     EXPECT_GT(build(scene, {.photons = 10'000}, {})->build_report().resolved.at("max_radius"), 0);
 }
 
+TEST(PhotonMap, GathersAllPhotonsWithinARadius) {
+    const Scene scene(flat_mirror(grey));
+    const auto map = build(scene, {.photons = 10'000, .radius = 0.5}, {});
+    EXPECT_FALSE(map->build_report().resolved.contains("max_radius"));
+    const auto context = map->make_context();
+    const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
+    std::vector<Estimate> out(1);
+    map->irradiance(points, out, *context);
+    Counters counters;
+    context->add_to(counters);
+    EXPECT_GT(counters.at("gathered_photons"), 300U);
+    const std::vector<Estimate> nearest =
+        irradiance(*build(scene, {.photons = 10'000, .nearest = 300}, {}), points);
+    EXPECT_NEAR(out[0].value[0] / nearest[0].value[0], 1, 0.2);
+}
+
 TEST(PhotonMap, RefusesToStorePhotonsWhereNoneCanBe) {
     SceneDesc desc = flat_mirror(grey);
     desc.shapes.front().bsdf = grey;
@@ -170,6 +186,8 @@ TEST(PhotonMap, RefusesParametersThatContradictEachOther) {
     EXPECT_THROW(build(scene, {.photons = 10, .nearest = 1}, {}), InputError);
     EXPECT_NO_THROW(build(scene, {.photons = 10, .nearest = 1, .estimator = Estimator::raw}, {}));
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = -1}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .radius = -1}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .max_radius = 1, .radius = 1}, {}), InputError);
 }
 
 }  // namespace

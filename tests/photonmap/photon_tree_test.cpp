@@ -108,7 +108,8 @@ TEST(PhotonTree, FindsTheSamePhotonsAsALinearScan) {
     for (const std::size_t count : {0U, 1U, 2U, 3U, 4U, 7U, 8U, 31U, 32U, 33U, 100U, 3'001U}) {
         for (const auto& set : photon_sets(count, 15)) {
             const auto trees = all_trees(set.photons);
-            for (const std::size_t nearest : {1U, 2U, 5U, 50U, 4'000U}) {
+            for (const std::size_t nearest :
+                 {std::size_t{1}, std::size_t{2}, std::size_t{50}, GatherLimits::all}) {
                 SCOPED_TRACE(set.name + ", " + std::to_string(nearest) + " of " +
                              std::to_string(count));
                 expect_same_as_scan(set.photons, trees, nearest, Vec3::UnitZ(), 16);
@@ -188,7 +189,10 @@ TEST(PhotonTree, TilesOverCausticsGetWhatALinearScanGets) {
         for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.2F, 0.3F, 0), Vec3(-0.02F, 0.005F, 0)}) {
             for (const float spacing : {2e-4F, 2e-3F, 2e-2F}) {
                 const auto points = tile(corner, spacing);
-                const GatherLimits limits{.nearest = 60, .max_radius = 0.05F};
+                // The 60 nearest, or all within a radius.
+                const GatherLimits limits = spacing == 2e-3F
+                                                ? GatherLimits{GatherLimits::all, 0.01F}
+                                                : GatherLimits{60, 0.05F};
                 std::vector<std::vector<Found>> expected;
                 for (std::size_t i = 0; i < points.size(); i += 5)
                     expected.push_back(linear_scan(photons, points[i], limits));
