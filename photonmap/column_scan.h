@@ -26,82 +26,101 @@ struct ColumnScan {
 
     static bool find(const PhotonColumns& photons, const NearestQuery& query, Candidates& found,
                      uint32_t* energy, uint16_t* direction) {
-        const size_t within = measure(photons, query, found.squared_distance);
-        float bound = query.max_squared_distance;
-        size_t kept = within;
-        if (within > query.nearest) {
-            const auto smaller =
-                Selection<Lanes>::bound_for(found.squared_distance, photons.count, within,
-                                            query.nearest, query.nearest, 0, bound);
-            bound = smaller.value;
-            kept = smaller.not_above;
-        }
-        found.count = kept;
-        if (kept > query.nearest) {
-            keep_places(photons.count, bound, found);
+        found.count = collect(photons, query, found.squared_distance, energy, direction);
+        if (found.count <= query.nearest) return true;
+        const auto smaller = Selection<Lanes>::bound_for(found.squared_distance, found.count,
+                                                         found.count, query.nearest, query.nearest,
+                                                         0, query.max_squared_distance);
+        if (smaller.not_above > query.nearest) {
+            find_places(photons, query, smaller.value, found);
             return false;
         }
-        keep(photons, bound, found.squared_distance, energy, direction);
+        keep(smaller.value, found, energy, direction);
         return true;
     }
 
 private:
-    /// All squared distances; returns how many are within the query's reach.
-    static size_t measure(const PhotonColumns& photons, const NearestQuery& query,
-                          float* squared_distance) {
-        const auto limit = Lanes::all(query.max_squared_distance);
-        const auto px = Lanes::all(query.point[0]);
-        const auto py = Lanes::all(query.point[1]);
-        const auto pz = Lanes::all(query.point[2]);
-        const float* const x = photons.position[0];
-        const float* const y = photons.position[1];
-        const float* const z = photons.position[2];
-        const size_t count = photons.count;
-        size_t within = 0;
-        for (size_t i = 0; i < count; i += Lanes::width) {
-            const auto dx = Lanes::sub(Lanes::load(x + i), px);
-            const auto dy = Lanes::sub(Lanes::load(y + i), py);
-            const auto dz = Lanes::sub(Lanes::load(z + i), pz);
-            const auto d2 =
-                Lanes::add(Lanes::add(Lanes::mul(dx, dx), Lanes::mul(dy, dy)), Lanes::mul(dz, dz));
-            Lanes::store(squared_distance + i, d2);
-            within +=
-                Lanes::count(Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(count - i));
-        }
-        return within;
-    }
+    using Floats = typename Lanes::Floats;
 
-    /// Puts those not above the bound side by side, the distances in their own place.
-    static void keep(const PhotonColumns& photons, float bound, float* squared_distance,
-                     uint32_t* energy, uint16_t* direction) {
-        const auto limit = Lanes::all(bound);
-        const uint32_t* const energies = photons.energy;
-        const uint32_t* const directions = photons.direction;
+    /// Squared distances of photons from the query's point, a register at a time.
+    class Distances {
+    public:
+        Distances(const PhotonColumns& photons, const NearestQuery& query)
+            : x_(photons.position[0]),
+              y_(photons.position[1]),
+              z_(photons.position[2]),
+              px_(Lanes::all(query.point[0])),
+              py_(Lanes::all(query.point[1])),
+              pz_(Lanes::all(query.point[2])) {}
+
+        Floats at(size_t i) const {
+            const Floats dx = Lanes::sub(Lanes::load(x_ + i), px_);
+            const Floats dy = Lanes::sub(Lanes::load(y_ + i), py_);
+            const Floats dz = Lanes::sub(Lanes::load(z_ + i), pz_);
+            return Lanes::add(Lanes::add(Lanes::mul(dx, dx), Lanes::mul(dy, dy)),
+                              Lanes::mul(dz, dz));
+        }
+
+    private:
+        const float *x_, *y_, *z_;
+        Floats px_, py_, pz_;
+    };
+
+    /// Puts the photons within the query's reach side by side; returns their number.
+    static size_t collect(const PhotonColumns& photons, const NearestQuery& query,
+                          float* squared_distance, uint32_t* energy, uint16_t* direction) {
+        const Distances distances(photons, query);
+        const auto limit = Lanes::all(query.max_squared_distance);
         const size_t count = photons.count;
         size_t kept = 0;
         for (size_t i = 0; i < count; i += Lanes::width) {
-            const auto d2 = Lanes::load(squared_distance + i);
+            const Floats d2 = distances.at(i);
             const uint32_t mask =
                 Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(count - i);
+            // Photons lie bucket by bucket, so that whole registers are out of reach.
+            if (mask == 0) continue;
             Lanes::compress(squared_distance + kept, mask, d2);
-            Lanes::compress(energy + kept, mask, Lanes::load(energies + i));
-            Lanes::compress_halves(direction + kept, mask, Lanes::load(directions + i));
+            Lanes::compress(energy + kept, mask, Lanes::load(photons.energy + i));
+            Lanes::compress_halves(direction + kept, mask, Lanes::load(photons.direction + i));
             kept += Lanes::count(mask);
         }
+        return kept;
     }
 
-    static void keep_places(size_t count, float bound, Candidates& found) {
+    /// Of photons side by side, keeps those not above the bound, in their order.
+    static void keep(float bound, Candidates& found, uint32_t* energy, uint16_t* direction) {
         const auto limit = Lanes::all(bound);
         size_t kept = 0;
-        for (size_t i = 0; i < count; i += Lanes::width) {
-            const auto d2 = Lanes::load(found.squared_distance + i);
+        for (size_t i = 0; i < found.count; i += Lanes::width) {
+            const Floats d2 = Lanes::load(found.squared_distance + i);
+            const auto energies = Lanes::load(energy + i);
+            const auto directions = Lanes::load_halves(direction + i);
             const uint32_t mask =
-                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(count - i);
+                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(found.count - i);
+            Lanes::compress(found.squared_distance + kept, mask, d2);
+            Lanes::compress(energy + kept, mask, energies);
+            Lanes::compress_halves(direction + kept, mask, directions);
+            kept += Lanes::count(mask);
+        }
+        found.count = kept;
+    }
+
+    /// The columns' photons not above the bound, by their places.
+    static void find_places(const PhotonColumns& photons, const NearestQuery& query, float bound,
+                            Candidates& found) {
+        const Distances distances(photons, query);
+        const auto limit = Lanes::all(bound);
+        size_t kept = 0;
+        for (size_t i = 0; i < photons.count; i += Lanes::width) {
+            const Floats d2 = distances.at(i);
+            const uint32_t mask =
+                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(photons.count - i);
             Lanes::compress(found.squared_distance + kept, mask, d2);
             Lanes::compress(found.index + kept, mask,
                             Lanes::counting_from(static_cast<uint32_t>(i)));
             kept += Lanes::count(mask);
         }
+        found.count = kept;
     }
 };
 

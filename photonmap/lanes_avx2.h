@@ -16,6 +16,9 @@ struct Avx2Lanes {
     static Words load(const uint32_t* from) {
         return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
     }
+    static Words load_halves(const uint16_t* from) {
+        return _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
+    }
     static Floats all(float value) { return _mm256_set1_ps(value); }
     static Words counting_from(uint32_t first) {
         return _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)),

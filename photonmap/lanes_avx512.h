@@ -14,6 +14,9 @@ struct Avx512Lanes {
 
     static Floats load(const float* from) { return _mm512_loadu_ps(from); }
     static Words load(const uint32_t* from) { return _mm512_loadu_si512(from); }
+    static Words load_halves(const uint16_t* from) {
+        return _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
+    }
     static Floats all(float value) { return _mm512_set1_ps(value); }
     static Words counting_from(uint32_t first) {
         return _mm512_add_epi32(

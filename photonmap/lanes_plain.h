@@ -16,6 +16,7 @@ struct PlainLanes {
 
     static Floats load(const float* from) { return *from; }
     static Words load(const uint32_t* from) { return *from; }
+    static Words load_halves(const uint16_t* from) { return *from; }
     static Floats all(float value) { return value; }
     static Words counting_from(uint32_t first) { return first; }
     static void store(float* to, Floats a) { *to = a; }

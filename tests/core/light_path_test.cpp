@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/aimed_emission.h"
+#include "core/sampling.h"
+#include "core/tessellate.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 
@@ -97,6 +100,42 @@ TEST(AimedEmission, IsUniformOverTheUnionOfTheCasters) {
     for (std::size_t i = 1; i < 8; ++i) {
         const double expected = sent * solid_angle[i] / in_union;
         EXPECT_NEAR(counts[i], expected, 4 * std::sqrt(expected) + 1e-3 * sent) << i;
+    }
+}
+
+// A ball before a mesh and a quadric, overlapping as seen from the light: the light that reaches
+// each first is what rays in all directions find.
+TEST(AimedEmission, LightsOverlappingCastersOfEveryKindAsRaysInAllDirectionsDo) {
+    SceneDesc desc;
+    desc.point_lights.push_back(support::point_light({0.1, -0.2, 0.3}, 2));
+    desc.shapes.push_back(support::sphere("ball", {0.4, 0, 2.2}, 0.6, support::glass(1.5F)));
+    Transform behind = Transform::Identity();
+    behind.translate(Vec3d(1.2, 0.6, 4));
+    desc.shapes.push_back(support::mesh("mesh", tessellate_sphere(6), behind, support::mirror()));
+    desc.shapes.push_back(
+        support::rectangle("mirror", {-1, 0, 2}, {0.9, 0, 0.3}, {0, 0.7, 0}, support::mirror()));
+    const Scene scene(std::move(desc));
+    const AimedEmission emission(scene);
+    constexpr double intensity = 2;
+    std::array<support::Moments, 3> aimed, uniform;
+    for (std::uint64_t path = 0; path < 4 * paths; ++path) {
+        Rng rng(5, Stage::test, path);
+        const auto add = [&](const std::optional<SurfacePoint>& hit, double flux,
+                             std::array<support::Moments, 3>& sums) {
+            for (std::uint32_t i = 0; i < 3; ++i) sums[i].add(hit && hit->shape == i ? flux : 0);
+        };
+        const auto particle = emission.emit(rng);
+        add(particle ? scene.intersect(particle->ray) : std::nullopt,
+            particle ? static_cast<double>(particle->flux[0]) : 0, aimed);
+        const Vec3 anywhere = uniform_cap(2, rng.next(), rng.next()).normalized();
+        add(scene.intersect({Vec3(0.1F, -0.2F, 0.3F), anywhere}), 4 * pi_d * intensity, uniform);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_GT(uniform[i].mean(), 0.05);
+        EXPECT_NEAR(aimed[i].mean(), uniform[i].mean(),
+                    4 * std::hypot(aimed[i].standard_error(), uniform[i].standard_error()))
+            << i;
+        EXPECT_LT(aimed[i].standard_error(), 0.6 * uniform[i].standard_error()) << i;
     }
 }
 

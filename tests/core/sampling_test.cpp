@@ -66,6 +66,34 @@ TEST(Sampling, DiscIsUniformByArea) {
               1e-3);
 }
 
+TEST(Sampling, ConcentricDiscIsUniformByArea) {
+    EXPECT_GT(p_value_of([](float u0, float u1, UniformPairs& pairs) {
+                  const Vec2 p = concentric_disc(u0, u1);
+                  ASSERT_LE(p.norm(), 1 + 1e-6F);
+                  pairs.add(static_cast<double>(p.squaredNorm()), p.x(), p.y());
+              }),
+              1e-3);
+}
+
+// From a narrow cone to the whole sphere.
+TEST(Sampling, CapsFromADiscAreUniformBySolidAngle) {
+    for (const float one_minus_cos : {1e-6F, 0.1F, 1.0F, 2.0F})
+        EXPECT_GT(p_value_of([=](float u0, float u1, UniformPairs& pairs) {
+                      const Vec3 w = cap_from_disc(one_minus_cos, concentric_disc(u0, u1));
+                      ASSERT_NEAR(w.norm(), 1, 1e-6F);
+                      const double across =
+                          static_cast<double>(w.x()) * static_cast<double>(w.x()) +
+                          static_cast<double>(w.y()) * static_cast<double>(w.y());
+                      // 1 - cos without the cancellation of a narrow cone.
+                      const double height =
+                          w.z() > 0 ? across / (1 + std::sqrt(1 - std::min(across, 1.0)))
+                                    : 1 - static_cast<double>(w.z());
+                      pairs.add(height / static_cast<double>(one_minus_cos), w.x(), w.y());
+                  }),
+                  1e-3)
+            << one_minus_cos;
+}
+
 TEST(Sampling, ConesAreUniformBySolidAngle) {
     for (const float cosine : {-1.0F, -0.3F, 0.0F, 0.5F, 0.99F}) {
         EXPECT_GT(p_value_of([cosine](float u0, float u1, UniformPairs& pairs) {

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/rng.h"
+#include "tests/support/statistics.h"
 
 namespace caustics {
 namespace {
@@ -129,6 +130,33 @@ TEST(PhotonTracing, StoppingAtACountLeavesTheFluxUnbiased) {
         // Dividing by the paths up to the last photon itself would be far off.
         EXPECT_LT(4 * error, 0.1 * static_cast<double>(rate));
     }
+}
+
+// Of five photons two are kept: all ten pairs equally often.
+TEST(PhotonTracing, DropsEveryPhotonEquallyLikely) {
+    std::vector<double> counts(10);
+    constexpr int seeds = 20'000;
+    for (int seed = 0; seed < seeds; ++seed) {
+        TracedPhotons traced{PhotonStore(5), {}, Spectrum::Ones()};
+        for (int i = 0; i < 5; ++i) {
+            Photon photon{};
+            photon.position[0] = static_cast<float>(i);
+            traced.store.append(std::span<const Photon>(&photon, 1));
+        }
+        traced.counts.stored = 5;
+        drop_photons(traced, 2, static_cast<std::uint64_t>(seed));
+        ASSERT_EQ(traced.store.size(), 2U);
+        ASSERT_EQ(traced.counts.stored, 2U);
+        ASSERT_EQ(traced.counts.dropped, 3U);
+        const auto place = [&](std::size_t i) {
+            return static_cast<int>(traced.store.photons()[i].position[0]);
+        };
+        const int low = std::min(place(0), place(1));
+        const int high = std::max(place(0), place(1));
+        ASSERT_LT(low, high);
+        counts[static_cast<std::size_t>(high * (high - 1) / 2 + low)] += 1;
+    }
+    EXPECT_GT(support::chi_square_p_value(counts, std::vector<double>(10, seeds / 10.0)), 1e-3);
 }
 
 TEST(PhotonTracing, KeepsFluxOverTwelveOrdersOfMagnitudeAndAnyColour) {
