@@ -8,6 +8,7 @@
 #include "beamtree/plane_groups.h"
 #include "core/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
+#include "tests/support/sanitizers.h"
 
 namespace caustics {
 namespace {
@@ -126,7 +127,7 @@ void expect_as_scan(const BeamScene& scene, int count) {
     for (std::uint32_t s = 0; s < scene.sets.size(); ++s) {
         const BeamSet& set = scene.sets[s];
         const auto& patches = scene.casters[0].mesh.patches;
-        const std::vector<Query> queries = random_queries(scene, set, count);
+        const std::vector<Query> queries = random_queries(scene, set, support::repetitions(count));
         std::vector<PlaneGroup> groups = fixed_planes(set);
         groups.push_back(receiver_planes(set)[0]);
         for (const PlaneGroup& group : groups) {
