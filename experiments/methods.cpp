@@ -33,6 +33,7 @@ json describe_params(const PhotonMapParams& p) {
     const bool stratified = p.emission == PhotonMapParams::Emission::stratified;
     json all = {{"estimator", unbiased ? "unbiased" : "raw"},
                 {"filter", name(p.filter)},
+                {"adaptive", p.adaptive},
                 {"max_bounces", p.max_bounces},
                 {"emission", stratified ? "stratified" : "random"},
                 {"interaction", p.interaction == Interaction::split ? "split" : "roulette"},

@@ -75,11 +75,9 @@ void BalancedKdTree::find(const NearestQuery& query, GatherScratch& scratch) con
     find_nearest(Heap{photons_.photons()}, kernels_, query, scratch);
 }
 
-void BalancedKdTree::copy_codes(const Candidates& found, std::uint32_t* energy,
-                                std::uint16_t* direction) const {
+void BalancedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) const {
     const std::span<const Photon> photons = photons_.photons();
-    for (std::size_t i = 0; i < found.count; ++i)
-        copy_code(photons[found.index[i]], energy[i], direction[i]);
+    for (std::size_t i = 0; i < found.count; ++i) copy_photon(photons[found.index[i]], i, to);
 }
 
 std::uint64_t BalancedKdTree::code_of(std::uint32_t photon) const {

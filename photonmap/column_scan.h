@@ -25,8 +25,8 @@ struct ColumnScan {
     }
 
     static bool find(const PhotonColumns& photons, const NearestQuery& query, Candidates& found,
-                     uint32_t* energy, uint16_t* direction) {
-        found.count = collect(photons, query, found.squared_distance, energy, direction);
+                     const CopiedPhotons& to) {
+        found.count = collect(photons, query, found.squared_distance, to);
         if (found.count <= query.nearest) return true;
         const auto smaller = Selection<Lanes>::bound_for(found.squared_distance, found.count,
                                                          found.count, query.nearest, query.nearest,
@@ -35,7 +35,7 @@ struct ColumnScan {
             find_places(photons, query, smaller.value, found);
             return false;
         }
-        keep(smaller.value, found, energy, direction);
+        keep(smaller.value, found, to);
         return true;
     }
 
@@ -68,7 +68,7 @@ private:
 
     /// Puts the photons within the query's reach side by side; returns their number.
     static size_t collect(const PhotonColumns& photons, const NearestQuery& query,
-                          float* squared_distance, uint32_t* energy, uint16_t* direction) {
+                          float* squared_distance, const CopiedPhotons& to) {
         const Distances distances(photons, query);
         const auto limit = Lanes::all(query.max_squared_distance);
         const size_t count = photons.count;
@@ -80,29 +80,39 @@ private:
             // Photons lie bucket by bucket, so that whole registers are out of reach.
             if (mask == 0) continue;
             Lanes::compress(squared_distance + kept, mask, d2);
-            Lanes::compress(energy + kept, mask, Lanes::load(photons.energy + i));
-            Lanes::compress_halves(direction + kept, mask, Lanes::load(photons.direction + i));
+            Lanes::compress(to.energy + kept, mask, Lanes::load(photons.energy + i));
+            Lanes::compress_halves(to.direction + kept, mask, Lanes::load(photons.direction + i));
+            compress_positions(photons.position, i, mask, to, kept);
             kept += Lanes::count(mask);
         }
         return kept;
     }
 
     /// Of photons side by side, keeps those not above the bound, in their order.
-    static void keep(float bound, Candidates& found, uint32_t* energy, uint16_t* direction) {
+    static void keep(float bound, Candidates& found, const CopiedPhotons& to) {
         const auto limit = Lanes::all(bound);
         size_t kept = 0;
         for (size_t i = 0; i < found.count; i += Lanes::width) {
             const Floats d2 = Lanes::load(found.squared_distance + i);
-            const auto energies = Lanes::load(energy + i);
-            const auto directions = Lanes::load_halves(direction + i);
+            const auto energies = Lanes::load(to.energy + i);
+            const auto directions = Lanes::load_halves(to.direction + i);
             const uint32_t mask =
                 Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(found.count - i);
             Lanes::compress(found.squared_distance + kept, mask, d2);
-            Lanes::compress(energy + kept, mask, energies);
-            Lanes::compress_halves(direction + kept, mask, directions);
+            Lanes::compress(to.energy + kept, mask, energies);
+            Lanes::compress_halves(to.direction + kept, mask, directions);
+            compress_positions(to.position, i, mask, to, kept);
             kept += Lanes::count(mask);
         }
         found.count = kept;
+    }
+
+    /// The masked positions of register i, where they are wanted.
+    static void compress_positions(float* const* from, size_t i, uint32_t mask,
+                                   const CopiedPhotons& to, size_t kept) {
+        if (to.position[0] == nullptr) return;
+        for (unsigned axis = 0; axis < 3; ++axis)
+            Lanes::compress(to.position[axis] + kept, mask, Lanes::load(from[axis] + i));
     }
 
     /// The columns' photons not above the bound, by their places.

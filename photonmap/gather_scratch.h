@@ -30,6 +30,12 @@ struct GatherScratch {
     CandidateArrays found;
     AlignedArray<std::uint32_t> energy;
     AlignedArray<std::uint16_t> direction;
+    AlignedArray<float> position[3];
+
+    /// Makes room for so many found photons and a register behind them; forgets those held.
+    void reserve(std::size_t count, bool positions);
+    /// The arrays that found photons are copied to.
+    CopiedPhotons copied(bool positions);
 
     /// A subtree that a walk has put off.
     struct Pending {

@@ -15,6 +15,8 @@ struct GatheredPhotons {
     const std::uint16_t* direction = nullptr;  ///< DirectionCode: theta, then phi, by address
     std::size_t count = 0;
     std::size_t farthest = 0;  ///< index of a photon at the largest distance; 0 when count is 0
+    /// World frame [m]; null unless GatherLimits::positions asked for them.
+    const float* position[3] = {nullptr, nullptr, nullptr};
 };
 
 }  // namespace caustics

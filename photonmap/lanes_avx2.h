@@ -25,9 +25,24 @@ struct Avx2Lanes {
                                 _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
     }
     static void store(float* to, Floats a) { _mm256_storeu_ps(to, a); }
+    static void store(uint32_t* to, Words a) {
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), a);
+    }
+    static Words whole(Floats a) { return _mm256_cvttps_epi32(a); }
+    static Words no_words() { return _mm256_setzero_si256(); }
+    static Words add_where(uint32_t mask, Words a, Words b) {
+        return _mm256_add_epi32(a, _mm256_and_si256(all_bits(mask), b));
+    }
+    static uint32_t sum(Words a) {
+        __m128i b = _mm_add_epi32(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
+        b = _mm_add_epi32(b, _mm_shuffle_epi32(b, _MM_SHUFFLE(1, 0, 3, 2)));
+        b = _mm_add_epi32(b, _mm_shuffle_epi32(b, _MM_SHUFFLE(2, 3, 0, 1)));
+        return static_cast<uint32_t>(_mm_cvtsi128_si32(b));
+    }
     static Floats add(Floats a, Floats b) { return _mm256_add_ps(a, b); }
     static Floats sub(Floats a, Floats b) { return _mm256_sub_ps(a, b); }
     static Floats mul(Floats a, Floats b) { return _mm256_mul_ps(a, b); }
+    static Floats div(Floats a, Floats b) { return _mm256_div_ps(a, b); }
     static Floats sqrt(Floats a) { return _mm256_sqrt_ps(a); }
     static Floats min(Floats a, Floats b) { return _mm256_min_ps(a, b); }
     static Floats max(Floats a, Floats b) { return _mm256_max_ps(a, b); }
@@ -35,10 +50,7 @@ struct Avx2Lanes {
     static uint32_t not_above(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_LE_OQ)); }
     static size_t count(uint32_t mask) { return static_cast<size_t>(_mm_popcnt_u32(mask)); }
     static Floats where(uint32_t mask, Floats a, Floats b) {
-        const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-        const __m256i chosen = _mm256_cmpeq_epi32(
-            _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), lane_bits), lane_bits);
-        return _mm256_blendv_ps(b, a, _mm256_castsi256_ps(chosen));
+        return _mm256_blendv_ps(b, a, _mm256_castsi256_ps(all_bits(mask)));
     }
     static void compress(float* to, uint32_t mask, Floats a) {
         _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, lanes_of(mask)));
@@ -66,6 +78,12 @@ struct Avx2Lanes {
     }
 
 private:
+    /// All bits of the masked lanes.
+    static __m256i all_bits(uint32_t mask) {
+        const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        return _mm256_cmpeq_epi32(
+            _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), lane_bits), lane_bits);
+    }
     static uint32_t bits(__m256 mask) { return static_cast<uint32_t>(_mm256_movemask_ps(mask)); }
 
     /// For each mask its lanes in order.

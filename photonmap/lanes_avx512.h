@@ -24,9 +24,17 @@ struct Avx512Lanes {
             _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
     }
     static void store(float* to, Floats a) { _mm512_storeu_ps(to, a); }
+    static void store(uint32_t* to, Words a) { _mm512_storeu_si512(to, a); }
+    static Words whole(Floats a) { return _mm512_cvttps_epi32(a); }
+    static Words no_words() { return _mm512_setzero_si512(); }
+    static Words add_where(uint32_t mask, Words a, Words b) {
+        return _mm512_mask_add_epi32(a, static_cast<__mmask16>(mask), a, b);
+    }
+    static uint32_t sum(Words a) { return static_cast<uint32_t>(_mm512_reduce_add_epi32(a)); }
     static Floats add(Floats a, Floats b) { return _mm512_add_ps(a, b); }
     static Floats sub(Floats a, Floats b) { return _mm512_sub_ps(a, b); }
     static Floats mul(Floats a, Floats b) { return _mm512_mul_ps(a, b); }
+    static Floats div(Floats a, Floats b) { return _mm512_div_ps(a, b); }
     static Floats sqrt(Floats a) { return _mm512_sqrt_ps(a); }
     static Floats min(Floats a, Floats b) { return _mm512_min_ps(a, b); }
     static Floats max(Floats a, Floats b) { return _mm512_max_ps(a, b); }

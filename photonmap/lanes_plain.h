@@ -20,9 +20,16 @@ struct PlainLanes {
     static Floats all(float value) { return value; }
     static Words counting_from(uint32_t first) { return first; }
     static void store(float* to, Floats a) { *to = a; }
+    static void store(uint32_t* to, Words a) { *to = a; }
+    /// Whole numbers with a sign, the fraction cut off; words wrap round.
+    static Words whole(Floats a) { return static_cast<uint32_t>(static_cast<int32_t>(a)); }
+    static Words no_words() { return 0; }
+    static Words add_where(uint32_t mask, Words a, Words b) { return mask != 0 ? a + b : a; }
+    static uint32_t sum(Words a) { return a; }
     static Floats add(Floats a, Floats b) { return a + b; }
     static Floats sub(Floats a, Floats b) { return a - b; }
     static Floats mul(Floats a, Floats b) { return a * b; }
+    static Floats div(Floats a, Floats b) { return a / b; }
     static Floats sqrt(Floats a) { return __builtin_sqrtf(a); }
     static Floats min(Floats a, Floats b) { return a < b ? a : b; }
     static Floats max(Floats a, Floats b) { return a > b ? a : b; }

@@ -108,9 +108,7 @@ PhotonColumns PackedGather::columns(std::size_t count) {
     for (auto& column : scratch_.column) column.reserve(room);
     scratch_.column_energy.reserve(room);
     scratch_.column_direction.reserve(room);
-    scratch_.found.reserve(room);
-    scratch_.energy.reserve(room);
-    scratch_.direction.reserve(room);
+    scratch_.reserve(room, limits_.positions);
     return {{scratch_.column[0].data(), scratch_.column[1].data(), scratch_.column[2].data()},
             scratch_.column_energy.data(),
             scratch_.column_direction.data(),
@@ -125,11 +123,11 @@ void PackedGather::answer_member(std::uint32_t i, const Vec3& centre, float cent
         std::min(bound_.at(point.position, normal, tested_, query.max_squared_distance),
                  NeighbourBound::reached(centre_distance + (point.position - centre).norm()));
     Candidates& found = scratch_.found.candidates();
-    if (!tree_.kernels_.find_in_columns(columns_, query, found, scratch_.energy.data(),
-                                        scratch_.direction.data()))
-        choose_among_ties(query.nearest, found);
+    const CopiedPhotons copied = scratch_.copied(limits_.positions);
+    if (!tree_.kernels_.find_in_columns(columns_, query, found, copied))
+        choose_among_ties(query.nearest, found, copied);
     ++scratch_.grouped_queries;
-    const GatheredPhotons answer = tree_.gathered(found, scratch_);
+    const GatheredPhotons answer = tree_.gathered(found, copied);
     if (answer.count == limits_.nearest) {
         bound_.set(point.position, normal, tested_, answer.squared_distance[answer.farthest]);
         last_distance_ = bound_.distance();
@@ -140,7 +138,8 @@ void PackedGather::answer_member(std::uint32_t i, const Vec3& centre, float cent
     consume_(i, answer);
 }
 
-void PackedGather::choose_among_ties(std::size_t nearest, Candidates& found) {
+void PackedGather::choose_among_ties(std::size_t nearest, Candidates& found,
+                                     const CopiedPhotons& to) const {
     const auto direction_of = [this](std::uint32_t place) {
         return static_cast<std::uint16_t>(columns_.direction[place]);
     };
@@ -148,8 +147,11 @@ void PackedGather::choose_among_ties(std::size_t nearest, Candidates& found) {
         return PackedKdTree::code(columns_.energy[place], direction_of(place));
     });
     for (std::size_t k = 0; k < found.count; ++k) {
-        scratch_.energy[k] = columns_.energy[found.index[k]];
-        scratch_.direction[k] = direction_of(found.index[k]);
+        to.energy[k] = columns_.energy[found.index[k]];
+        to.direction[k] = direction_of(found.index[k]);
+        if (to.position[0] == nullptr) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            to.position[axis][k] = columns_.position[axis][found.index[k]];
     }
 }
 

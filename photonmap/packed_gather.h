@@ -23,7 +23,7 @@ private:
     bool answer_together(Group group, const Box& box);
     void answer_one_by_one(Group group);
     void answer_member(std::uint32_t i, const Vec3& centre, float centre_distance);
-    void choose_among_ties(std::size_t nearest, Candidates& found);
+    void choose_among_ties(std::size_t nearest, Candidates& found, const CopiedPhotons& to) const;
     bool may_share(Group group, bool& tested) const;
     PhotonColumns columns(std::size_t count);
 

@@ -63,13 +63,15 @@ void PackedKdTree::find(const NearestQuery& query, GatherScratch& scratch) const
     kernels_.find_packed(view_, query, scratch.found.candidates());
 }
 
-void PackedKdTree::copy_codes(const Candidates& found, std::uint32_t* energy,
-                              std::uint16_t* direction) const {
+void PackedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) const {
     for (std::size_t i = 0; i < found.count; ++i) {
         const unsigned char* const at = bucket(found.index[i] / bucket_photons);
         const std::size_t lane = found.index[i] % bucket_photons;
-        std::memcpy(energy + i, at + 12 * bucket_photons + 4 * lane, 4);
-        std::memcpy(direction + i, at + 16 * bucket_photons + 2 * lane, 2);
+        std::memcpy(to.energy + i, at + 12 * bucket_photons + 4 * lane, 4);
+        std::memcpy(to.direction + i, at + 16 * bucket_photons + 2 * lane, 2);
+        if (to.position[0] == nullptr) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            std::memcpy(to.position[axis] + i, at + 4 * (axis * bucket_photons + lane), 4);
     }
 }
 
@@ -77,7 +79,7 @@ std::uint64_t PackedKdTree::code_of(std::uint32_t photon) const {
     std::uint32_t energy = 0;
     std::uint16_t direction = 0;
     const Candidates one{nullptr, &photon, 1, 1};
-    copy_codes(one, &energy, &direction);
+    copy_out(one, {&energy, &direction, {nullptr, nullptr, nullptr}});
     return code(energy, direction);
 }
 

@@ -15,7 +15,7 @@ namespace {
 /// A thread's scratch and counters.
 class GatherContext final : public QueryContext {
 public:
-    explicit GatherContext(bool tables) {
+    GatherContext(bool tables, bool adaptive) : adaptive_(adaptive) {
         if (tables) estimate.table.emplace();
     }
 
@@ -28,6 +28,7 @@ public:
         counters["gathers"] += gathers_;
         counters["gathered_photons"] += gathered_photons_;
         counters["empty_gathers"] += empty_gathers_;
+        if (adaptive_) counters["used_photons"] += estimate.used_photons;
         if (!estimate.table) return;
         counters["table_lookups"] += estimate.table->lookups();
         counters["table_fillings"] += estimate.table->fillings();
@@ -37,6 +38,7 @@ public:
     EstimateScratch estimate;
 
 private:
+    bool adaptive_;
     std::uint64_t gathers_ = 0;
     std::uint64_t gathered_photons_ = 0;
     std::uint64_t empty_gathers_ = 0;
@@ -54,7 +56,7 @@ public:
           tables_(tables) {}
 
     std::unique_ptr<QueryContext> make_context() const override {
-        return std::make_unique<GatherContext>(tables_);
+        return std::make_unique<GatherContext>(tables_, settings_.adaptive);
     }
 
     void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
@@ -113,6 +115,12 @@ void check(const PhotonMapParams& params) {
     if (!(params.radius >= 0)) throw InputError("photonmap: radius must be positive");
     if (params.radius > 0 && params.max_radius > 0)
         throw InputError("photonmap: radius takes the place of max_radius: give one of them");
+    if (!params.adaptive) return;
+    if (params.radius > 0)
+        throw InputError("photonmap: a fixed radius leaves no N for adaptive to choose");
+    if (params.nearest < AdaptiveCount::least_nearest ||
+        params.nearest > AdaptiveCount::most_nearest)
+        throw InputError("photonmap: nearest, the largest N, must be 20 to 100000 with adaptive");
 }
 
 GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const PhotonStore& photons) {
@@ -122,7 +130,8 @@ GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const Pho
         params.max_radius > 0
             ? params.max_radius
             : default_max_radius(photons.photons(), scene.bounds(), params.nearest);
-    return {static_cast<std::size_t>(params.nearest), static_cast<float>(max_radius)};
+    return {static_cast<std::size_t>(params.nearest), static_cast<float>(max_radius),
+            params.adaptive};
 }
 
 }  // namespace
@@ -135,6 +144,7 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMa
     RadianceEstimate::Settings settings;
     settings.estimator = params.estimator;
     settings.filter = params.filter;
+    settings.adaptive = params.adaptive;
     settings.limits = limits(params, scene, photons.store);
     settings.flux_unit = photons.flux_per_energy();
 

@@ -42,6 +42,7 @@ struct PhotonMapParams {
     Interaction interaction = Interaction::roulette;
     TreeKind tree = TreeKind::balanced;
     int nearest = 50;       ///< N; at least 2 for `unbiased`
+    bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveCount)
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
     FilterKind filter = FilterKind::none;
@@ -55,8 +56,8 @@ struct PhotonMapParams {
 /// Throws InputError for what cannot be used or is not built yet.
 void read(const JsonNode& node, PhotonMapParams& params);
 
-/// Phases "trace" and "balance". Counters: those of LightPathCounts, and `tree_depth` of the
-/// unbalanced tree; flux is divided by photons_emitted x photons_stored / (photons_stored +
+/// Phases "trace" and "balance". Counters: those of LightPathCounts, `tree_depth` of the unbalanced
+/// tree, `gathers`, `gathered_photons` and, where adaptive, the `used_photons` among them; flux is divided by photons_emitted x photons_stored / (photons_stored +
 /// photons_dropped), see scene_photons.h. Throws InputError for params that contradict each other
 /// and for a map that
 /// does not fit, UnsupportedScene when the photons asked for cannot be had; with `emitted` an

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <string>
 
+#include "photonmap/adaptive_count.h"
 #include "photonmap/photon_map.h"
 
 namespace caustics {
@@ -47,12 +48,16 @@ void read_estimate(const JsonNode& node, PhotonMapParams& params) {
     if (const auto estimator = node.find("estimator"))
         params.estimator =
             estimator->as_choice({"unbiased", "raw"}) == 0 ? Estimator::unbiased : Estimator::raw;
+    if (const auto adaptive = node.find("adaptive")) params.adaptive = adaptive->as_bool();
+    if (params.adaptive) params.nearest = AdaptiveCount::default_nearest;
     if (const auto nearest = node.find("nearest")) {
         params.nearest = static_cast<int>(nearest->as_integer_in(1, most_nearest));
         if (params.nearest < 2 && params.estimator == Estimator::unbiased)
             nearest->fail(
                 "must be at least 2 with the estimator \"unbiased\", which leaves the "
                 "outermost photon out (or choose \"raw\")");
+        if (params.adaptive)
+            nearest->as_integer_in(AdaptiveCount::least_nearest, AdaptiveCount::most_nearest);
     }
     if (const auto max_radius = node.find("max_radius"))
         params.max_radius = length(*max_radius, "leave it out to have it chosen");
@@ -66,6 +71,7 @@ void read_radius(const JsonNode& node, PhotonMapParams& params) {
             radius->fail(
                 std::string("takes all photons within it, in place of the nearest: leave ") +
                 other + " out, or radius");
+    if (params.adaptive) radius->fail("leaves no N for adaptive to choose: leave one of them out");
     params.radius = length(*radius, "leave it out to take the nearest photons");
 }
 
@@ -112,7 +118,7 @@ void read(const JsonNode& node, PhotonMapParams& params) {
         params.tree = tree_kinds[tree->as_choice(
             {name(tree_kinds[0]), name(tree_kinds[1]), name(tree_kinds[2])})];
     if (const auto tables = node.find("tables")) params.tables = tables->as_bool();
-    for (const char* key : {"adaptive", "passes"}) refuse(node, key);
+    for (const char* key : {"passes"}) refuse(node, key);
     node.finish();
 }
 

@@ -22,6 +22,7 @@ struct GatherLimits {
 
     std::size_t nearest = 50;  ///< N >= 1
     float max_radius = 1;      ///< [m], > 0; its square must be finite
+    bool positions = false;    ///< whether the answers need the photons' positions
 };
 
 /// The photons of a map, ordered. Every tree gives the same answers on every instruction set: of

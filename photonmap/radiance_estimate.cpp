@@ -23,20 +23,26 @@ double resolvable_squared_radius(const Vec3& point, float max_radius) {
 RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
                                               const GatheredPhotons& gathered,
                                               EstimateScratch& scratch) const {
+    ChosenPhotons chosen{gathered, gathered.count == settings_.limits.nearest, 1};
+    if (settings_.adaptive) chosen = adaptive_.choose(point, gathered, chosen.full, scratch.count);
+    const GatheredPhotons& photons = chosen.photons;
+    scratch.used_photons += photons.count;
+
     const float max_radius = settings_.limits.max_radius;
-    Disc disc{.photons = {.photons = gathered},
-              .squared_radius = static_cast<double>(max_radius) * static_cast<double>(max_radius)};
-    if (gathered.count == settings_.limits.nearest) {
+    Disc disc{.photons = {.photons = photons},
+              .squared_radius = static_cast<double>(max_radius) * static_cast<double>(max_radius),
+              .factor = chosen.factor};
+    if (chosen.full) {
         disc.squared_radius =
-            std::max(static_cast<double>(gathered.squared_distance[gathered.farthest]),
+            std::max(static_cast<double>(photons.squared_distance[photons.farthest]),
                      resolvable_squared_radius(point.position, max_radius));
         if (settings_.estimator == PhotonMapParams::Estimator::unbiased)
-            disc.photons.left_out = gathered.farthest;
+            disc.photons.left_out = photons.farthest;
     }
     if (settings_.filter != FilterKind::none) {
         constexpr std::size_t widest_register = 16;
-        scratch.weight.reserve(gathered.count + widest_register);
-        shading_.weigh(filter_polynomial(settings_.filter), gathered, disc.squared_radius,
+        scratch.weight.reserve(photons.count + widest_register);
+        shading_.weigh(filter_polynomial(settings_.filter), photons, disc.squared_radius,
                        scratch.weight.data());
         disc.photons.weight = scratch.weight.data();
     }
@@ -45,7 +51,7 @@ RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
 
 Spectrum RadianceEstimate::density(const SpectrumSum& sum, const Disc& disc) const {
     const SpectrumSum density =
-        sum * settings_.flux_unit.cast<double>() / (pi_d * disc.squared_radius);
+        sum * settings_.flux_unit.cast<double>() * (disc.factor / (pi_d * disc.squared_radius));
     return density.cast<float>();
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/caustic_estimator.h"
+#include "photonmap/adaptive_count.h"
 #include "photonmap/aligned_array.h"
 #include "photonmap/photon_map.h"
 #include "photonmap/photon_tree.h"
@@ -10,9 +11,11 @@
 
 namespace caustics {
 
-/// A thread's arrays for estimates.
+/// A thread's arrays for estimates, and how many photons they were made from.
 struct EstimateScratch {
     AlignedArray<float> weight;
+    CountScratch count;
+    std::uint64_t used_photons = 0;
     std::optional<ReflectionTable> table;  ///< of f_r, where reflection is to be looked up
 };
 
@@ -37,10 +40,12 @@ public:
         GatherLimits limits;
         PhotonMapParams::Estimator estimator = PhotonMapParams::Estimator::unbiased;
         FilterKind filter = FilterKind::none;
+        bool adaptive = false;                  ///< whether N is the largest number (AdaptiveCount)
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1
     };
 
-    RadianceEstimate(const Settings& settings, Isa isa) : settings_(settings), shading_(isa) {}
+    RadianceEstimate(const Settings& settings, Isa isa)
+        : settings_(settings), shading_(isa), adaptive_(isa) {}
 
     /// [W m^-2 sr^-1] leaving along the point's `wo`, from what a tree gathered at it.
     Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
@@ -54,6 +59,7 @@ private:
     struct Disc {
         WeightedPhotons photons;
         double squared_radius = 0;  ///< [m^2]
+        double factor = 1;          ///< of the density
     };
     Disc disc(const ReceiverPoint& point, const GatheredPhotons& gathered,
               EstimateScratch& scratch) const;
@@ -61,6 +67,7 @@ private:
 
     Settings settings_;
     Shading shading_;
+    AdaptiveCount adaptive_;
 };
 
 }  // namespace caustics

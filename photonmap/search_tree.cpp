@@ -36,10 +36,7 @@ std::size_t SearchTree::nearest(const GatherLimits& limits) const {
 }
 
 void SearchTree::make_room(const GatherLimits& limits, GatherScratch& scratch) const {
-    const std::size_t room = room_for(nearest(limits));
-    scratch.found.reserve(room);
-    scratch.energy.reserve(room + 16);
-    scratch.direction.reserve(room + 16);
+    scratch.reserve(room_for(nearest(limits)), limits.positions);
 }
 
 NearestQuery SearchTree::query_at(const Vec3& point, const GatherLimits& limits) const {
@@ -70,8 +67,9 @@ void SearchTree::answer(std::span<const ReceiverPoint> points, std::size_t i,
     find(query, scratch);
     ++scratch.single_queries;
     const Candidates& found = scratch.found.candidates();
-    copy_codes(found, scratch.energy.data(), scratch.direction.data());
-    const GatheredPhotons answer = gathered(found, scratch);
+    const CopiedPhotons copied = scratch.copied(limits.positions);
+    copy_out(found, copied);
+    const GatheredPhotons answer = gathered(found, copied);
     if (answer.count == limits.nearest)
         bound.set(x, normal, tested, answer.squared_distance[answer.farthest]);
     else
@@ -79,9 +77,13 @@ void SearchTree::answer(std::span<const ReceiverPoint> points, std::size_t i,
     consume(i, answer);
 }
 
-GatheredPhotons SearchTree::gathered(const Candidates& found, GatherScratch& scratch) const {
-    GatheredPhotons answer{found.squared_distance, scratch.energy.data(), scratch.direction.data(),
-                           found.count, 0};
+GatheredPhotons SearchTree::gathered(const Candidates& found, const CopiedPhotons& copied) const {
+    GatheredPhotons answer{found.squared_distance,
+                           copied.energy,
+                           copied.direction,
+                           found.count,
+                           0,
+                           {copied.position[0], copied.position[1], copied.position[2]}};
     if (found.count == 0) return answer;
     const Farthest farthest = kernels_.farthest(found);
     answer.farthest = farthest.place;

@@ -26,6 +26,13 @@ inline void copy_code(const Photon& photon, std::uint32_t& energy, std::uint16_t
     std::memcpy(&direction, &photon.theta, sizeof direction);
 }
 
+/// Copies a photon to place i.
+inline void copy_photon(const Photon& photon, std::size_t i, const CopiedPhotons& to) {
+    copy_code(photon, to.energy[i], to.direction[i]);
+    if (to.position[0] == nullptr) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) to.position[axis][i] = photon.position[axis];
+}
+
 /// What the three trees share: the side test, the bound from the query before, and the answer's
 /// arrays.
 class SearchTree : public PhotonTree {
@@ -51,8 +58,7 @@ protected:
 
     /// Puts the query's answer into scratch.found, which has room for room_for(N).
     virtual void find(const NearestQuery& query, GatherScratch& scratch) const = 0;
-    virtual void copy_codes(const Candidates& found, std::uint32_t* energy,
-                            std::uint16_t* direction) const = 0;
+    virtual void copy_out(const Candidates& found, const CopiedPhotons& to) const = 0;
     virtual std::uint64_t code_of(std::uint32_t photon) const = 0;
 
     /// Photons asked for, but no more than there are.
@@ -66,7 +72,7 @@ protected:
     /// Answers one point; `bound` is used and renewed.
     void answer(std::span<const ReceiverPoint> points, std::size_t i, const GatherLimits& limits,
                 NeighbourBound& bound, GatherScratch& scratch, const Consumer& consume) const;
-    GatheredPhotons gathered(const Candidates& found, GatherScratch& scratch) const;
+    GatheredPhotons gathered(const Candidates& found, const CopiedPhotons& copied) const;
 
     /// Of candidates at the largest distance leaves those of the smallest codes, `nearest` in all.
     template <typename CodeOf>

@@ -3,6 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "photonmap/count_choice.h"
 #include "photonmap/direction_tables.h"
 
 namespace caustics {
@@ -91,6 +92,13 @@ struct BucketRange {
     unsigned char* last_bucket;  ///< where a bucket that is not full goes
 };
 
+/// Where found photons are copied to. Room as in Candidates.
+struct CopiedPhotons {
+    uint32_t* energy;
+    uint16_t* direction;
+    float* position[3];  ///< null where positions are not wanted
+};
+
 struct Farthest {
     size_t place;
     bool alone;  ///< no other candidate is as far
@@ -103,15 +111,17 @@ struct TreeKernels {
     float (*find_packed)(const PackedView&, const NearestQuery&, Candidates&);
     /// Copies those photons out of the tree.
     void (*copy_columns)(const PackedView&, const Candidates&, PhotonColumns&);
-    /// Finds the nearest of the columns, with their codes. False when equal distances leave a choice;
+    /// Finds the nearest of the columns and copies them. False when equal distances leave a choice;
     /// then `found` holds, as indices into the columns, more photons than wanted.
     bool (*find_in_columns)(const PhotonColumns&, const NearestQuery&, Candidates& found,
-                            uint32_t* energy, uint16_t* direction);
+                            const CopiedPhotons& to);
     /// Drops candidates until `most` or (ties aside) fewer, but at least `nearest` are left, and
     /// returns the largest squared distance that a further one may have.
     float (*shrink)(Candidates&, size_t nearest, size_t most, float bound);
     /// The first of the farthest candidates; there must be one.
     Farthest (*farthest)(const Candidates&);
+    /// Chooses how many of a point's photons to take.
+    CountChooser* choose_count;
     /// Bounds of the positions of an array of 20-byte photons.
     void (*bounds)(const unsigned char* photons, size_t count, float least[3], float greatest[3]);
     /// Orders at most small_range photons as an in-order walk of their left-balanced tree.

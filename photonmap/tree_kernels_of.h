@@ -1,6 +1,7 @@
 #pragma once
 
 #include "photonmap/column_scan.h"
+#include "photonmap/count_chooser.h"
 #include "photonmap/packed_walk.h"
 #include "photonmap/small_order.h"
 
@@ -15,6 +16,7 @@ struct TreeKernelsOf {
         .find_in_columns = &ColumnScan<Lanes>::find,
         .shrink = &CandidateLoops<Lanes>::shrink,
         .farthest = &CandidateLoops<Lanes>::farthest,
+        .choose_count = &CountChoiceOf<Lanes>::choose,
         .bounds = &SmallOrder<Lanes>::bounds,
         .order_small = &SmallOrder<Lanes>::order,
         .fill_buckets = &SmallOrder<Lanes>::fill_buckets,

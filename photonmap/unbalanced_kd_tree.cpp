@@ -87,10 +87,8 @@ void UnbalancedKdTree::find(const NearestQuery& query, GatherScratch& scratch) c
     find_nearest(LinkedNodes{nodes_.get(), size_ == 0 ? 0U : 1U}, kernels_, query, scratch);
 }
 
-void UnbalancedKdTree::copy_codes(const Candidates& found, std::uint32_t* energy,
-                                  std::uint16_t* direction) const {
-    for (std::size_t i = 0; i < found.count; ++i)
-        copy_code(nodes_[found.index[i]].photon, energy[i], direction[i]);
+void UnbalancedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) const {
+    for (std::size_t i = 0; i < found.count; ++i) copy_photon(nodes_[found.index[i]].photon, i, to);
 }
 
 std::uint64_t UnbalancedKdTree::code_of(std::uint32_t photon) const {

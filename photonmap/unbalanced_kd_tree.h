@@ -26,8 +26,7 @@ public:
 private:
     void insert(std::uint32_t node);
     void find(const NearestQuery& query, GatherScratch& scratch) const override;
-    void copy_codes(const Candidates& found, std::uint32_t* energy,
-                    std::uint16_t* direction) const override;
+    void copy_out(const Candidates& found, const CopiedPhotons& to) const override;
     std::uint64_t code_of(std::uint32_t photon) const override;
 
     struct Unmap {

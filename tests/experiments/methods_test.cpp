@@ -35,6 +35,7 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
         {"beamtree", {"spread_threshold=22.5"}},
         {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
         {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}},
+        {"photonmap", {"adaptive=true", "nearest=120", "filter=gaussian"}},
         {"photonmap", {"radius=0.25", "filter=cone", "emission=stratified", "interaction=split"}}};
     for (const auto& [name, params] : cases) {
         const nlohmann::json described = describe(method(name, params));

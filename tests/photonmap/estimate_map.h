@@ -25,8 +25,9 @@ class EstimateMap {
 public:
     using Settings = RadianceEstimate::Settings;
 
-    explicit EstimateMap(const std::vector<Photon>& photons, Isa isa = widest_isa())
-        : tree_(build_tree(TreeKind::packed, store_of(photons), isa)), isa_(isa) {}
+    explicit EstimateMap(const std::vector<Photon>& photons, Isa isa = widest_isa(),
+                         TreeKind kind = TreeKind::packed)
+        : tree_(build_tree(kind, store_of(photons), isa)), isa_(isa) {}
 
     Spectrum radiance(const Settings& settings, const ReceiverPoint& point) const {
         return evaluated(settings, {point}, &RadianceEstimate::radiance)[0];

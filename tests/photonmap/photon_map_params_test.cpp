@@ -73,8 +73,17 @@ TEST(PhotonMapParams, ChooseTheFilterAndARadiusInPlaceOfTheNearest) {
     }
 }
 
+TEST(PhotonMapParams, AdaptiveHasItsOwnLargestNumber) {
+    EXPECT_FALSE(params_of("{}").adaptive);
+    EXPECT_EQ(params_of(R"({"adaptive": true})").nearest, 200);
+    EXPECT_EQ(params_of(R"({"adaptive": true, "nearest": 80})").nearest, 80);
+    EXPECT_EQ(params_of(R"({"adaptive": false})").nearest, 50);
+    EXPECT_NE(refusal(R"({"adaptive": true, "nearest": 10})").find("/nearest"), std::string::npos);
+    EXPECT_NE(refusal(R"({"adaptive": true, "radius": 1})").find("adaptive"), std::string::npos);
+}
+
 TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
-    for (const std::string word : {R"("adaptive": true)", R"("passes": 2)"}) {
+    for (const std::string word : {R"("passes": 2)"}) {
         const std::string line = refusal("{" + word + "}");
         EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
     }
@@ -87,7 +96,7 @@ TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
           R"({"nearest": 0})",          R"({"nearest": 1})",          R"({"max_radius": 0})",
           R"({"max_radius": -1})",      R"({"max_radius": 1e-30})",   R"({"max_radius": 1e30})",
           R"({"estimator": "biased"})", R"({"tree": "balancd"})",     R"({"max_bounces": 0})",
-          R"({"photons": "many"})",     R"({"tables": 1})",           R"({"filter": "box"})",
+          R"({"photons": "many"})",     R"({"tables": 1})",           R"({"filter": "box"})", R"({"adaptive": 1})",
           R"({"radius": 0})",           R"({"radius": -1})",          R"({"radius": 1e-30})",
           R"({"radius": "wide"})"}) {
         const std::string line = refusal(json);

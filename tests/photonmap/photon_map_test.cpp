@@ -168,6 +168,19 @@ TEST(PhotonMap, GathersAllPhotonsWithinARadius) {
     EXPECT_NEAR(out[0].value[0] / nearest[0].value[0], 1, 0.2);
 }
 
+TEST(PhotonMap, CountsThePhotonsThatAdaptiveUses) {
+    const Scene scene(flat_mirror(grey));
+    const auto map = build(scene, {.photons = 20'000, .nearest = 100, .adaptive = true}, {});
+    const auto context = map->make_context();
+    const auto points = ceiling_grid();
+    std::vector<Estimate> out(points.size());
+    map->irradiance(points, out, *context);
+    Counters counters;
+    context->add_to(counters);
+    EXPECT_LT(counters.at("used_photons"), counters.at("gathered_photons"));
+    EXPECT_GT(counters.at("used_photons"), counters.at("gathered_photons") / 3);
+}
+
 TEST(PhotonMap, RefusesToStorePhotonsWhereNoneCanBe) {
     SceneDesc desc = flat_mirror(grey);
     desc.shapes.front().bsdf = grey;
@@ -187,6 +200,8 @@ TEST(PhotonMap, RefusesParametersThatContradictEachOther) {
     EXPECT_NO_THROW(build(scene, {.photons = 10, .nearest = 1, .estimator = Estimator::raw}, {}));
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = -1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .radius = -1}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .adaptive = true, .radius = 1}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .nearest = 10, .adaptive = true}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = 1, .radius = 1}, {}), InputError);
 }
 

@@ -62,6 +62,13 @@ std::vector<ReceiverPoint> query_points(std::span<const Photon> photons, std::si
     return points;
 }
 
+/// The position must be at the distance.
+void expect_position(const ReceiverPoint& point, const GatheredPhotons& gathered, std::size_t k) {
+    Photon photon{};
+    for (int axis = 0; axis < 3; ++axis) photon.position[axis] = gathered.position[axis][k];
+    EXPECT_EQ(test::squared_distance(photon, point.position), gathered.squared_distance[k]);
+}
+
 std::vector<std::vector<Found>> answers(const PhotonTree& tree,
                                         std::span<const ReceiverPoint> points,
                                         const GatherLimits& limits, GatherScratch& scratch) {
@@ -69,9 +76,11 @@ std::vector<std::vector<Found>> answers(const PhotonTree& tree,
     std::vector<int> times(points.size());
     tree.gather(points, limits, scratch, [&](std::size_t i, const GatheredPhotons& gathered) {
         ++times[i];
-        for (std::size_t k = 0; k < gathered.count; ++k)
+        for (std::size_t k = 0; k < gathered.count; ++k) {
             all[i].push_back(
                 {gathered.squared_distance[k], gathered.energy[k], gathered.direction[k]});
+            if (limits.positions) expect_position(points[i], gathered, k);
+        }
         if (!all[i].empty()) {
             const Found farthest = all[i][gathered.farthest];
             std::ranges::sort(all[i]);
@@ -89,7 +98,7 @@ void expect_same_as_scan(std::span<const Photon> photons, const std::vector<Name
     GatherScratch scratch;
     for (const float spacing : {1.0F, 0.05F, 1e-3F, 0.0F}) {
         const auto points = query_points(photons, 18, spacing, normal, seed);
-        GatherLimits limits{.nearest = nearest, .max_radius = 1e18F};
+        GatherLimits limits{.nearest = nearest, .max_radius = 1e18F, .positions = nearest % 2 == 0};
         if (spacing > 1e-3F && !photons.empty()) {
             // A radius among the photons' distances.
             const Photon& any = photons[rng.next_word() % photons.size()];
@@ -192,7 +201,7 @@ TEST(PhotonTree, TilesOverCausticsGetWhatALinearScanGets) {
                 // The 60 nearest, or all within a radius.
                 const GatherLimits limits = spacing == 2e-3F
                                                 ? GatherLimits{GatherLimits::all, 0.01F}
-                                                : GatherLimits{60, 0.05F};
+                                                : GatherLimits{60, 0.05F, true};
                 std::vector<std::vector<Found>> expected;
                 for (std::size_t i = 0; i < points.size(); i += 5)
                     expected.push_back(linear_scan(photons, points[i], limits));
