@@ -8,6 +8,7 @@
 #include "core/tessellate.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/light_flux.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/statistics.h"
 
 namespace caustics {
@@ -123,7 +124,8 @@ support::ArrivedFlux photon_cells(const Scene& scene, double half, std::uint64_t
 // each cell: z-scores of the cells' flux are unremarkable. The limit of a thousandth of a cell's
 // mean flux is left to what beams take as even over a polygon.
 void expect_same_flux(const Scene& scene, std::size_t floor, double half) {
-    const support::ArrivedFlux photons = photon_cells(scene, half, 2'000'000);
+    const support::ArrivedFlux photons =
+        photon_cells(scene, half, static_cast<std::uint64_t>(support::repetitions(2'000'000)));
     const auto method = [&] {
         BeamTreeParams params;
         params.max_bounces = 1;
@@ -141,7 +143,7 @@ void expect_same_flux(const Scene& scene, std::size_t floor, double half) {
         Rng rng(9, Stage::test, index);
         support::Moments irradiance;
         std::vector<ReceiverPoint> points;
-        constexpr int n = 48;
+        constexpr int n = support::sanitized ? 8 : 32;
         for (int i = 0; i < n * n; ++i) {
             const double u = (i % n + static_cast<double>(rng.next())) / n;
             const double v = (i / n + static_cast<double>(rng.next())) / n;
