@@ -15,15 +15,6 @@ struct Target {
     std::vector<Vec3> hull;  // empty: the sphere itself
 };
 
-BoundingSphere sphere_round(const std::vector<Vec3>& points) {
-    Box box;
-    for (const Vec3& p : points) box.extend(p);
-    BoundingSphere sphere{box.center(), 0};
-    for (const Vec3& p : points)
-        sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm());
-    return sphere;
-}
-
 std::vector<Vec3> to_world(const Shape& shape, const std::vector<Vec3d>& local) {
     std::vector<Vec3> points;
     for (const Vec3d& p : local) points.push_back(Vec3d(shape.to_world * p).cast<float>());
@@ -56,7 +47,7 @@ std::vector<Target> sectors(const Shape& shape) {
     for (int i = 0; i < cylinder_sectors; ++i) {
         const double step = 2 * pi_d / cylinder_sectors;
         const auto hull = to_world(shape, sector_hull(i * step, (i + 1) * step, 1, 1));
-        parts.push_back({sphere_round(hull), hull});
+        parts.push_back({bounding_sphere(hull), hull});
     }
     return parts;
 }
@@ -186,7 +177,7 @@ BoundingSphere piece_bound(const Shape& shape, const Vec2& low, const Vec2& high
                 local.emplace_back(2 * static_cast<double>(x) - 1, 2 * static_cast<double>(y) - 1,
                                    0);
     }
-    BoundingSphere bound = sphere_round(to_world(shape, local));
+    BoundingSphere bound = bounding_sphere(to_world(shape, local));
     bound.radius *= 1 + 1e-5F;
     return bound;
 }

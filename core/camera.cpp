@@ -29,23 +29,28 @@ Vec3 Camera::direction(double x, double y) const {
     return Vec3d(to_world.linear() * local).normalized().cast<float>();
 }
 
-std::optional<Camera::Projection> Camera::project(const Vec3& p) const {
-    const Vec3d local = to_world.inverse() * p.cast<double>();
-    if (local.z() <= 0) return {};
-    const Vec2d half = half_extent();
-    Projection projection{};
-    projection.x = (1 - local.x() / local.z() / half.x()) / 2 * width;
-    projection.y = (1 - local.y() / local.z() / half.y()) / 2 * height;
-    if (projection.x < 0 || projection.x >= width || projection.y < 0 || projection.y >= height)
-        return {};
-    projection.cos_theta = local.z() / local.norm();
-    projection.distance = (p.cast<double>() - to_world.translation()).norm();
-    return projection;
-}
-
 double Camera::pixel_area() const {
     const Vec2d half = half_extent();
     return 4 * half.x() * half.y() / (static_cast<double>(width) * height);
+}
+
+FilmProjection::FilmProjection(const Camera& camera)
+    : to_local_(camera.to_world.inverse()),
+      eye_(camera.to_world.translation()),
+      half_extent_(camera.half_extent()),
+      width_(camera.width),
+      height_(camera.height) {}
+
+std::optional<FilmProjection::Seen> FilmProjection::project(const Vec3& p) const {
+    const Vec3d local = to_local_ * p.cast<double>();
+    if (local.z() <= 0) return {};
+    Seen seen{};
+    seen.x = (1 - local.x() / local.z() / half_extent_.x()) / 2 * width_;
+    seen.y = (1 - local.y() / local.z() / half_extent_.y()) / 2 * height_;
+    if (seen.x < 0 || seen.x >= width_ || seen.y < 0 || seen.y >= height_) return {};
+    seen.cos_theta = local.z() / local.norm();
+    seen.distance = (p.cast<double>() - eye_).norm();
+    return seen;
 }
 
 }  // namespace caustics

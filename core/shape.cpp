@@ -100,7 +100,10 @@ BoundingSphere bounding_sphere(const Shape& shape) {
     if (shape.primitive == Primitive::sphere)
         return {Vec3d(shape.to_world.translation()).cast<float>(),
                 static_cast<float>(shape.to_world.linear().col(0).norm())};
-    const std::vector<Vec3> points = hull_points(shape);
+    return bounding_sphere(hull_points(shape));
+}
+
+BoundingSphere bounding_sphere(const std::vector<Vec3>& points) {
     Box box;
     for (const Vec3& p : points) box.extend(p);
     BoundingSphere sphere{box.center(), 0};

@@ -28,12 +28,13 @@ struct Shape {
 
 /// World-frame bounds.
 Box bounds(const Shape& shape);
-/// World-frame bounding sphere: centre and radius.
+/// A sphere that holds a shape or points, in the world's frame; not always the smallest.
 struct BoundingSphere {
     Vec3 centre = Vec3::Zero();
     float radius = 0;
 };
 BoundingSphere bounding_sphere(const Shape& shape);
+BoundingSphere bounding_sphere(const std::vector<Vec3>& points);
 /// Points whose convex hull contains the shape: a mesh's vertices, the corners of an exact shape's
 /// local bounds.
 std::vector<Vec3> hull_points(const Shape& shape);

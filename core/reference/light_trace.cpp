@@ -48,7 +48,11 @@ struct Arrival {
 class LightTrace : public CausticEstimator {
 public:
     LightTrace(const Scene& scene, const LightTraceParams& params, const RunOptions& options)
-        : scene_(scene), params_(params), options_(options), emission_(scene) {}
+        : scene_(scene),
+          params_(params),
+          options_(options),
+          emission_(scene),
+          film_(scene.camera()) {}
 
     std::optional<CameraLayer> camera_layer(const RunOptions& options) const override {
         const Camera& camera = scene_.camera();
@@ -131,9 +135,9 @@ private:
     // The pixel average of the radiance a deposit sends to the pinhole: with film area dp at unit
     // distance, dp cos^3(theta) = dA cos(receiver) / distance^2.
     std::optional<Arrival> connect(const Deposit& d) const {
-        const Camera& camera = scene_.camera();
-        const auto seen = camera.project(d.position);
+        const auto seen = film_.project(d.position);
         if (!seen) return {};
+        const Camera& camera = scene_.camera();
         const Vec3 eye = camera.position();
         const Vec3 wo = (eye - d.position).normalized();
         const float cosine = d.geometric_normal.dot(wo);
@@ -179,6 +183,7 @@ private:
     LightTraceParams params_;
     RunOptions options_;
     AimedEmission emission_;
+    FilmProjection film_;
 };
 
 }  // namespace

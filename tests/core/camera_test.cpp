@@ -57,7 +57,7 @@ TEST(Camera, ProjectionUndoesDirection) {
         const float distance = 0.1F + 10 * rng.next();
         const Vec3 direction = camera.direction(x, y);
         EXPECT_NEAR(direction.norm(), 1, 1e-6F);
-        const auto seen = camera.project(camera.position() + distance * direction);
+        const auto seen = FilmProjection(camera).project(camera.position() + distance * direction);
         ASSERT_TRUE(seen) << x << " " << y;
         EXPECT_NEAR(seen->x, x, 1e-3);
         EXPECT_NEAR(seen->y, y, 1e-3);
@@ -70,11 +70,11 @@ TEST(Camera, ProjectionUndoesDirection) {
 TEST(Camera, SeesNothingBehindOrBesideTheFilm) {
     const Camera camera = tilted_camera();
     const Vec3 forward = camera.direction(18, 10);
-    EXPECT_FALSE(camera.project(camera.position() - forward));
-    EXPECT_FALSE(camera.project(camera.position()));
-    EXPECT_FALSE(camera.project(camera.position() + camera.direction(-0.5, 10)));
-    EXPECT_FALSE(camera.project(camera.position() + camera.direction(18, 21.5)));
-    EXPECT_TRUE(camera.project(camera.position() + camera.direction(0.5, 0.5)));
+    EXPECT_FALSE(FilmProjection(camera).project(camera.position() - forward));
+    EXPECT_FALSE(FilmProjection(camera).project(camera.position()));
+    EXPECT_FALSE(FilmProjection(camera).project(camera.position() + camera.direction(-0.5, 10)));
+    EXPECT_FALSE(FilmProjection(camera).project(camera.position() + camera.direction(18, 21.5)));
+    EXPECT_TRUE(FilmProjection(camera).project(camera.position() + camera.direction(0.5, 0.5)));
 }
 
 // The solid angle of the film two ways: sum of pixel_area cos^3, and the pyramid's closed form.

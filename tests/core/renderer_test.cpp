@@ -221,7 +221,7 @@ TEST(Renderer, StratifiedSamplesStandInTheirCells) {
         const Camera& camera = scene.camera();
         std::vector<int> cells(6 * 9);
         const Stub recorder([&](const ReceiverPoint& point) {
-            const auto seen = camera.project(point.position);
+            const auto seen = FilmProjection(camera).project(point.position);
             if (!seen) return Estimate{};
             const int x = static_cast<int>(seen->x * 3), y = static_cast<int>(seen->y * 3);
             ++cells[static_cast<std::size_t>(y * 9 + x)];

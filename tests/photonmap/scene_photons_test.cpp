@@ -207,7 +207,7 @@ TEST(ScenePhotons, TakeNoMoreMemoryThanTheirBytes) {
         for (const int threads : {1, 2}) {
             trace(scene, params(mode, 1'000), 1, threads);
             const double before = resident();
-            const TracedPhotons photons = trace(scene, params(mode, 600'000), 1, threads);
+            const TracedPhotons photons = trace(scene, params(mode, 300'000), 1, threads);
             const double block = PhotonStore::block_photons * sizeof(Photon);
             EXPECT_LE(resident() - before,
                       1.05 * static_cast<double>(photons.store.bytes()) + threads * block);
