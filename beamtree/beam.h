@@ -17,15 +17,15 @@ struct VertexRay {
 };
 
 /// The light that one specular polygon sends on [CC95 sec. 3.1]: rays through its three or four
-/// corners (a triangle, or what is left of one), and the flux they enclose. Four corners are two
-/// triangles, (0, 1, 2) and (0, 2, 3).
+/// corners (a triangle, what is left of one, or a cell of a grid), and the flux they enclose. Four
+/// corners are two triangles, (0, 1, 2) and (0, 2, 3).
 struct Beam {
     static constexpr std::uint32_t none = ~0U;
     std::array<std::uint32_t, 4> corners;  ///< into BeamSet::rays; the last may be `none`
     Spectrum flux = black();               ///< through the polygon, after the event [W]
     float first_share = 1;                 ///< of the flux, in the first triangle
     float offset = 0;                      ///< rays to and from the polygon end this far off it [m]
-    std::uint32_t triangle = 0;            ///< of the caster's mesh
+    std::uint32_t triangle = 0;            ///< of the caster's mesh; the first one of a cell
     bool inside = false;  ///< goes through the medium behind the caster's front side
 
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
@@ -48,6 +48,12 @@ struct BeamSet {
     std::uint64_t bytes() const {
         return rays.size() * sizeof(VertexRay) + beams.size() * sizeof(Beam);
     }
+};
+
+/// Which beam of which set.
+struct BeamNumber {
+    std::uint32_t set = 0;
+    std::uint32_t beam = 0;
 };
 
 }  // namespace caustics

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <tuple>
 
 namespace caustics {
@@ -52,10 +53,22 @@ Projected project_whole(const std::array<RayOnPlane, 3>& rays) {
     return found;
 }
 
+/// What cuts a clipped triangle: nothing (its own corner), the plane, or rays that run along it.
+enum class Limit { none, height, steepness };
+
 /// A corner of a clipped triangle: where it is on the plane, and which point of the triangle.
 struct ClippedCorner {
-    Vec2d at;
-    Vec3d weights;
+    Vec2d at = Vec2d::Zero();
+    Vec3d weights = Vec3d::Zero();
+    Limit limit = Limit::none;
+};
+
+/// Up to six ends of clipped edges, and the corner where the two limits meet.
+struct ClippedPolygon {
+    std::array<ClippedCorner, 7> corners;
+    std::size_t count = 0;
+
+    void add(const ClippedCorner& corner) { corners[count++] = corner; }
 };
 
 // Neighbours clip a shared edge from the same end, so that both find the same bits.
@@ -67,9 +80,17 @@ bool comes_first(const VertexRay& a, const VertexRay& b) {
     return key(a) < key(b);
 }
 
-ClippedCorner corner_at(const TestPlane& plane, const RayOnPlane& a, const RayOnPlane& b, double t,
-                        std::size_t index_a, std::size_t index_b) {
-    ClippedCorner corner{Vec2d::Zero(), Vec3d::Zero()};
+/// One end of what is left of an edge: its place along the edge and what cut it there.
+struct EdgeEnd {
+    double t;
+    Limit limit;
+};
+
+ClippedCorner corner_at(const TestPlane& plane, const RayOnPlane& a, const RayOnPlane& b,
+                        const EdgeEnd& edge_end, std::size_t index_a, std::size_t index_b) {
+    const double t = edge_end.t;
+    ClippedCorner corner;
+    corner.limit = edge_end.limit;
     corner.weights[static_cast<Eigen::Index>(index_a)] = 1 - t;
     corner.weights[static_cast<Eigen::Index>(index_b)] = t;
     const RayOnPlane& end = t == 0 ? a : b;
@@ -85,34 +106,76 @@ ClippedCorner corner_at(const TestPlane& plane, const RayOnPlane& a, const RayOn
     return corner;
 }
 
+// Where the rays of the triangle's inside are both at the plane and along it. Empty when the two
+// limits do not cross.
+std::optional<ClippedCorner> corner_of_limits(const TestPlane& plane,
+                                              const std::array<RayOnPlane, 3>& rays) {
+    Vec3d height;
+    Vec3d steepness;
+    for (std::size_t i = 0; i < 3; ++i) {
+        height[static_cast<Eigen::Index>(i)] = rays[i].height;
+        steepness[static_cast<Eigen::Index>(i)] = rays[i].steepness - least_steepness;
+    }
+    const Vec3d weights = height.cross(steepness);
+    const double sum = weights.sum();
+    if (sum == 0) return {};
+    ClippedCorner corner;
+    corner.weights = (weights / sum).cwiseMax(0);
+    corner.weights /= corner.weights.sum();
+    for (std::size_t i = 0; i < 3; ++i)
+        corner.at += corner.weights[static_cast<Eigen::Index>(i)] *
+                     plane.project(rays[i].ray->position, 0, rays[i].ray->direction);
+    return corner;
+}
+
 // The part of an edge whose rays come down to the plane, appended in the edge's own direction.
 void clip_edge(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays, std::size_t from,
-               std::size_t to, std::array<ClippedCorner, 6>& corners, std::size_t& count) {
+               std::size_t to, ClippedPolygon& polygon) {
     const bool forward = comes_first(*rays[from].ray, *rays[to].ray);
     const std::size_t first = forward ? from : to;
     const std::size_t last = forward ? to : from;
-    double begin = 0;
-    double end = 1;
-    const auto keep_positive = [&](double a, double b) {
-        if (a <= 0 && b <= 0) end = -1;
-        if (a <= 0 && b > 0) begin = std::max(begin, a / (a - b));
-        if (a > 0 && b <= 0) end = std::min(end, a / (a - b));
+    EdgeEnd begin{0, Limit::none};
+    EdgeEnd end{1, Limit::none};
+    const auto keep_positive = [&](double a, double b, Limit limit) {
+        if (a <= 0 && b <= 0) end.t = -1;
+        if (a <= 0 && b > 0 && a / (a - b) >= begin.t) begin = {a / (a - b), limit};
+        if (a > 0 && b <= 0 && a / (a - b) <= end.t) end = {a / (a - b), limit};
     };
-    keep_positive(rays[first].height, rays[last].height);
-    keep_positive(rays[first].steepness - least_steepness, rays[last].steepness - least_steepness);
-    if (!(begin < end)) return;
-    corners[count] = corner_at(plane, rays[first], rays[last], forward ? begin : end, first, last);
-    corners[count + 1] =
-        corner_at(plane, rays[first], rays[last], forward ? end : begin, first, last);
-    count += 2;
+    keep_positive(rays[first].height, rays[last].height, Limit::height);
+    keep_positive(rays[first].steepness - least_steepness, rays[last].steepness - least_steepness,
+                  Limit::steepness);
+    if (!(begin.t < end.t)) return;
+    if (!forward) std::swap(begin, end);
+    polygon.add(corner_at(plane, rays[first], rays[last], begin, first, last));
+    polygon.add(corner_at(plane, rays[first], rays[last], end, first, last));
+}
+
+// Goes round the triangle's edges. Where one limit cuts the way out and the other the way back in,
+// what is left has a corner where they meet; it is the triangle's own, no neighbour shares it.
+ClippedPolygon clipped(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays) {
+    ClippedPolygon ends;
+    for (std::size_t i = 0; i < 3; ++i) clip_edge(plane, rays, i, (i + 1) % 3, ends);
+    ClippedPolygon polygon;
+    for (std::size_t i = 0; i < ends.count; ++i) {
+        const ClippedCorner& out = ends.corners[i];
+        const ClippedCorner& in = ends.corners[(i + 1) % ends.count];
+        polygon.add(out);
+        // Ends of an edge come in pairs; the way out is the second of a pair.
+        if (i % 2 == 0 || out.limit == Limit::none || in.limit == Limit::none ||
+            out.limit == in.limit)
+            continue;
+        if (const auto corner = corner_of_limits(plane, rays)) polygon.add(*corner);
+    }
+    return polygon;
 }
 
 // Which point of the triangle the origin is: barycentric in the fan's triangle that holds it, or
 // comes nearest to it.
-Vec3d weights_at_origin(const std::array<ClippedCorner, 6>& corners, std::size_t count) {
+Vec3d weights_at_origin(const ClippedPolygon& polygon) {
+    const auto& corners = polygon.corners;
     Vec3d best = Vec3d::Zero();
     double best_least = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 1; i + 1 < count; ++i) {
+    for (std::size_t i = 1; i + 1 < polygon.count; ++i) {
         const Vec2d& a = corners[0].at;
         const Vec2d& b = corners[i].at;
         const Vec2d& c = corners[i + 1].at;
@@ -129,21 +192,19 @@ Vec3d weights_at_origin(const std::array<ClippedCorner, 6>& corners, std::size_t
 }
 
 Projected project_clipped(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays) {
-    std::array<ClippedCorner, 6> corners;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < 3; ++i) clip_edge(plane, rays, i, (i + 1) % 3, corners, count);
+    const ClippedPolygon polygon = clipped(plane, rays);
     Projected found;
     double kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const ClippedCorner& a = corners[i];
-        const ClippedCorner& b = corners[(i + 1) % count];
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const ClippedCorner& a = polygon.corners[i];
+        const ClippedCorner& b = polygon.corners[(i + 1) % polygon.count];
         found.winding += edge_crossing(a.at, b.at);
         found.area += cross(a.at, b.at) / 2;
         // Twice the share of the triangle's area, in the coordinates (l1, l2).
         kept += a.weights[1] * b.weights[2] - a.weights[2] * b.weights[1];
     }
     found.share = std::abs(kept);
-    if (found.winding != 0) found.weights = weights_at_origin(corners, count);
+    if (found.winding != 0) found.weights = weights_at_origin(polygon);
     return found;
 }
 
@@ -201,6 +262,19 @@ int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
         hits[static_cast<std::size_t>(written++)] = hit;
     }
     return written;
+}
+
+void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
+                  std::vector<BeamHit>& hits, SearchCounts& counts) {
+    std::array<BeamHit, 2> found;
+    const int count = test_beam(set, set.beams[number.beam], plane, found);
+    ++counts.beam_point_tests;
+    counts.beam_point_hits += count > 0 ? 1 : 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        found[i].set = number.set;
+        found[i].beam = number.beam;
+        hits.push_back(found[i]);
+    }
 }
 
 }  // namespace caustics

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "beamtree/beam.h"
 
@@ -57,6 +58,17 @@ struct BeamHit {
 /// that the plane cuts, are clipped at it.
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits);
+
+/// What a search has done [CC95 sec. 3.3].
+struct SearchCounts {
+    std::uint64_t cone_point_tests = 0;
+    std::uint64_t beam_point_tests = 0;
+    std::uint64_t beam_point_hits = 0;
+};
+
+/// test_beam for the beam `number` of `set`: counts the test, and appends its hits with that number.
+void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
+                  std::vector<BeamHit>& hits, SearchCounts& counts);
 
 /// The signed crossing of the edge a -> b with the half axis y = 0, x > 0; summed round a polygon it
 /// is the winding round the origin.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/optics.h"
 #include "core/parallel.h"
@@ -26,13 +27,23 @@ struct Corner {
     Vec3 normal;
 };
 
+/// The part of one or two triangles of the mesh that sends light on.
+struct Polygon {
+    std::vector<Corner> corners;  ///< three or four
+    std::uint32_t triangle;       ///< the first
+    std::uint32_t triangle_count;
+    bool front;  ///< the light comes to its front
+};
+
 class BeamTracer {
 public:
     BeamTracer(const Scene& scene, const CasterMesh& caster, const LightSample& light)
-        : bsdf_(scene.shapes()[caster.shape].bsdf),
+        : scene_(scene),
+          bsdf_(scene.shapes()[caster.shape].bsdf),
           caster_(caster),
           mesh_(caster.mesh),
           light_(light),
+          hidden_(caster.closed.hidden_from(caster.mesh, light)),
           surface_offset_(scene.offset(caster.shape)) {
         for (const Event event : events) {
             sets_[event].light = light;
@@ -47,8 +58,15 @@ public:
     std::array<BeamSet, 2> run() {
         for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
             at_vertex_.push_back(bend(mesh_.positions[i], mesh_.normals[i], mesh_.normals[i]));
-        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-            if (!caster_.left_out[i]) trace_triangle(i);
+        auto quad = caster_.quads.begin();
+        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+            if (quad != caster_.quads.end() && quad->triangle == i) {
+                trace_quad(*quad++);
+                ++i;
+            } else if (!caster_.left_out[i]) {
+                trace_triangle(i, facing_of(i));
+            }
+        }
         return std::move(sets_);
     }
 
@@ -56,7 +74,7 @@ private:
     BentLight bend(const Vec3& position, const Vec3& ng, const Vec3& ns) const {
         BentLight bent;
         const Vec3 w = to_light(light_, position);
-        if (w.isZero(0)) return bent;
+        if (w.isZero(0) || ns.isZero(0)) return bent;
         bent.front = ng.dot(w) > 0;
         const SpecularSplit split = split_specular(bsdf_, ng, ns, w);
         const Spectrum* const medium = medium_absorption(bsdf_, ng, w);
@@ -68,37 +86,77 @@ private:
         return bent;
     }
 
-    void trace_triangle(std::uint32_t index) {
-        const auto& triangle = mesh_.triangles[index];
-        const Vec3& a = mesh_.positions[triangle[0]];
-        const Vec3& b = mesh_.positions[triangle[1]];
-        const Vec3& c = mesh_.positions[triangle[2]];
-        const Vec3 ng = triangle_normal(a, b, c);
+    /// How a triangle stands to the light.
+    struct Facing {
+        Vec3 normal;
+        bool front;   ///< the light comes to its front
+        bool hidden;  ///< and no light can come to that side
+    };
+
+    Facing facing_of(std::uint32_t index) const {
+        const auto& [i, j, k] = mesh_.triangles[index];
+        const Vec3& a = mesh_.positions[i];
+        const Vec3& b = mesh_.positions[j];
+        const Vec3& c = mesh_.positions[k];
+        Facing facing{triangle_normal(a, b, c), false, false};
         const Vec3 middle = (a + b + c) / 3;
-        const bool front = ng.dot(to_light(light_, middle)) > 0;
+        facing.front = facing.normal.dot(to_light(light_, middle)) > 0;
+        // A surface that meets itself may be lit on what counts as its inside.
+        facing.hidden = hidden_(index, facing.front) &&
+                        !sees(scene_, {middle, facing.normal, surface_offset_}, light_);
+        return facing;
+    }
+
+    void trace_triangle(std::uint32_t index, const Facing& facing) {
+        for (const Event event : events) trace_triangle(index, facing, event);
+    }
+
+    void trace_triangle(std::uint32_t index, const Facing& facing, Event event) {
+        if (facing.hidden) return;
+        const auto& triangle = mesh_.triangles[index];
+        std::array<bool, 3> bends{};
+        for (std::size_t i = 0; i < 3; ++i)
+            bends[i] = sends_on(at_vertex_[triangle[i]], event, facing);
+        const auto count = std::count(bends.begin(), bends.end(), true);
+        if (count == 0) return;
+        add_beam({count == 3 ? whole(triangle, event) : cut(triangle, bends, event, facing), index,
+                  1, facing.front},
+                 event);
+    }
+
+    // One polygon where both of its triangles send all of their light on, else they go by themselves.
+    void trace_quad(const CellQuad& quad) {
+        const std::array<Facing, 2> sides = {facing_of(quad.triangle),
+                                             facing_of(quad.triangle + 1)};
+        const bool alike = sides[0].front == sides[1].front && !sides[0].hidden && !sides[1].hidden;
         for (const Event event : events) {
-            std::array<bool, 3> bends{};
-            for (std::size_t i = 0; i < 3; ++i)
-                bends[i] = sends_on(at_vertex_[triangle[i]], event, ng, front);
-            const auto count = std::count(bends.begin(), bends.end(), true);
-            if (count == 0) continue;
-            const std::vector<Corner> corners =
-                count == 3 ? whole(triangle, event) : cut(triangle, bends, event, ng, front);
-            add_beam(corners, index, event, front);
+            const auto& [a, b, c, d] = quad.corners;
+            bool is_whole = alike;
+            for (const std::uint32_t vertex : {a, b, c})
+                is_whole = is_whole && sends_on(at_vertex_[vertex], event, sides[0]);
+            for (const std::uint32_t vertex : {a, c, d})
+                is_whole = is_whole && sends_on(at_vertex_[vertex], event, sides[1]);
+            if (is_whole) {
+                add_beam({whole(quad.corners, event), quad.triangle, 2, sides[0].front}, event);
+            } else {
+                trace_triangle(quad.triangle, sides[0], event);
+                trace_triangle(quad.triangle + 1, sides[1], event);
+            }
         }
     }
 
     // The rule of split_specular, for a corner whose light was bent by the vertex normal alone: the
     // light must come to the same side of both normals, and leave on the right side of both.
-    bool sends_on(const BentLight& bent, Event event, const Vec3& ng, bool front) const {
-        const bool leaves_front = ng.dot(bent.direction[event]) > 0;
-        return bent.front == front && leaves_front == (front == (event == reflection)) &&
+    static bool sends_on(const BentLight& bent, Event event, const Facing& facing) {
+        const bool leaves_front = facing.normal.dot(bent.direction[event]) > 0;
+        return bent.front == facing.front &&
+               leaves_front == (facing.front == (event == reflection)) &&
                !is_black(bent.weight[event]);
     }
 
-    std::vector<Corner> whole(const std::array<std::uint32_t, 3>& triangle, Event event) {
+    std::vector<Corner> whole(std::span<const std::uint32_t> polygon, Event event) {
         std::vector<Corner> corners;
-        for (const std::uint32_t vertex : triangle) corners.push_back(shared(vertex, event));
+        for (const std::uint32_t vertex : polygon) corners.push_back(shared(vertex, event));
         return corners;
     }
 
@@ -115,8 +173,7 @@ private:
     }
 
     std::vector<Corner> cut(const std::array<std::uint32_t, 3>& triangle,
-                            const std::array<bool, 3>& bends, Event event, const Vec3& ng,
-                            bool front) {
+                            const std::array<bool, 3>& bends, Event event, const Facing& facing) {
         std::vector<Corner> corners;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
@@ -124,14 +181,13 @@ private:
             if (bends[i] == bends[j]) continue;
             const std::uint32_t good = triangle[bends[i] ? i : j];
             const std::uint32_t bad = triangle[bends[i] ? j : i];
-            corners.push_back(cut_edge(good, bad, event, ng, front));
+            corners.push_back(cut_edge(good, bad, event, facing));
         }
         return corners;
     }
 
     // The last point of an edge, from its good end, where light is still sent on.
-    Corner cut_edge(std::uint32_t good, std::uint32_t bad, Event event, const Vec3& ng,
-                    bool front) {
+    Corner cut_edge(std::uint32_t good, std::uint32_t bad, Event event, const Facing& facing) {
         Vec3 position = mesh_.positions[good];
         Vec3 normal = mesh_.normals[good];
         BentLight bent = at_vertex_[good];
@@ -144,7 +200,7 @@ private:
             const Vec3 n = (1 - t) * mesh_.normals[good] + t * mesh_.normals[bad];
             const Vec3 unit = n.squaredNorm() > 0 ? Vec3(n.normalized()) : n;
             const BentLight here = bend(p, unit, unit);
-            if (!sends_on(here, event, ng, front)) {
+            if (!sends_on(here, event, facing)) {
                 high = t;
                 continue;
             }
@@ -156,15 +212,17 @@ private:
         return {add_ray(event, position, bent.direction[event]), bent.weight[event], normal};
     }
 
-    void add_beam(const std::vector<Corner>& corners, std::uint32_t triangle, Event event,
-                  bool front) {
+    void add_beam(const Polygon& polygon, Event event) {
+        const std::vector<Corner>& corners = polygon.corners;
         BeamSet& set = sets_[event];
         Beam beam;
         beam.corners = {corners[0].ray, corners[1].ray, corners[2].ray,
                         corners.size() > 3 ? corners[3].ray : Beam::none};
-        beam.triangle = triangle;
-        beam.inside = front == (event == refraction);
-        beam.offset = surface_offset_ + distance_to_exact_surface(triangle);
+        beam.triangle = polygon.triangle;
+        beam.inside = polygon.front == (event == refraction);
+        for (std::uint32_t i = 0; i < polygon.triangle_count; ++i)
+            beam.offset = std::max(beam.offset,
+                                   surface_offset_ + distance_to_exact_surface(beam.triangle + i));
         std::array<Spectrum, 2> flux = {black(), black()};
         for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
             flux[i] = triangle_flux({corners[0], corners[1 + i], corners[2 + i]}, event);
@@ -231,10 +289,12 @@ private:
         return bulge / 4;
     }
 
+    const Scene& scene_;
     const Bsdf& bsdf_;
     const CasterMesh& caster_;
     const TriangleMesh& mesh_;
     const LightSample& light_;
+    ClosedParts::Hidden hidden_;
     float surface_offset_;
     std::vector<BentLight> at_vertex_;
     std::array<std::vector<std::uint32_t>, 2> ray_of_vertex_;
@@ -260,44 +320,6 @@ std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<Caste
         for (BeamSet& set : pair)
             if (!set.beams.empty()) sets.push_back(std::move(set));
     return sets;
-}
-
-namespace {
-
-FluxBalance balance_of(const Scene& scene, const BeamSet& set, const Beam& beam) {
-    const auto [a, b, c] = set.triangle(beam, 0);
-    const Vec3 normal = triangle_normal(a->position, b->position, c->position);
-    const SegmentEnd middle{(a->position + b->position + c->position) / 3, normal, beam.offset};
-    if (!sees(scene, middle, set.light)) return {};
-    FluxBalance balance{static_cast<double>(beam.flux.mean()), 0};
-    const Vec3 direction = (a->direction + b->direction + c->direction).normalized();
-    const std::optional<SurfacePoint> hit = scene.intersect(spawn_ray(middle, direction));
-    if (hit && is_caster(scene.shape_at(*hit).bsdf)) balance.to_casters = balance.lit;
-    return balance;
-}
-
-}  // namespace
-
-FluxBalance flux_balance(const Scene& scene, const std::vector<BeamSet>& sets,
-                         const RunOptions& options) {
-    constexpr std::size_t chunk = 1024;
-    FluxBalance sum;
-    for (const BeamSet& set : sets) {
-        std::vector<FluxBalance> parts((set.beams.size() + chunk - 1) / chunk);
-        parallel_for(options.threads, parts.size(), [&](std::size_t part, std::size_t) {
-            const std::size_t end = std::min(set.beams.size(), (part + 1) * chunk);
-            for (std::size_t i = part * chunk; i < end; ++i) {
-                const FluxBalance one = balance_of(scene, set, set.beams[i]);
-                parts[part].lit += one.lit;
-                parts[part].to_casters += one.to_casters;
-            }
-        });
-        for (const FluxBalance& part : parts) {
-            sum.lit += part.lit;
-            sum.to_casters += part.to_casters;
-        }
-    }
-    return sum;
 }
 
 }  // namespace caustics

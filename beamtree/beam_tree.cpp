@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "beamtree/beam_light.h"
+#include "beamtree/beam_estimator.h"
 #include "beamtree/plane_groups.h"
-#include "beamtree/traced_scene.h"
 #include "core/parallel.h"
 
 namespace caustics {
@@ -12,17 +11,14 @@ namespace caustics {
 namespace {
 
 /// A thread's scratch and counters.
-class SearchContext final : public QueryContext {
+class ConeSearch final : public BeamSearch {
 public:
     void add_to(Counters& counters) const override {
+        BeamSearch::add_to(counters);
         counters["cone_point_tests"] += counts.cone_point_tests;
-        counters["beam_point_tests"] += counts.beam_point_tests;
-        counters["beam_point_hits"] += counts.beam_point_hits;
     }
 
     std::vector<std::uint32_t> stack;
-    std::vector<BeamHit> hits;
-    SearchCounts counts;
 };
 
 /// The trees of all lights, casters and events.
@@ -31,28 +27,17 @@ struct Forest {
     std::uint64_t binned = 0;  ///< trees over `binned`
 };
 
-class BeamTree final : public CausticEstimator {
+class BeamTree final : public BeamEstimator {
 public:
     BeamTree(const Scene& scene, TracedScene traced, Forest forest)
-        : traced_(std::move(traced)), forest_(std::move(forest)), light_(scene, traced_.sets) {}
+        : BeamEstimator(scene, std::move(traced)), forest_(std::move(forest)) {}
 
     std::unique_ptr<QueryContext> make_context() const override {
-        return std::make_unique<SearchContext>();
-    }
-
-    void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                  QueryContext& context) const override {
-        answer(points, out, context, &BeamLight::radiance);
-    }
-
-    void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                    QueryContext& context) const override {
-        answer(points, out, context, &BeamLight::irradiance);
+        return std::make_unique<ConeSearch>();
     }
 
     BuildReport build_report() const override {
-        BuildReport report;
-        traced_.add_to(report);
+        BuildReport report = BeamEstimator::build_report();
         report.counters["trees"] = forest_.trees.size();
         for (const ConeTree& tree : forest_.trees) {
             report.counters["nodes"] += tree.node_count();
@@ -66,23 +51,14 @@ public:
     }
 
 private:
-    using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
-
-    void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                QueryContext& context, Query query) const {
-        auto& own = dynamic_cast<SearchContext&>(context);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            own.hits.clear();
-            for (const ConeTree& tree : forest_.trees)
-                tree.find(traced_.sets[tree.set_index()], points[i].position,
-                          points[i].geometric_normal, own.stack, own.hits, own.counts);
-            out[i] = {(light_.*query)(points[i], own.hits), black()};
-        }
+    void find(const ReceiverPoint& point, BeamSearch& search) const override {
+        auto& own = dynamic_cast<ConeSearch&>(search);
+        for (const ConeTree& tree : forest_.trees)
+            tree.find(traced().sets[tree.set_index()], point.position, point.geometric_normal,
+                      own.stack, own.hits, own.counts);
     }
 
-    TracedScene traced_;
     Forest forest_;
-    BeamLight light_;
 };
 
 /// One tree to be built.
@@ -130,9 +106,10 @@ Forest grow(const Scene& scene, const TracedScene& traced, const BeamTreeParams&
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
-    TracedScene traced = trace_scene(
-        scene, {"beamtree", params.light_samples, params.mesh_resolution, params.max_bounces},
-        options);
+    TracedScene traced = trace_scene(scene,
+                                     {"beamtree", params.light_samples, params.mesh_resolution,
+                                      params.max_bounces, params.polygons},
+                                     options);
     options.phase("tree");
     Forest forest = grow(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));

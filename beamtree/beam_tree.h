@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "beamtree/caster_mesh.h"
 #include "beamtree/cone_tree.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
@@ -25,7 +26,8 @@ struct BeamTreeParams {
     ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
     Tree hierarchy = Tree::quadtree;
     Leaf leaf = Leaf::n;
-    int light_samples = 16;    ///< for each area light
+    int light_samples = 16;  ///< for each area light
+    PolygonKind polygons = PolygonKind::triangle;
     int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
     /// Specular events that light paths may have. 1 asks for just those that beams can give. From 2
     /// on, a scene where more than half of the flux goes on to a second event is refused, and

@@ -1,4 +1,5 @@
 #include "beamtree/beam_tree.h"
+#include "beamtree/traced_scene.h"
 
 namespace caustics {
 
@@ -41,6 +42,7 @@ void read(const JsonNode& node, BeamTreeParams& params) {
     if (const auto intensity = node.find("intensity"))
         if (intensity->as_choice({"area", "refined"}) == 1)
             intensity->fail("\"refined\" is not built yet (built: \"area\")");
+    read_polygons(node, params.polygons);
     if (const auto samples = node.find("light_samples"))
         params.light_samples = static_cast<int>(samples->as_integer_in(1, 65'536));
     if (const auto resolution = node.find("mesh_resolution"))

@@ -2,20 +2,13 @@
 
 #include <algorithm>
 
-#include "beamtree/beam_light.h"
+#include "beamtree/beam_estimator.h"
 #include "beamtree/receiver_polygons.h"
-#include "beamtree/traced_scene.h"
 #include "core/parallel.h"
 
 namespace caustics {
 
 namespace {
-
-/// A beam that meets a diffuse polygon.
-struct BeamNumber {
-    std::uint32_t set;
-    std::uint32_t beam;
-};
 
 /// The beams that meet one diffuse polygon, from either of its sides.
 class Sweep {
@@ -86,46 +79,20 @@ private:
     std::vector<RayFoot> feet_;
 };
 
-/// A thread's scratch and counters.
-class PolygonContext final : public QueryContext {
-public:
-    void add_to(Counters& counters) const override {
-        counters["beam_point_tests"] += tests;
-        counters["beam_point_hits"] += hit_count;
-    }
-
-    std::vector<BeamHit> hits;
-    std::uint64_t tests = 0;
-    std::uint64_t hit_count = 0;
-};
-
-class CausticPolygons final : public CausticEstimator {
+class CausticPolygons final : public BeamEstimator {
 public:
     CausticPolygons(const Scene& scene, TracedScene traced, ReceiverPolygons receivers,
                     std::vector<std::vector<BeamNumber>> lists)
-        : traced_(std::move(traced)),
+        : BeamEstimator(scene, std::move(traced)),
           receivers_(std::move(receivers)),
-          lists_(std::move(lists)),
-          light_(scene, traced_.sets) {}
-
-    std::unique_ptr<QueryContext> make_context() const override {
-        return std::make_unique<PolygonContext>();
-    }
-    void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                  QueryContext& context) const override {
-        answer(points, out, context, &BeamLight::radiance);
-    }
-    void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                    QueryContext& context) const override {
-        answer(points, out, context, &BeamLight::irradiance);
-    }
+          lists_(std::move(lists)) {}
 
     BuildReport build_report() const override {
-        BuildReport report;
-        traced_.add_to(report);
+        BuildReport report = BeamEstimator::build_report();
         report.bytes += receivers_.bytes();
         report.counters["receiver_polygons"] = receivers_.polygons().size();
-        report.counters["beam_polygon_tests"] = receivers_.polygons().size() * traced_.beam_count();
+        report.counters["beam_polygon_tests"] =
+            receivers_.polygons().size() * traced().beam_count();
         std::uint64_t& pairs = report.counters["caustic_polygons"];
         for (const std::vector<BeamNumber>& list : lists_) pairs += list.size();
         report.bytes += pairs * sizeof(BeamNumber);
@@ -133,20 +100,8 @@ public:
     }
 
 private:
-    using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
-
-    void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                QueryContext& context, Query query) const {
-        auto& own = dynamic_cast<PolygonContext&>(context);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            find(points[i], own);
-            out[i] = {(light_.*query)(points[i], own.hits), black()};
-        }
-    }
-
     // The caustic polygons that hold the point, on the plane of its diffuse polygon.
-    void find(const ReceiverPoint& point, PolygonContext& own) const {
-        own.hits.clear();
+    void find(const ReceiverPoint& point, BeamSearch& search) const override {
         if (receivers_.polygons().empty()) return;
         const std::uint32_t index = receivers_.nearest(point.position, point.geometric_normal);
         const ReceiverPolygon& polygon = receivers_.polygons()[index];
@@ -154,31 +109,20 @@ private:
         const Vec3 normal = front ? polygon.normal : Vec3(-polygon.normal);
         const float off = normal.dot(point.position - polygon.a);
         const TestPlane plane(point.position - off * normal, normal);
-        std::array<BeamHit, 2> found;
-        for (const BeamNumber& number : lists_[index]) {
-            const BeamSet& set = traced_.sets[number.set];
-            const int count = test_beam(set, set.beams[number.beam], plane, found);
-            ++own.tests;
-            own.hit_count += count > 0 ? 1 : 0;
-            for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-                found[i].set = number.set;
-                found[i].beam = number.beam;
-                // The polygon stands for the surface: its irradiance is the surface's.
-                found[i].plane_normal = point.geometric_normal;
-                own.hits.push_back(found[i]);
-            }
-        }
+        for (const BeamNumber& number : lists_[index])
+            find_in_beam(traced().sets[number.set], number, plane, search.hits, search.counts);
+        // The polygon stands for the surface: its irradiance is the surface's.
+        for (BeamHit& hit : search.hits) hit.plane_normal = point.geometric_normal;
     }
 
-    TracedScene traced_;
     ReceiverPolygons receivers_;
     std::vector<std::vector<BeamNumber>> lists_;  ///< one a diffuse polygon
-    BeamLight light_;
 };
 
 }  // namespace
 
 void read(const JsonNode& node, CausticPolygonsParams& params) {
+    read_polygons(node, params.polygons);
     if (const auto samples = node.find("light_samples"))
         params.light_samples = static_cast<int>(samples->as_integer_in(1, 65'536));
     if (const auto resolution = node.find("mesh_resolution"))
@@ -193,10 +137,10 @@ void read(const JsonNode& node, CausticPolygonsParams& params) {
 std::unique_ptr<const CausticEstimator> build(const Scene& scene,
                                               const CausticPolygonsParams& params,
                                               const RunOptions& options) {
-    TracedScene traced = trace_scene(
-        scene,
-        {"causticpolygons", params.light_samples, params.mesh_resolution, params.max_bounces},
-        options);
+    TracedScene traced = trace_scene(scene,
+                                     {"causticpolygons", params.light_samples,
+                                      params.mesh_resolution, params.max_bounces, params.polygons},
+                                     options);
     options.phase("polygons");
     ReceiverPolygons receivers(scene, params.receiver_resolution);
     std::vector<std::vector<BeamNumber>> lists(receivers.polygons().size());

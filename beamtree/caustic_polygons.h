@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "beamtree/caster_mesh.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
 
@@ -12,6 +13,7 @@ namespace caustics {
 /// that hold it among those of its own diffuse polygon. The same beams, visibility and flux as
 /// `beamtree`; cost n_s n_d n_l. One specular event.
 struct CausticPolygonsParams {
+    PolygonKind polygons = PolygonKind::triangle;
     int mesh_resolution = 64;      ///< of exact casters
     int receiver_resolution = 16;  ///< of exact receivers; meshes are taken as they are
     int light_samples = 16;        ///< for each area light

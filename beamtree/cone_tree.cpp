@@ -87,7 +87,6 @@ void ConeTree::find(const BeamSet& set, const Vec3& point, const Vec3& normal,
                     std::vector<std::uint32_t>& stack, std::vector<BeamHit>& hits,
                     SearchCounts& counts) const {
     const TestPlane plane(point, fixed_normal_ ? *fixed_normal_ : normal);
-    std::array<BeamHit, 2> found;
     stack.assign(1, 0);
     while (!stack.empty()) {
         const Node& node = nodes_[stack.back()];
@@ -96,14 +95,7 @@ void ConeTree::find(const BeamSet& set, const Vec3& point, const Vec3& normal,
         if (!may_hold(node, set, plane)) continue;
         for (std::uint32_t i = 0; i < node.child_count; ++i) stack.push_back(node.first_child + i);
         if (node.child_count > 0) continue;
-        ++counts.beam_point_tests;
-        const int count = test_beam(set, set.beams[node.beam], plane, found);
-        counts.beam_point_hits += count > 0 ? 1 : 0;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            found[i].set = set_index_;
-            found[i].beam = node.beam;
-            hits.push_back(found[i]);
-        }
+        find_in_beam(set, {set_index_, node.beam}, plane, hits, counts);
     }
 }
 

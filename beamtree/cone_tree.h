@@ -23,13 +23,6 @@ struct ConeTreeSettings {
     double reach = 1;  ///< how far from the polygons receivers may be [m]: where a neck is sought
 };
 
-/// What a search has done [CC95 sec. 3.3].
-struct SearchCounts {
-    std::uint64_t cone_point_tests = 0;
-    std::uint64_t beam_point_tests = 0;
-    std::uint64_t beam_point_hits = 0;
-};
-
 /// The cone tree of some beams of one set (rows B2 to B7).
 class ConeTree {
 public:

@@ -21,6 +21,12 @@ void refuse_several_events(const BeamRequest& request, const FluxBalance& balanc
 
 }  // namespace
 
+void read_polygons(const JsonNode& node, PolygonKind& polygons) {
+    if (const auto choice = node.find("polygons"))
+        polygons = choice->as_choice({"triangles", "quads"}) == 0 ? PolygonKind::triangle
+                                                                  : PolygonKind::quad;
+}
+
 std::uint64_t TracedScene::beam_count() const {
     std::uint64_t count = 0;
     for (const BeamSet& set : sets) count += set.beams.size();
@@ -38,15 +44,21 @@ void TracedScene::add_to(BuildReport& report) const {
     report.counters["beams"] = beam_count();
     double flat = 0;
     double tessellated = 0;
+    double closed = 0;
+    double quads = 0;
     for (const CasterMesh& caster : casters) {
-        report.counters["polygons"] += caster.mesh.triangles.size();
+        report.counters["polygons"] += caster.polygon_count();
         report.counters["polygons_degenerate"] += caster.degenerate;
         report.counters["polygons_duplicated"] += caster.duplicated;
         flat += caster.flat ? 1 : 0;
         tessellated += caster.tessellated ? 1 : 0;
+        closed += static_cast<double>(caster.closed.count());
+        quads += static_cast<double>(caster.quads.size());
     }
     report.resolved["casters_with_face_normals"] = flat;
     report.resolved["casters_tessellated"] = tessellated;
+    report.resolved["closed_parts"] = closed;
+    report.resolved["quads"] = quads;
     report.resolved["flux_share_to_second_event"] = balance.share();
 }
 
@@ -59,7 +71,7 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 TracedScene trace_scene(const Scene& scene, const BeamRequest& request, const RunOptions& options) {
     options.phase("beams");
     TracedScene traced;
-    traced.casters = caster_meshes(scene, request.mesh_resolution);
+    traced.casters = caster_meshes(scene, request.mesh_resolution, request.polygons);
     const std::vector<LightSample> lights =
         sample_lights(scene, request.light_samples, options.seed);
     traced.sets = trace_all_beams(scene, traced.casters, lights, options);

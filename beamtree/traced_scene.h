@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "beamtree/beam_tracing.h"
+#include "beamtree/flux_balance.h"
+#include "core/json_reader.h"
 
 namespace caustics {
 
@@ -13,7 +15,11 @@ struct BeamRequest {
     int light_samples = 16;
     int mesh_resolution = 64;
     int max_bounces = 16;
+    PolygonKind polygons = PolygonKind::triangle;
 };
+
+/// The parameter `polygons` of both methods, where it is given: triangles or quads.
+void read_polygons(const JsonNode& node, PolygonKind& polygons);
 
 /// The beams of a scene, all lights and casters.
 struct TracedScene {

@@ -49,6 +49,8 @@ json describe_params(const PhotonMapParams& p) {
     return all;
 }
 
+const char* name(PolygonKind kind) { return kind == PolygonKind::quad ? "quads" : "triangles"; }
+
 json describe_params(const BeamTreeParams& p) {
     constexpr const char* bounds[] = {"single", "double", "hybrid", "sphere_swept"};
     const bool rays = p.merging == ConeTreeSettings::Merging::rays;
@@ -58,6 +60,7 @@ json describe_params(const BeamTreeParams& p) {
         {"hierarchy", p.hierarchy == BeamTreeParams::Tree::quadtree ? "quadtree" : "binned"},
         {"leaf", p.leaf == BeamTreeParams::Leaf::n ? "n" : "k"},
         {"intensity", "area"},
+        {"polygons", name(p.polygons)},
         {"light_samples", p.light_samples},
         {"mesh_resolution", p.mesh_resolution},
         {"max_bounces", p.max_bounces}};
@@ -66,7 +69,8 @@ json describe_params(const BeamTreeParams& p) {
 }
 
 json describe_params(const CausticPolygonsParams& p) {
-    return {{"light_samples", p.light_samples},
+    return {{"polygons", name(p.polygons)},
+            {"light_samples", p.light_samples},
             {"mesh_resolution", p.mesh_resolution},
             {"receiver_resolution", p.receiver_resolution},
             {"max_bounces", p.max_bounces}};

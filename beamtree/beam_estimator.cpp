@@ -1,0 +1,43 @@
+#include "beamtree/beam_estimator.h"
+
+namespace caustics {
+
+void BeamSearch::add_to(Counters& counters) const {
+    counters["beam_point_tests"] += counts.beam_point_tests;
+    counters["beam_point_hits"] += counts.beam_point_hits;
+}
+
+BeamEstimator::BeamEstimator(const Scene& scene, TracedScene traced)
+    : traced_(std::move(traced)), light_(scene, traced_.sets) {}
+
+std::unique_ptr<QueryContext> BeamEstimator::make_context() const {
+    return std::make_unique<BeamSearch>();
+}
+
+void BeamEstimator::radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                             QueryContext& context) const {
+    answer(points, out, context, &BeamLight::radiance);
+}
+
+void BeamEstimator::irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                               QueryContext& context) const {
+    answer(points, out, context, &BeamLight::irradiance);
+}
+
+BuildReport BeamEstimator::build_report() const {
+    BuildReport report;
+    traced_.add_to(report);
+    return report;
+}
+
+void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                           QueryContext& context, Query query) const {
+    auto& search = dynamic_cast<BeamSearch&>(context);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        search.hits.clear();
+        find(points[i], search);
+        out[i] = {(light_.*query)(points[i], search.hits), black()};
+    }
+}
+
+}  // namespace caustics

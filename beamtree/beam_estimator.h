@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "beamtree/beam_light.h"
+#include "beamtree/traced_scene.h"
+
+namespace caustics {
+
+/// A thread's scratch and counters of a method that works with beams.
+class BeamSearch : public QueryContext {
+public:
+    void add_to(Counters& counters) const override;
+
+    std::vector<BeamHit> hits;
+    SearchCounts counts;
+};
+
+/// What `beamtree` and `causticpolygons` share: the beams of a scene, and the light that those
+/// which hold a point bring to it. A method says how it finds them.
+class BeamEstimator : public CausticEstimator {
+public:
+    std::unique_ptr<QueryContext> make_context() const override;
+    void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                  QueryContext& context) const final;
+    void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                    QueryContext& context) const final;
+    /// Of the beams; methods add their own.
+    BuildReport build_report() const override;
+
+protected:
+    BeamEstimator(const Scene& scene, TracedScene traced);
+
+    const TracedScene& traced() const { return traced_; }
+
+private:
+    /// Appends the beams that hold the point to `search.hits`; `search` is of the kind that the
+    /// method's make_context() makes.
+    virtual void find(const ReceiverPoint& point, BeamSearch& search) const = 0;
+
+    using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
+    void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                QueryContext& context, Query query) const;
+
+    TracedScene traced_;
+    BeamLight light_;
+};
+
+}  // namespace caustics
