@@ -61,10 +61,13 @@ std::vector<float> caustic_layer(const Scene& scene, const Params& params, int t
 // [CC95]: "the caustic component for each pixel will be the same as that obtained by Watt's method".
 // Flat receivers, whatever their polygons: equal to rounding. A point on the rim of a caustic
 // polygon may fall to the other side of it.
-void expect_equal(const Scene& scene) {
-    const std::vector<float> tree = caustic_layer(scene, BeamTreeParams{});
+void expect_equal(const Scene& scene, PolygonKind kind = PolygonKind::triangle) {
+    BeamTreeParams tree_params;
+    tree_params.polygons = kind;
+    const std::vector<float> tree = caustic_layer(scene, tree_params);
     for (const int resolution : {2, 9}) {
         CausticPolygonsParams params;
+        params.polygons = kind;
         params.receiver_resolution = resolution;
         const std::vector<float> polygons = caustic_layer(scene, params);
         ASSERT_EQ(tree.size(), polygons.size());
@@ -80,6 +83,9 @@ void expect_equal(const Scene& scene) {
 }
 
 TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelInAPool) { expect_equal(Scene(pool(32))); }
+TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelByQuads) {
+    expect_equal(Scene(pool(24)), PolygonKind::quad);
+}
 TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelInARing) { expect_equal(Scene(ring(16))); }
 
 TEST(BeamPicture, IsTheSameFromAnyNumberOfThreads) {
@@ -89,20 +95,22 @@ TEST(BeamPicture, IsTheSameFromAnyNumberOfThreads) {
               caustic_layer(scene, CausticPolygonsParams{}, 3));
 }
 
-// Fixed planes bend the polygons' rims to second order only.
-TEST(BeamPicture, FixedPlanesGiveTheSameLight) {
+double sum(const std::vector<float>& values) {
+    double total = 0;
+    for (const float value : values) total += static_cast<double>(value);
+    return total;
+}
+
+// Fixed planes bend the polygons' rims, and quads even out their halves, to second order only.
+TEST(BeamPicture, FixedPlanesAndQuadsGiveTheSameLight) {
     const Scene scene(pool(64));
-    const std::vector<float> n = caustic_layer(scene, BeamTreeParams{});
+    const double usual = sum(caustic_layer(scene, BeamTreeParams{}));
     BeamTreeParams fixed;
     fixed.leaf = BeamTreeParams::Leaf::k;
-    const std::vector<float> k = caustic_layer(scene, fixed);
-    double sum_n = 0;
-    double sum_k = 0;
-    for (std::size_t i = 0; i < n.size(); ++i) {
-        sum_n += static_cast<double>(n[i]);
-        sum_k += static_cast<double>(k[i]);
-    }
-    EXPECT_NEAR(sum_k / sum_n, 1, 0.01);
+    EXPECT_NEAR(sum(caustic_layer(scene, fixed)) / usual, 1, 0.01);
+    BeamTreeParams quads;
+    quads.polygons = PolygonKind::quad;
+    EXPECT_NEAR(sum(caustic_layer(scene, quads)) / usual, 1, 0.01);
 }
 
 /// Photons with one specular event, counted in 16 x 16 cells of the floor |x|, |y| <= half.

@@ -21,12 +21,12 @@ int winding_of(const BeamSet& set, const TestPlane& plane) {
 }
 
 // Parallel light straight down through a still surface: the caustic polygons are the mesh itself.
-BeamScene still_water(int resolution) {
+BeamScene still_water(int resolution, PolygonKind kind) {
     SceneDesc desc;
     desc.shapes = {support::mesh("water", tessellate_rectangle(resolution), Transform::Identity(),
                                  support::glass(1.25F))};
     desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
-    return {"still water", std::move(desc)};
+    return {"still water", std::move(desc), kind};
 }
 
 const BeamSet& refracted(const BeamScene& scene) {
@@ -38,17 +38,20 @@ const BeamSet& refracted(const BeamScene& scene) {
 // Vertices, edges and diagonals of a dyadic grid are exact in float: every such point inside the
 // rectangle belongs to one triangle, and those of its upper and right edge to none.
 TEST(BeamPoint, EveryPointOfAFlatGridLiesInOneBeam) {
-    const BeamScene water = still_water(16);
-    const BeamSet& set = refracted(water);
-    for (int i = 1; i < 64; ++i)
-        for (int j = 1; j < 64; ++j) {
-            const Vec3 p(static_cast<float>(i - 32) / 32, static_cast<float>(j - 32) / 32, -1);
-            std::array<BeamHit, 2> hits;
-            int found = 0;
-            for (const Beam& beam : set.beams)
-                found += test_beam(set, beam, TestPlane(p, Vec3::UnitZ()), hits);
-            EXPECT_EQ(found, 1) << p.transpose();
-        }
+    for (const PolygonKind kind : {PolygonKind::triangle, PolygonKind::quad}) {
+        const BeamScene water = still_water(16, kind);
+        const BeamSet& set = refracted(water);
+        EXPECT_EQ(set.beams.size(), kind == PolygonKind::quad ? 256U : 512U);
+        for (int i = 1; i < 64; ++i)
+            for (int j = 1; j < 64; ++j) {
+                const Vec3 p(static_cast<float>(i - 32) / 32, static_cast<float>(j - 32) / 32, -1);
+                std::array<BeamHit, 2> hits;
+                int found = 0;
+                for (const Beam& beam : set.beams)
+                    found += test_beam(set, beam, TestPlane(p, Vec3::UnitZ()), hits);
+                EXPECT_EQ(found, 1) << p.transpose();
+            }
+    }
 }
 
 /// The directed edges that belong to one triangle only.
@@ -159,6 +162,40 @@ TEST(BeamPoint, IsClippedAtTheReceiversPlane) {
     EXPECT_NEAR(hits[0].weights.sum(), 1, 1e-6);
     EXPECT_EQ(test_beam(set, set.beams[0], TestPlane({0, 0.1F, 0}, Vec3::UnitZ()), hits), 0);
     EXPECT_EQ(test_beam(set, set.beams[0], TestPlane({0, -0.8F, 0}, Vec3::UnitZ()), hits), 0);
+}
+
+// Of this triangle one corner is below the plane and the rays of another rise: what is left has a
+// corner inside, where rays are both at the plane and along it.
+TEST(BeamPoint, IsClippedByBothLimitsAtOnce) {
+    const auto ray = [](const Vec3& p, float steepness) {
+        return VertexRay{p, Vec3(std::sqrt(1 - steepness * steepness), 0, -steepness)};
+    };
+    const BeamSet set =
+        three_rays({ray({0, 0, 1}, 0.8F), ray({1, 0, 1}, -0.9F), ray({0, 1, -1}, 0.6F)});
+    const auto point_of = [&](const Vec3& l, auto member) {
+        return Vec3(l[0] * (set.rays[0].*member) + l[1] * (set.rays[1].*member) +
+                    l[2] * (set.rays[2].*member));
+    };
+    // The share of a triangle of fine cells by where their middles' rays go.
+    int kept = 0;
+    constexpr int n = 900;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n - i; ++j) {
+            const Vec3 l((static_cast<float>(i) + 1.0F / 3) / n,
+                         (static_cast<float>(j) + 1.0F / 3) / n, 0);
+            const Vec3 weights(l[0], l[1], 1 - l[0] - l[1]);
+            kept += point_of(weights, &VertexRay::position).z() > 0 &&
+                    point_of(weights, &VertexRay::direction).z() < 0;
+        }
+    const double share = kept / (n * (n + 1) / 2.0);
+    const Vec3 inside(0.6F, 0.2F, 0.2F);
+    const Vec3 p = point_of(inside, &VertexRay::position);
+    const Vec3 d = point_of(inside, &VertexRay::direction);
+    std::array<BeamHit, 2> hits;
+    const Vec3 foot = p + p.z() / -d.z() * d;
+    ASSERT_EQ(test_beam(set, set.beams[0], TestPlane(foot, Vec3::UnitZ()), hits), 1);
+    EXPECT_NEAR(hits[0].flux_share, share, 2e-3);
+    EXPECT_LT(share, 0.6);
 }
 
 // Four corners are one caustic polygon while they do not fold over.

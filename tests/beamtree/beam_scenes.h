@@ -17,8 +17,9 @@ struct BeamScene {
     std::vector<CasterMesh> casters;
     std::vector<BeamSet> sets;
 
-    BeamScene(const std::string& scene_name, SceneDesc desc, int light_samples = 4)
-        : name(scene_name), scene(std::move(desc)), casters(caster_meshes(scene, 16)) {
+    BeamScene(const std::string& scene_name, SceneDesc desc,
+              PolygonKind kind = PolygonKind::triangle, int light_samples = 4)
+        : name(scene_name), scene(std::move(desc)), casters(caster_meshes(scene, 16, kind)) {
         sets = trace_all_beams(scene, casters, sample_lights(scene, light_samples, 1), {});
     }
 };

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "beamtree/beam_tree.h"
-#include "core/error.h"
 #include "tests/beamtree/beam_scenes.h"
 #include "tests/support/fresnel.h"
 
@@ -61,7 +59,7 @@ TEST(BeamTracing, SharesAnAreaLightAmongItsSamples) {
         support::horizontal("light", 40, 0.01, false, support::diffuse(0))};
     desc.shapes[1].radiance = Spectrum(Spectrum::Constant(5000));
     for (const int samples : {1, 7}) {
-        const BeamScene scene("mirror", desc, samples);
+        const BeamScene scene("mirror", desc, PolygonKind::triangle, samples);
         EXPECT_EQ(scene.sets.size(), static_cast<std::size_t>(samples));
         // E = L A / d^2 over 4 m^2.
         EXPECT_NEAR(flux(scene, false) / (5000 * 4e-4 * 4 / 1600), 1, 2e-3);
@@ -115,128 +113,6 @@ TEST(BeamTracing, LeavesOutPolygonsTurnedAway) {
         for (const VertexRay* ray : rays)
             EXPECT_GE((ray->position - centre).normalized().dot(ray->direction), -1e-3F);
     }
-}
-
-/// What build() makes of a scene at points all over its floor.
-std::vector<Estimate> on_floor(const Scene& scene, std::size_t floor,
-                               const BeamTreeParams& params = {}) {
-    const auto method = build(scene, params, RunOptions{});
-    std::vector<ReceiverPoint> points;
-    for (int i = 0; i < 400; ++i)
-        points.push_back(support::probe(
-            scene, floor, {-0.95 + 0.1 * (i % 20), -0.95 + 0.1 * (i / 20), 0}, Vec3d::UnitZ(), 0));
-    for (ReceiverPoint& point : points)
-        point.position.z() = bounds(scene.shapes()[floor]).max().z();
-    return support::irradiance(*method, points);
-}
-
-double mean(const std::vector<Estimate>& estimates) {
-    double sum = 0;
-    for (const Estimate& e : estimates) {
-        EXPECT_TRUE(is_finite(e.value));
-        sum += static_cast<double>(e.value.mean());
-    }
-    return sum / static_cast<double>(estimates.size());
-}
-
-TEST(BeamTree, BadTrianglesChangeNothing) {
-    const double good = mean(on_floor(Scene(pool_desc(16)), 1));
-    ASSERT_GT(good, 0);
-    SceneDesc desc = pool_desc(16);
-    TriangleMesh& water = desc.shapes[0].mesh;
-    water.patches.clear();
-    const std::size_t count = water.triangles.size();
-    for (std::size_t i = 0; i < count; i += 7) {
-        auto [a, b, c] = water.triangles[i];
-        water.triangles.push_back({b, c, a});  // there already
-        water.triangles.push_back({b, a, c});  // there already, turned round
-        water.triangles.push_back({a, a, b});  // no area
-    }
-    const Scene scene(desc);
-    EXPECT_NEAR(mean(on_floor(scene, 1)) / good, 1, 1e-6);
-    const BuildReport report = build(scene, BeamTreeParams{}, RunOptions{})->build_report();
-    EXPECT_EQ(report.counters.at("polygons_degenerate"), (count + 6) / 7);
-    EXPECT_EQ(report.counters.at("polygons_duplicated"), 2 * ((count + 6) / 7));
-    EXPECT_EQ(report.resolved.at("trees_binned"), 2);
-    EXPECT_EQ(report.resolved.at("trees_quadtree"), 0);
-}
-
-TEST(BeamTree, HolesLetNothingThroughTheWater) {
-    const double whole = mean(on_floor(Scene(pool_desc(16)), 1));
-    SceneDesc desc = pool_desc(16);
-    std::erase_if(desc.shapes[0].mesh.triangles, [](const auto& t) { return t[0] % 5 == 0; });
-    desc.shapes[0].mesh.patches.clear();
-    const double holed = mean(on_floor(Scene(desc), 1));
-    EXPECT_LT(holed, 0.9 * whole);
-    EXPECT_GT(holed, 0.5 * whole);
-}
-
-// Without normals every triangle bends light by its own plane, as all methods see such a mesh.
-TEST(BeamTree, AMeshWithoutNormalsIsFlat) {
-    SceneDesc desc = pool_desc(16);
-    desc.shapes[0].mesh.normals.clear();
-    const Scene scene(desc);
-    const BuildReport report = build(scene, BeamTreeParams{}, RunOptions{})->build_report();
-    EXPECT_EQ(report.resolved.at("casters_with_face_normals"), 1);
-    EXPECT_NEAR(mean(on_floor(scene, 1)) / mean(on_floor(Scene(pool_desc(16)), 1)), 1, 0.15);
-}
-
-// Normals against the winding: core's rule for every method is that such light is lost.
-TEST(BeamTree, InvertedWindingIsDarkAndInvertedBothIsTheInside) {
-    SceneDesc desc = pool_desc(16);
-    for (auto& triangle : desc.shapes[0].mesh.triangles) std::swap(triangle[1], triangle[2]);
-    EXPECT_EQ(mean(on_floor(Scene(desc), 1)), 0);
-    for (Vec3& normal : desc.shapes[0].mesh.normals) normal = -normal;
-    EXPECT_GT(mean(on_floor(Scene(desc), 1)), 0);
-}
-
-TEST(BeamTree, TotalReflectionEverywhereIsDarkBelow) {
-    SceneDesc desc = pool_desc(8);
-    desc.shapes[0].bsdf = support::glass(1.0F, 3.0F);
-    desc.point_lights = {support::point_light({3, 0, 0.2}, 10)};
-    EXPECT_EQ(mean(on_floor(Scene(desc), 1)), 0);
-}
-
-TEST(BeamTree, NothingLitIsBlack) {
-    SceneDesc desc = pool_desc(8);
-    desc.point_lights.clear();
-    EXPECT_EQ(mean(on_floor(Scene(desc), 1)), 0);
-    desc = pool_desc(8);
-    desc.shapes.erase(desc.shapes.begin());
-    EXPECT_EQ(mean(on_floor(Scene(desc), 0)), 0);
-}
-
-// A glass ball sends nearly all of its light through a second surface.
-TEST(BeamTree, SaysWhereOneEventIsNotEnough) {
-    SceneDesc desc = ball_desc(16);
-    desc.shapes[0].bsdf = support::glass(1.5F);
-    const Scene glass(desc);
-    EXPECT_THROW(build(glass, BeamTreeParams{}, RunOptions{}), UnsupportedScene);
-    BeamTreeParams one;
-    one.max_bounces = 1;
-    EXPECT_GT(mean(on_floor(glass, 1, one)), 0);
-    const BuildReport report = build(glass, one, RunOptions{})->build_report();
-    EXPECT_GT(report.resolved.at("flux_share_to_second_event"), 0.8);
-    // The same ball under water: its polygons are in the shadow of the water.
-    SceneDesc inside = pool_desc(16);
-    inside.shapes.push_back(support::mesh(
-        "ball", tessellate_sphere(8),
-        Transform(Eigen::Translation3d(0, 0, -0.5) * Eigen::Scaling(0.1)), support::glass(1.5F)));
-    EXPECT_LT(mean(on_floor(Scene(inside), 1)), mean(on_floor(Scene(pool_desc(16)), 1)));
-}
-
-TEST(BeamTree, EveryBoundAndHierarchyGivesTheSameBits) {
-    const Scene scene(pool_desc(12));
-    const std::vector<Estimate> first = on_floor(scene, 1);
-    for (const Bound bound : {Bound::single, Bound::double_cone, Bound::sphere_swept})
-        for (const auto tree : {BeamTreeParams::Tree::quadtree, BeamTreeParams::Tree::binned}) {
-            BeamTreeParams params;
-            params.bound = bound;
-            params.hierarchy = tree;
-            const std::vector<Estimate> other = on_floor(scene, 1, params);
-            for (std::size_t i = 0; i < first.size(); ++i)
-                EXPECT_TRUE((first[i].value == other[i].value).all());
-        }
 }
 
 }  // namespace

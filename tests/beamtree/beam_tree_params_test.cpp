@@ -32,7 +32,8 @@ TEST(BeamTreeParams, AreThePapersByDefault) {
 TEST(BeamTreeParams, AreRead) {
     const BeamTreeParams p = params(
         R"({"bound": "double", "hierarchy": "binned", "leaf": "k", "intensity": "area",
-            "light_samples": 9, "mesh_resolution": 32, "max_bounces": 1, "merging": "cones"})");
+            "light_samples": 9, "mesh_resolution": 32, "max_bounces": 1, "merging": "cones",
+            "polygons": "quads"})");
     EXPECT_EQ(p.bound, Bound::double_cone);
     EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::binned);
     EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::k);
@@ -40,6 +41,7 @@ TEST(BeamTreeParams, AreRead) {
     EXPECT_EQ(p.mesh_resolution, 32);
     EXPECT_EQ(p.max_bounces, 1);
     EXPECT_EQ(p.merging, ConeTreeSettings::Merging::cones);
+    EXPECT_EQ(p.polygons, PolygonKind::quad);
     EXPECT_EQ(params(R"({"spread_threshold": 4.5})").spread_threshold, 4.5);
 }
 
@@ -51,6 +53,7 @@ TEST(BeamTreeParams, NameTheAlternatives) {
               std::string::npos);
     EXPECT_NE(error(R"({"spread_threshold": -1})"), "no error");
     EXPECT_NE(error(R"({"light_samples": 0})"), "no error");
+    EXPECT_NE(error(R"({"polygons": "pentagons"})").find("triangles"), std::string::npos);
     EXPECT_NE(error(R"({"samples": 4})").find("light_samples"), std::string::npos);
 }
 
