@@ -1,0 +1,79 @@
+"""tools/measure_beams.py without a sweep: exponents, ratios and marks by hand."""
+import pathlib
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+
+import beam_report
+import beam_trials
+import measure_beams
+import records
+
+
+def cell(method="beamtree", parameters=None, counters=None, render=1.0, build=0.5):
+    phase = "precompute/polygons" if method == "causticpolygons" else "precompute/tree"
+    spread = lambda seconds: records.Spread(seconds, seconds, seconds)
+    return beam_trials.Measured("pool", method, parameters or {}, {"camera_rays": 1000, **(counters or {})}, 10**6,
+                                {"render": spread(render), phase: spread(build)})
+
+
+def counted(ratio, **parameters):
+    counters = {name: round(ratio * paper) for name, paper in zip(beam_report.COUNTS, beam_report.PAPER)}
+    defaults = {"polygons": "triangles", "resolution": "61", "bound": "hybrid", "merging": "rays", "wave_height": "2"}
+    return cell(parameters={**defaults, **parameters}, counters={"polygons": 7442, **counters})
+
+
+class Tables(unittest.TestCase):
+    def test_exponents(self):
+        self.assertAlmostEqual(beam_trials.exponent([1, 2, 4, 8], [3, 12, 48, 192]), 2)
+        self.assertAlmostEqual(beam_trials.exponent([5, 7, 11], [4, 4, 4]), 0)
+
+    def test_time_a_point_is_that_beyond_the_eye_pass(self):
+        self.assertAlmostEqual(beam_trials.microseconds(cell(render=1.5), cell("none", render=1.0)), 500)
+
+    def test_counts_within_a_factor_of_two_are_marked(self):
+        for ratio, near in ((0.4, False), (0.51, True), (1.9, True), (2.1, False)):
+            self.assertIs(beam_report.is_near_the_paper(counted(ratio)), near)
+        text = beam_report.counts([counted(3, wave_height="3"), counted(1, wave_height="1")])
+        rows = text.splitlines()
+        self.assertIn("1,293,973", rows[2])
+        self.assertIn("1,293,973 (**1.00**)", rows[3])
+        self.assertIn("3,881,919 (3.00)", rows[4])
+
+    def test_the_hybrids_thresholds_come_in_order(self):
+        tests = {name: 5000 for name in beam_report.COUNTS}
+        cells = [cell(parameters={"bound": bound}, counters=tests) for bound in beam_report.BOUNDS]
+        cells += [cell(parameters={"bound": "hybrid", "spread_threshold": t}, counters=tests) for t in ("10", "5")]
+        rows = beam_report.bounds(cells + [cell("none", render=0.9)]).splitlines()
+        self.assertEqual([row.split("|")[2].strip() for row in rows[5:]], ["5°", "10°"])
+        self.assertIn("| 5 | 5 | 5 | 100.00 | 500 | 1.00 |", rows[2])
+
+    def test_watts_cost_grows_with_each_number(self):
+        made = lambda n: cell("causticpolygons", {"resolution": str(n), "receiver_resolution": str(n), "light_samples": str(n)},
+                              {"polygons": n, "receiver_polygons": n, "beams": n, "beam_polygon_tests": 7 * n,
+                               "caustic_polygons": n, "beam_point_tests": 1000 * n}, build=float(n * n))
+        text = beam_report.watt([[made(2), made(4), made(8)]] * 3)
+        for axis in beam_report.AXES:
+            self.assertIn(f"| causticpolygons | {axis.symbol} ({axis.words}) | 1.00 | 2.00 | 1.00 |", text)
+
+
+class Page(unittest.TestCase):
+    def test_blocks_are_replaced_and_missing_ones_named(self):
+        page = "a\n<!-- one -->\nold\n<!-- end of one -->\nb\n"
+        self.assertEqual(measure_beams.fill(page, {"one": "new"}), page.replace("old", "new"))
+        with self.assertRaisesRegex(records.RecordsError, "two"):
+            measure_beams.fill(page, {"two": "new"})
+
+    def test_the_page_has_every_mark(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        page = (root / "results" / "beamtree" / "README.md").read_text(encoding="utf-8")
+        names = ("machine", "counts", "bounds pool", "bounds ring", "height", "watt")
+        measure_beams.fill(page, {name: "" for name in names})
+        for name in measure_beams.SWEEPS:
+            self.assertTrue((root / "experiments" / "sweeps" / f"beam_{name}.json").exists(), name)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""Measures the beam tree and Watt's caustic polygons, and writes results/beamtree: tables and plots.
+
+Runs the sweeps experiments/sweeps/beam_*.json on one thread, one after another; their trials stay in
+results/beamtree/trials (not in git). Counts are exact on any machine; times are CPU times of one
+thread, so run it where nothing else runs. Needs build/release (tools/build.sh release causticbench).
+Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True  # the source folder may be read-only
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+
+import beam_report
+import beam_trials
+import records
+
+SWEEPS = ("counts", "counts_quads", "bounds_pool", "bounds_ring", "height", "watt_ns", "watt_nd", "watt_nl")
+BLOCK = "<!-- {0} -->\n{1}<!-- end of {0} -->"
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--keep", action="store_true", help="take the trials that are there, run only those that are not")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "beamtree", metavar="DIR",
+                        help="a folder with the page README.md to fill in (default: results/beamtree)")
+    return parser.parse_args()
+
+
+def run(name, folder, keep):
+    program = ROOT / "build" / "release" / "bin" / "causticbench"
+    if not program.exists():
+        raise records.RecordsError(f"{program}: not there (tools/build.sh release causticbench)")
+    command = [program, "sweep", ROOT / "experiments" / "sweeps" / f"beam_{name}.json", "-o", folder]
+    print(f"measure_beams: {name}", file=sys.stderr, flush=True)
+    status = subprocess.run([str(part) for part in command + ([] if keep else ["--force"])], cwd=ROOT,
+                            stdout=sys.stderr, stdin=subprocess.DEVNULL).returncode
+    if status != 0:
+        raise ChildProcessError(f"sweep beam_{name}: exit code {status}")
+
+
+def machine(folders):
+    """One line on where and in which state the times were taken."""
+    found = [json.loads((folder / "environment.json").read_text(encoding="utf-8")) for folder in folders]
+    loads = [float(each["load"].split()[0]) for each in found]
+    first = found[0]
+    return (f"{first['cpu']}, {first['threads_available']} threads, {first['compiler']}, commit {first['commit']}; load "
+            f"average {min(loads):.1f} to {max(loads):.1f} while the sweeps began ({found[0]['date'][:10]}).")
+
+
+def fill(page, blocks):
+    """The page with the text between its marks renewed; raises RecordsError for a mark that is missing."""
+    for name, text in blocks.items():
+        pattern = re.compile(BLOCK.format(re.escape(name), ".*?"), re.DOTALL)
+        if len(pattern.findall(page)) != 1:
+            raise records.RecordsError(f'README.md: no place for the table "{name}" (marks: {BLOCK.format(name, "...")!r})')
+        page = pattern.sub(lambda _: BLOCK.format(name, text + "\n"), page)
+    return page
+
+
+def write(output, folders):
+    import beam_plots  # here, so that a missing matplotlib is told apart from bad records
+
+    cells = {name: beam_trials.read(folder) for name, folder in folders.items()}
+    watt = [cells["watt_ns"], cells["watt_nd"], cells["watt_nl"]]
+    blocks = {"machine": machine(folders.values()), "counts": beam_report.counts(cells["counts"] + cells["counts_quads"]),
+              "bounds pool": beam_report.bounds(cells["bounds_pool"]), "bounds ring": beam_report.bounds(cells["bounds_ring"]),
+              "height": beam_report.heights(cells["height"]), "watt": beam_report.watt(watt)}
+    plots = {"bounds.svg": beam_plots.bounds({"pool": cells["bounds_pool"], "ring": cells["bounds_ring"]}),
+             "height.svg": beam_plots.heights(cells["height"]), "watt.svg": beam_plots.watt(watt)}
+    page = output / "README.md"
+    whole(page, fill(page.read_text(encoding="utf-8"), blocks))
+    for name, text in plots.items():
+        whole(output / name, text)
+
+
+def whole(path, text):
+    """A reader never sees half of a file."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def main():
+    chosen = arguments()
+    folders = {name: chosen.output / "trials" / name for name in SWEEPS}
+    try:
+        for name, folder in folders.items():
+            run(name, folder, chosen.keep)
+        write(chosen.output, folders)
+    except records.RecordsError as error:
+        print(f"measure_beams: {error}", file=sys.stderr)
+        return 2
+    except (ChildProcessError, ImportError, OSError) as error:
+        print(f"measure_beams: {error}", file=sys.stderr)
+        return 1
+    print(f"measure_beams: {chosen.output / 'README.md'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
