@@ -74,6 +74,7 @@ struct RunOptions {
     int samples_per_pixel = 1;  ///< of the eye pass; 1 in `probe`
     bool adaptive = true;       ///< whether an adaptive sampler may take more (references: no)
     Isa isa = widest_isa();     ///< of the methods' hot loops
+    std::string origin;         ///< the command that asks, for files that a method writes
     std::function<void(std::string_view)> begin_phase;
     std::function<void(double)> progress;
 

@@ -21,7 +21,8 @@ struct JsonNode::Document {
     };
 
     nlohmann::json root;
-    std::filesystem::path file;
+    std::filesystem::path file;        ///< as messages name it
+    std::filesystem::path written_in;  ///< the file, where `file` names a place in it
     /// Where a value came from another file: its pointer -> that file.
     std::map<std::string, std::filesystem::path> included;
     mutable std::map<std::string, Keys> keys;  ///< by the pointer of the object

@@ -75,9 +75,11 @@ JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
     return {document, ""};
 }
 
-JsonNode JsonNode::parse_text(const std::string& text, const std::string& origin) {
+JsonNode JsonNode::parse_text(const std::string& text, const std::string& origin,
+                              const std::filesystem::path& written_in) {
     const auto document = std::make_shared<Document>();
     document->file = origin;
+    document->written_in = written_in;
     document->root = parse_json(text, origin);
     return {document, ""};
 }
@@ -251,7 +253,8 @@ std::string JsonNode::place() const { return document_->place(pointer_); }
 
 std::filesystem::path JsonNode::file() const {
     const auto inclusion = document_->inclusion(pointer_);
-    return inclusion == document_->included.end() ? document_->file : inclusion->second;
+    if (inclusion != document_->included.end()) return inclusion->second;
+    return document_->written_in.empty() ? document_->file : document_->written_in;
 }
 
 std::string JsonNode::canonical() const { return canonical_json(document_->value(pointer_)); }

@@ -18,8 +18,10 @@ public:
     /// Parses a file; duplicate keys are errors. `{"$include": "file.json"}` is replaced by that
     /// file's content (paths relative to the including file) and errors name the included file.
     static JsonNode parse_file(const std::filesystem::path& file);
-    /// Parses text that did not come from a file; `origin` stands for the file in messages.
-    static JsonNode parse_text(const std::string& text, const std::string& origin);
+    /// Parses text that did not come from a file, or is part of the file `written_in`; `origin`
+    /// stands for the file in messages.
+    static JsonNode parse_text(const std::string& text, const std::string& origin,
+                               const std::filesystem::path& written_in = {});
 
     /// Replaces the value at a JSON pointer of RFC 6901 ("/water/resolution"), or adds its last key
     /// to an existing object. `value` is JSON, or else taken as a string. Of the whole document,

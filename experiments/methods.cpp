@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/hash.h"
+#include "photonmap/photon_map_file.h"
 
 namespace caustics {
 
@@ -46,6 +48,11 @@ json describe_params(const PhotonMapParams& p) {
     if (p.photons > 0) all["photons"] = p.photons;
     if (p.emitted > 0) all["emitted"] = p.emitted;
     if (p.max_radius > 0) all["max_radius"] = p.max_radius;
+    if (!p.save.empty()) all["save"] = p.save.string();
+    if (p.load.empty()) return all;
+    all["load"] = p.load.string();
+    for (const char* of_the_file : {"max_bounces", "emission", "interaction"})
+        all.erase(of_the_file);
     return all;
 }
 
@@ -101,6 +108,7 @@ MethodParams with_least_work(MethodParams params) {
     if (auto* const map = std::get_if<PhotonMapParams>(&params)) {
         map->photons = std::min<std::uint64_t>(map->photons, 1);
         map->emitted = std::min<std::uint64_t>(map->emitted, 1);
+        map->save.clear();
     }
     if (auto* const beams = std::get_if<BeamTreeParams>(&params)) beams->light_samples = 1;
     if (auto* const polygons = std::get_if<CausticPolygonsParams>(&params)) {
@@ -145,6 +153,23 @@ JsonNode parameters_node(const std::vector<std::string>& assignments) {
 
 json describe(const Method& method) {
     return std::visit([](const auto& params) { return describe_params(params); }, method.params);
+}
+
+std::map<std::string, std::string> files_read(const Method& method) {
+    const auto* const map = std::get_if<PhotonMapParams>(&method.params);
+    if (map == nullptr || map->load.empty()) return {};
+    return {{"load", hex(photon_map_checksum(map->load))}};
+}
+
+json identity(const Method& method) {
+    json all = describe(method);
+    for (const auto& [parameter, hash] : files_read(method)) all[parameter] = hash;
+    return all;
+}
+
+bool writes_files(const Method& method) {
+    const auto* const map = std::get_if<PhotonMapParams>(&method.params);
+    return map != nullptr && !map->save.empty();
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& method,

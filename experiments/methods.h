@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -39,6 +40,16 @@ JsonNode parameters_node(const std::vector<std::string>& assignments);
 /// Every parameter with the value in force, defaults included: parse_method reads it back to the
 /// same method.
 nlohmann::json describe(const Method& method);
+
+/// The files that the method's parameters read, by parameter, as hashes of their contents. Throws
+/// InputError for a file that is not what the parameter asks for.
+std::map<std::string, std::string> files_read(const Method& method);
+
+/// What tells two runs apart: describe() with the hashes of files in place of their names.
+nlohmann::json identity(const Method& method);
+
+/// Whether building the method leaves a file behind.
+bool writes_files(const Method& method);
 
 /// Runs the method's precompute pass.
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& method,

@@ -6,6 +6,7 @@
 #include "experiments/cli_options.h"
 #include "experiments/files.h"
 #include "experiments/probe.h"
+#include "experiments/run.h"
 #include "experiments/verbs.h"
 
 namespace caustics {
@@ -26,7 +27,10 @@ int probe_points(const ProbeOptions& options) {
     const Method method = options.method.parse();
     const ProbeList list = read_probe_list(options.points);
     const Scene scene(file.desc);
-    const std::string table = probe_table(list, probe(scene, method, list, options.run.options(1)));
+    RunOptions run = options.run.options(1);
+    run.origin = command("probe", {options.scene.file, options.scene.overrides(), method,
+                                   options.run.seed, run.samples_per_pixel});
+    const std::string table = probe_table(list, probe(scene, method, list, run));
     if (options.output.empty())
         write_stdout(table);
     else

@@ -37,7 +37,7 @@ Film reference_film(const Film& rendered) {
 std::string reference_key(const RunRequest& request, const SceneFile& scene) {
     const nlohmann::json configuration = {
         {"reference_version", reference_version}, {"scene", scene.hash},
-        {"method", request.method.name},          {"parameters", describe(request.method)},
+        {"method", request.method.name},          {"parameters", identity(request.method)},
         {"spp", request.samples_per_pixel},       {"seed", request.seed},
         {"width", scene.desc.camera.width},       {"height", scene.desc.camera.height}};
     return hex(fnv1a(configuration.dump()));

@@ -19,8 +19,10 @@ std::string shell_word(const std::string& text) {
     return quoted + "'";
 }
 
-std::string command(const RunRequest& request) {
-    std::string line = fmt::format("causticbench render {} --method {}",
+}  // namespace
+
+std::string command(const std::string& verb, const RunRequest& request) {
+    std::string line = fmt::format("causticbench {} {} --method {}", verb,
                                    shell_word(request.scene_file.string()), request.method.name);
     for (const auto& [pointer, value] : request.overrides)
         line += " --set " + shell_word(pointer + "=" + value);
@@ -29,30 +31,34 @@ std::string command(const RunRequest& request) {
         line +=
             " --param " +
             shell_word(key + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
-    return line + fmt::format(" --spp {} --seed {}", request.samples_per_pixel, request.seed);
+    if (verb == "render") line += fmt::format(" --spp {}", request.samples_per_pixel);
+    return line + fmt::format(" --seed {}", request.seed);
 }
-
-}  // namespace
 
 std::map<std::string, std::string> picture_metadata(const RunRequest& request,
                                                     const SceneFile& scene) {
     nlohmann::json assets = nlohmann::json::object();
     for (const auto& [name, hash] : scene.assets) assets[name] = hash;
-    return {{"scene", scene.canonical},
-            {"scene_assets", assets.dump()},
-            {"scene_hash", scene.hash},
-            {"method", request.method.name},
-            {"parameters", describe(request.method).dump()},
-            {"seed", fmt::format("{}", request.seed)},
-            {"spp", fmt::format("{}", request.samples_per_pixel)},
-            {"code_version", code_version()},
-            {"command", command(request)}};
+    std::map<std::string, std::string> metadata = {
+        {"scene", scene.canonical},
+        {"scene_assets", assets.dump()},
+        {"scene_hash", scene.hash},
+        {"method", request.method.name},
+        {"parameters", describe(request.method).dump()},
+        {"seed", fmt::format("{}", request.seed)},
+        {"spp", fmt::format("{}", request.samples_per_pixel)},
+        {"code_version", code_version()},
+        {"command", command("render", request)}};
+    for (const auto& [parameter, hash] : files_read(request.method))
+        metadata[parameter + "_hash"] = hash;
+    return metadata;
 }
 
 RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
               Stopwatch& stopwatch) {
     options.seed = request.seed;
     options.samples_per_pixel = request.samples_per_pixel;
+    options.origin = command("render", request);
     std::string stage;
     const auto begin_stage = [&](const char* name) {
         stage = name;

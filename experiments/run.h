@@ -21,6 +21,9 @@ struct RunRequest {
     int samples_per_pixel = 1;
 };
 
+/// The command line of a verb that makes it, with every parameter in force.
+std::string command(const std::string& verb, const RunRequest& request);
+
 /// The resolved configuration as attributes of a picture: scene, method with every parameter in
 /// force, seed, samples, code version, and the command that makes it. The same request gives the
 /// same text, whatever the number of threads.

@@ -58,6 +58,16 @@ std::string object_text(const std::vector<std::pair<std::string, std::string>>& 
     return text + "}";
 }
 
+/// A parameter that leaves a file behind is refused: the trials would overwrite each other's.
+Method method_of_trials(const std::string& name, const JsonNode& params) {
+    const Method method = parse_method(name, params);
+    if (writes_files(method))
+        params.at("save").fail(
+            "not in a sweep, whose trials would overwrite each other's file (save it by the verb "
+            "render, then load it here)");
+    return method;
+}
+
 /// All combinations of a method's parameter lists, the last key varying fastest.
 std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
     const JsonNode name_node = node.at("method");
@@ -80,7 +90,8 @@ std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
     }
     node.finish();
     for (SweepFile::MethodCase& each : cases)
-        each.method = parse_method(name, JsonNode::parse_text(object_text(each.params), place));
+        each.method = method_of_trials(
+            name, JsonNode::parse_text(object_text(each.params), place, node.file()));
     return cases;
 }
 
@@ -88,9 +99,9 @@ SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
     SweepFile::Reference reference;
     const std::string name = method_names()[node.at("method").as_choice(method_names())];
     const std::optional<JsonNode> params = node.find("param");
-    reference.method =
-        parse_method(name, JsonNode::parse_text(params ? params->canonical() : "{}",
-                                                params ? params->place() : node.place()));
+    reference.method = method_of_trials(
+        name, JsonNode::parse_text(params ? params->canonical() : "{}",
+                                   params ? params->place() : node.place(), node.file()));
     if (params) params->others();
     reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp));
     reference.seed = static_cast<std::uint64_t>(integer(node, "seed", 0, 1));

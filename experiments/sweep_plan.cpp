@@ -92,7 +92,7 @@ void identify(Trial& trial) {
     json configuration = {{"record_version", record_version},
                           {"scene", trial.scene_hash},
                           {"method", trial.request.method.name},
-                          {"parameters", describe(trial.request.method)},
+                          {"parameters", identity(trial.request.method)},
                           {"spp", trial.request.samples_per_pixel},
                           {"reference", trial.reference ? trial.reference->key : ""}};
     trial.cell = hex(fnv1a(configuration.dump()));
@@ -109,6 +109,7 @@ Trial make_trial(const SweepFile& sweep, const SceneVariant& variant,
     trial.threads = sweep.threads;
     trial.scene_name = variant.file.stem().string();
     trial.scene_hash = variant.hash;
+    trial.method_files = files_read(method.method);
     trial.swept = variant.swept;
     trial.swept.insert(trial.swept.end(), method.params.begin(), method.params.end());
     trial.reference = variant.reference;

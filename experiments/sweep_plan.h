@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,7 @@ struct Trial {
     int threads = 1;
     std::string scene_name;
     std::string scene_hash;
+    std::map<std::string, std::string> method_files;  ///< files_read() of the method
     /// Swept keys with their values as text: scene values under their names, method parameters
     /// under theirs.
     std::vector<std::pair<std::string, std::string>> swept;

@@ -89,6 +89,8 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     if (file.hash != trial.scene_hash)
         throw InputError(
             fmt::format("{}: changed while the sweep runs", trial.request.scene_file.string()));
+    if (files_read(trial.request.method) != trial.method_files)
+        throw InputError("a file that a parameter names changed while the sweep runs");
     const Scene scene(file.desc);
     record_scene(record, file, scene);
     log("precompute and render");
@@ -125,6 +127,7 @@ json trial_record(const Trial& trial, const std::string& status) {
         record["scene"]["set"][pointer] = value;
     record["method"] = {{"name", trial.request.method.name},
                         {"parameters", describe(trial.request.method)}};
+    if (!trial.method_files.empty()) record["method"]["files"] = trial.method_files;
     record["swept"] = json::object();
     for (const auto& [key, value] : trial.swept) record["swept"][key] = json::parse(value);
     if (!trial.reference) return record;

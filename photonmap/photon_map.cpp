@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "photonmap/kept_photons.h"
 #include "photonmap/max_radius.h"
 #include "photonmap/photon_tree.h"
 #include "photonmap/radiance_estimate.h"
-#include "photonmap/scene_photons.h"
 
 namespace caustics {
 
@@ -47,10 +47,10 @@ private:
 /// A tree of photons and the estimate over it.
 class PhotonMap final : public CausticEstimator {
 public:
-    PhotonMap(std::unique_ptr<const PhotonTree> tree, const LightPathCounts& counts,
+    PhotonMap(std::unique_ptr<const PhotonTree> tree, BuildReport report,
               const RadianceEstimate::Settings& settings, Isa isa, bool tables)
         : tree_(std::move(tree)),
-          counts_(counts),
+          report_(std::move(report)),
           settings_(settings),
           estimate_(settings, isa),
           tables_(tables) {}
@@ -72,15 +72,7 @@ public:
         answer(points, out, dynamic_cast<GatherContext&>(context), &RadianceEstimate::irradiance);
     }
 
-    BuildReport build_report() const override {
-        BuildReport report;
-        report.bytes = tree_->bytes();
-        counts_.add_to(report.counters);
-        tree_->add_to(report.counters);
-        if (settings_.limits.nearest != GatherLimits::all)
-            report.resolved["max_radius"] = static_cast<double>(settings_.limits.max_radius);
-        return report;
-    }
+    BuildReport build_report() const override { return report_; }
 
 private:
     using Value = Spectrum (RadianceEstimate::*)(const ReceiverPoint&, const GatheredPhotons&,
@@ -97,15 +89,16 @@ private:
     }
 
     std::unique_ptr<const PhotonTree> tree_;
-    LightPathCounts counts_;
+    BuildReport report_;
     RadianceEstimate::Settings settings_;
     RadianceEstimate estimate_;
     bool tables_;
 };
 
 void check(const PhotonMapParams& params) {
-    if ((params.photons == 0) == (params.emitted == 0))
-        throw InputError("photonmap: give either photons or emitted");
+    const int counts = (params.photons > 0) + (params.emitted > 0) + !params.load.empty();
+    if (counts != 1 || (!params.load.empty() && !params.save.empty()))
+        throw InputError("photonmap: give one of photons, emitted and load; save not with load");
     const bool unbiased = params.estimator == PhotonMapParams::Estimator::unbiased;
     if (params.nearest < (unbiased ? 2 : 1))
         throw InputError(
@@ -139,8 +132,8 @@ GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const Pho
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,
                                               const RunOptions& options) {
     check(params);
-    options.phase("trace");
-    TracedPhotons photons = trace_scene(scene, params, options);
+    SavedPhotons kept = kept_photons(scene, params, options);
+    TracedPhotons& photons = kept.photons;
     RadianceEstimate::Settings settings;
     settings.estimator = params.estimator;
     settings.filter = params.filter;
@@ -151,7 +144,14 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMa
     options.phase("balance");
     std::unique_ptr<const PhotonTree> tree =
         build_tree(params.tree, std::move(photons.store), options.isa);
-    return std::make_unique<PhotonMap>(std::move(tree), photons.counts, settings, options.isa,
+    BuildReport report;
+    report.bytes = tree->bytes();
+    photons.counts.add_to(report.counters);
+    tree->add_to(report.counters);
+    if (params.radius == 0)
+        report.resolved["max_radius"] = static_cast<double>(settings.limits.max_radius);
+    if (!params.load.empty()) report.resolved["max_bounces"] = kept.origin.max_bounces;
+    return std::make_unique<PhotonMap>(std::move(tree), std::move(report), settings, options.isa,
                                        params.tables);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 
 #include "core/caustic_estimator.h"
@@ -51,17 +52,23 @@ struct PhotonMapParams {
     /// one photon after another, instead of a register of photons at a time.
     bool tables = false;
     int max_bounces = 16;  ///< specular events between light and receiver
+    /// File that the traced photons are written to; empty: none. See photon_map_file.h.
+    std::filesystem::path save = {};
+    /// File that the photons come from instead of being traced; empty: none. Then photons and
+    /// emitted are 0, and how the photons were traced stands in the file.
+    std::filesystem::path load = {};
 };
 
-/// Throws InputError for what cannot be used or is not built yet.
+/// Relative names of files start at the folder of the file that names them (a sweep file), or at the
+/// working folder. Throws InputError for what cannot be used or is not built yet.
 void read(const JsonNode& node, PhotonMapParams& params);
 
-/// Phases "trace" and "balance". Counters: those of LightPathCounts, `tree_depth` of the unbalanced
-/// tree, `gathers`, `gathered_photons` and, where adaptive, the `used_photons` among them; flux is divided by photons_emitted x photons_stored / (photons_stored +
-/// photons_dropped), see scene_photons.h. Throws InputError for params that contradict each other
-/// and for a map that
-/// does not fit, UnsupportedScene when the photons asked for cannot be had; with `emitted` an
-/// empty map is an answer, and black.
+/// Phases "trace" (or "load"), "save" and "balance". Counters: those of LightPathCounts, `tree_depth`
+/// of the unbalanced tree, `gathers`, `gathered_photons` and, where adaptive, the `used_photons` among
+/// them; flux is divided by photons_emitted x photons_stored / (photons_stored + photons_dropped), see
+/// scene_photons.h. Throws InputError for params that contradict each other and for a file whose
+/// photons are those of another scene, UnsupportedScene when the photons asked for cannot be had; with
+/// `emitted` an empty map is an answer, and black.
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,
                                               const RunOptions& options);
 

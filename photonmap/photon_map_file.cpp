@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <string_view>
 
 #include "core/error.h"
@@ -17,8 +18,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "photons are written as they lie");
 
 constexpr std::string_view magic = "causticbench photon map\n";
-constexpr std::uint32_t version = 1;
-constexpr std::uint32_t longest_header = 1 << 20;
+constexpr std::size_t header_numbers = 11 * sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t);
+constexpr std::size_t longest_header = 1 << 20;
 
 template <typename T>
 std::string_view bytes_of(const T& value) {
@@ -32,9 +33,23 @@ std::string_view bytes_of(std::span<const Photon> photons) {
 /// The counts in the order of the file.
 template <typename Counts, typename Visit>
 void for_each_count(Counts& counts, const Visit& visit) {
-    for (auto* count : {&counts.emitted, &counts.aimed, &counts.missed, &counts.escaped,
-                        &counts.absorbed, &counts.depth_limited, &counts.stored})
+    for (auto* count :
+         {&counts.emitted, &counts.aimed, &counts.branched, &counts.missed, &counts.escaped,
+          &counts.absorbed, &counts.depth_limited, &counts.stored, &counts.dropped})
         visit(*count);
+}
+
+std::string header_bytes(const TracedPhotons& photons, const PhotonOrigin& origin) {
+    std::string header;
+    const auto put = [&header](auto value) { header += bytes_of(value); };
+    put(origin.transport);
+    put(origin.seed);
+    put(static_cast<std::uint32_t>(origin.emission));
+    put(static_cast<std::uint32_t>(origin.interaction));
+    put(static_cast<std::uint32_t>(origin.max_bounces));
+    for_each_count(photons.counts, put);
+    for (int c = 0; c < 3; ++c) put(photons.flux_unit[c]);
+    return header + origin.command.substr(0, longest_header - header.size());
 }
 
 class Reader {
@@ -68,47 +83,64 @@ public:
         return static_cast<std::uint64_t>(end - here);
     }
 
+    void skip(std::uint64_t bytes) { in_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur); }
+
 private:
     std::filesystem::path file_;
     std::ifstream in_;
     std::uint64_t hash_ = fnv1a("");
 };
 
-PhotonMapHeader read_header(Reader& in) {
+struct Header {
+    PhotonOrigin origin;
+    LightPathCounts counts;
+    Spectrum flux_unit;
+};
+
+void read_start(Reader& in) {
     std::string start(magic.size(), '\0');
     if (in.left() >= magic.size()) in.read(start.data(), start.size());
     if (start != magic) in.fail("is no photon map of causticbench");
-    if (const auto found = in.read<std::uint32_t>(); found != version)
+    if (const auto found = in.read<std::uint32_t>(); found != photon_map_version)
         in.fail("is a photon map of version " + std::to_string(found) +
-                " (known: " + std::to_string(version) + ")");
+                " (known: " + std::to_string(photon_map_version) + ")");
+}
+
+Header read_header(Reader& in) {
+    read_start(in);
+    const auto fail = [&in] { in.fail("is damaged: its header has no sense"); };
     const auto length = in.read<std::uint32_t>();
-    PhotonMapHeader header;
-    constexpr std::size_t numbers = 8 * sizeof(std::uint64_t) + 3 * sizeof(float);
-    if (length < numbers || length > longest_header) in.fail("is damaged: its header has no sense");
-    header.transport = in.read<std::uint64_t>();
+    if (length < header_numbers || length > longest_header) fail();
+    Header header;
+    header.origin.transport = in.read<std::uint64_t>();
+    header.origin.seed = in.read<std::uint64_t>();
+    const auto emission = in.read<std::uint32_t>();
+    const auto interaction = in.read<std::uint32_t>();
+    const auto max_bounces = in.read<std::uint32_t>();
+    if (emission > 1 || interaction > 1 || max_bounces > std::numeric_limits<int>::max()) fail();
+    header.origin.emission = static_cast<PhotonMapParams::Emission>(emission);
+    header.origin.interaction = static_cast<Interaction>(interaction);
+    header.origin.max_bounces = static_cast<int>(max_bounces);
     for_each_count(header.counts, [&](std::uint64_t& count) { count = in.read<std::uint64_t>(); });
     for (int c = 0; c < 3; ++c) header.flux_unit[c] = in.read<float>();
-    header.origin.resize(length - numbers);
-    in.read(header.origin.data(), header.origin.size());
+    header.origin.command.resize(length - header_numbers);
+    in.read(header.origin.command.data(), header.origin.command.size());
     return header;
 }
 
 }  // namespace
 
-void save_photon_map(const TracedPhotons& photons, std::uint64_t transport,
-                     const std::string& origin, const std::filesystem::path& file) {
+void save_photon_map(const TracedPhotons& photons, const PhotonOrigin& origin,
+                     const std::filesystem::path& file) {
     WholeFile out(file);
     std::uint64_t hash = fnv1a("");
     const auto put = [&](std::string_view bytes) {
         out.write(bytes);
         hash = fnv1a(bytes, hash);
     };
-    std::string header(bytes_of(transport));
-    for_each_count(photons.counts, [&](const std::uint64_t& count) { header += bytes_of(count); });
-    for (int c = 0; c < 3; ++c) header += bytes_of(photons.flux_unit[c]);
-    header += origin.substr(0, longest_header - header.size());
+    const std::string header = header_bytes(photons, origin);
     put(magic);
-    put(bytes_of(version));
+    put(bytes_of(photon_map_version));
     put(bytes_of(static_cast<std::uint32_t>(header.size())));
     put(header);
     put(bytes_of(static_cast<std::uint64_t>(photons.store.size())));
@@ -124,24 +156,31 @@ bool is_photon_map(const std::filesystem::path& file) {
     return start == magic;
 }
 
-TracedPhotons load_photon_map(const std::filesystem::path& file, PhotonMapHeader& header) {
+SavedPhotons load_photon_map(const std::filesystem::path& file) {
     Reader in(file);
-    header = read_header(in);
+    Header header = read_header(in);
     const auto count = in.read<std::uint64_t>();
     // Checked before memory is asked for: a damaged count must not reserve the address space.
     if (in.left() / sizeof(Photon) < count) in.fail("ends too early: the photon map is cut short");
-    TracedPhotons traced{PhotonStore(count), header.counts, header.flux_unit};
-    std::vector<Photon> block(std::min<std::uint64_t>(count, PhotonStore::block_photons));
-    for (std::uint64_t read = 0; read < count;) {
-        block.resize(std::min<std::uint64_t>(count - read, PhotonStore::block_photons));
-        in.read(reinterpret_cast<char*>(block.data()), block.size() * sizeof(Photon));
-        traced.store.append(block);
-        read += block.size();
+    TracedPhotons photons{PhotonStore(count, count), header.counts, header.flux_unit};
+    for (std::uint64_t read = 0; read < count; read = photons.store.size()) {
+        const std::span<Photon> block =
+            photons.store.extend(std::min<std::uint64_t>(count - read, PhotonStore::block_photons));
+        in.read(reinterpret_cast<char*>(block.data()), block.size_bytes());
     }
+    photons.store.settle();
     const std::uint64_t hash = in.hash();
-    if (in.read<std::uint64_t>() != hash || in.left() != 0)
+    if (in.read<std::uint64_t>() != hash || in.left() != 0 || header.counts.stored != count)
         in.fail("is damaged: its checksum does not fit");
-    return traced;
+    return {std::move(photons), std::move(header.origin)};
+}
+
+std::uint64_t photon_map_checksum(const std::filesystem::path& file) {
+    Reader in(file);
+    read_start(in);
+    if (in.left() < sizeof(std::uint64_t)) in.fail("ends too early: the photon map is cut short");
+    in.skip(in.left() - sizeof(std::uint64_t));
+    return in.read<std::uint64_t>();
 }
 
 }  // namespace caustics

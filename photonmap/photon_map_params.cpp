@@ -22,6 +22,25 @@ void refuse(const JsonNode& node, const std::string& key) {
         child->fail("this parameter of photonmap is not built yet (leave it out)");
 }
 
+std::filesystem::path file_name(const JsonNode& node) {
+    const std::string name = node.as_string();
+    if (name.empty()) node.fail("must name a file");
+    return (node.file().parent_path() / name).lexically_normal();
+}
+
+void read_files(const JsonNode& node, PhotonMapParams& params) {
+    const std::optional<JsonNode> save = node.find("save");
+    const std::optional<JsonNode> load = node.find("load");
+    if (save) params.save = file_name(*save);
+    if (!load) return;
+    params.load = file_name(*load);
+    params.photons = 0;
+    for (const char* key : {"save", "photons", "emitted", "emission", "interaction", "max_bounces"})
+        if (const std::optional<JsonNode> given = node.find(key))
+            given->fail("cannot be given with load: the photons of " + params.load.string() +
+                        " are there already, traced as that file says");
+}
+
 void read_count(const JsonNode& node, PhotonMapParams& params) {
     const std::optional<JsonNode> photons = node.find("photons");
     const std::optional<JsonNode> emitted = node.find("emitted");
@@ -104,6 +123,7 @@ void read(const JsonNode& node, PhotonMapParams& params) {
         params.filter =
             filter_kinds[filter->as_choice({name(filter_kinds[0]), name(filter_kinds[1]),
                                             name(filter_kinds[2]), name(filter_kinds[3])})];
+    read_files(node, params);
     if (const auto max_bounces = node.find("max_bounces"))
         params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, most_bounces));
     if (const auto emission = node.find("emission"))

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "experiments/files.h"
+#include "photonmap/photon_map_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {
@@ -106,6 +107,36 @@ TEST_F(SweepPlans, KeyReferencesByAllTheyDependOn) {
                               R"({"method": "lighttrace", "param": {"paths": 1000}, "seed": 2})",
                               R"({"method": "lighttrace", "param": {"paths": 1000}, "spp": 16})"})
         EXPECT_NE(first, key(other)) << other;
+}
+
+/// A photon map of no photons; the seed makes it another one.
+void write_map(const std::filesystem::path& file, std::uint64_t seed) {
+    save_photon_map({PhotonStore(0), {}, Spectrum::Ones()}, {.seed = seed}, file);
+}
+
+TEST_F(SweepPlans, TellTrialsThatLoadAFileByItsContent) {
+    const std::string load =
+        R"("methods": [{"method": "photonmap", "param": {"load": "a.photons"}}])";
+    write_map(folder_ / "a.photons", 1);
+    const SweepPlan first = plan(load);
+    EXPECT_EQ(first.trials[0].method_files.size(), 1U);
+    write_map(folder_ / "a.photons", 2);
+    EXPECT_NE(plan(load).trials[0].config_hash, first.trials[0].config_hash);
+    write_map(folder_ / "b.photons", 1);
+    EXPECT_EQ(plan(R"("methods": [{"method": "photonmap", "param": {"load": "b.photons"}}])")
+                  .trials[0]
+                  .config_hash,
+              first.trials[0].config_hash)
+        << "the name of the file does not matter";
+    EXPECT_NE(error(R"("methods": [{"method": "photonmap", "param": {"load": "c.photons"}}])")
+                  .find("c.photons: cannot be read"),
+              std::string::npos);
+}
+
+TEST_F(SweepPlans, RefuseToSaveTheFilesOfTrialsOverEachOther) {
+    const std::string reason =
+        error(R"("methods": [{"method": "photonmap", "param": {"save": "a.photons"}}])");
+    EXPECT_NE(reason.find("/methods/0/param: /save: not in a sweep"), std::string::npos) << reason;
 }
 
 TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {

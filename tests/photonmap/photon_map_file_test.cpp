@@ -19,13 +19,22 @@ TracedPhotons traced(std::size_t count) {
     photons.store.append(test::photon_sets(count, 7)[0].photons);
     photons.counts = {.emitted = 9,
                       .aimed = 8,
+                      .branched = 3,
                       .missed = 7,
                       .escaped = 6,
                       .absorbed = 5,
                       .depth_limited = 4,
-                      .stored = count};
+                      .stored = count,
+                      .dropped = 2};
     return photons;
 }
+
+const PhotonOrigin origin = {.transport = 0x1234567890abcdefU,
+                             .seed = 77,
+                             .emission = PhotonMapParams::Emission::stratified,
+                             .interaction = Interaction::split,
+                             .max_bounces = 5,
+                             .command = "causticbench render a.json"};
 
 std::string content(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
@@ -34,8 +43,7 @@ std::string content(const std::filesystem::path& file) {
 
 std::string refusal(const std::filesystem::path& file) {
     try {
-        PhotonMapHeader header;
-        load_photon_map(file, header);
+        load_photon_map(file);
     } catch (const InputError& error) {
         return error.what();
     }
@@ -44,9 +52,7 @@ std::string refusal(const std::filesystem::path& file) {
 
 class PhotonMapFile : public testing::Test {
 protected:
-    void save(std::size_t count) {
-        save_photon_map(traced(count), 0x1234567890abcdefU, "{\"seed\": 1}", file_);
-    }
+    void save(std::size_t count) { save_photon_map(traced(count), origin, file_); }
     support::TemporaryFolder folder_;
     std::filesystem::path file_ = folder_ / "a.photons";
 };
@@ -56,8 +62,8 @@ TEST_F(PhotonMapFile, GivesBackWhatWasSaved) {
     for (const std::size_t count : {std::size_t{70'000}, std::size_t{1}, std::size_t{0}}) {
         save(count);
         EXPECT_TRUE(is_photon_map(file_));
-        PhotonMapHeader header;
-        const TracedPhotons loaded = load_photon_map(file_, header);
+        const SavedPhotons kept = load_photon_map(file_);
+        const TracedPhotons& loaded = kept.photons;
         const TracedPhotons saved = traced(count);
         ASSERT_EQ(loaded.store.size(), count);
         if (count > 0) {
@@ -65,13 +71,30 @@ TEST_F(PhotonMapFile, GivesBackWhatWasSaved) {
                                   count * sizeof(Photon)),
                       0);
         }
-        EXPECT_EQ(header.transport, 0x1234567890abcdefU);
-        EXPECT_EQ(header.origin, "{\"seed\": 1}");
+        EXPECT_EQ(kept.origin.transport, origin.transport);
+        EXPECT_EQ(kept.origin.seed, 77U);
+        EXPECT_EQ(kept.origin.emission, origin.emission);
+        EXPECT_EQ(kept.origin.interaction, origin.interaction);
+        EXPECT_EQ(kept.origin.max_bounces, 5);
+        EXPECT_EQ(kept.origin.command, origin.command);
         EXPECT_TRUE((loaded.flux_unit == saved.flux_unit).all());
-        EXPECT_EQ(loaded.counts.emitted, 9U);
-        EXPECT_EQ(loaded.counts.depth_limited, 4U);
-        EXPECT_EQ(loaded.counts.stored, count);
+        Counters found, expected;
+        loaded.counts.add_to(found);
+        saved.counts.add_to(expected);
+        EXPECT_EQ(found, expected);
     }
+}
+
+TEST_F(PhotonMapFile, HasAChecksumThatStandsForItsContent) {
+    save(3);
+    const std::uint64_t first = photon_map_checksum(file_);
+    save_photon_map(traced(3), origin, folder_ / "b.photons");
+    EXPECT_EQ(photon_map_checksum(folder_ / "b.photons"), first);
+    save(4);
+    EXPECT_NE(photon_map_checksum(file_), first);
+    write_whole_file(file_, "a picture, say, and a long one at that");
+    EXPECT_THROW(photon_map_checksum(file_), InputError);
+    EXPECT_THROW(photon_map_checksum(folder_ / "absent"), InputError);
 }
 
 TEST_F(PhotonMapFile, RefusesEveryDamagedByteAndEveryCut) {

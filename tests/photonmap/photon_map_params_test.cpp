@@ -82,6 +82,27 @@ TEST(PhotonMapParams, AdaptiveHasItsOwnLargestNumber) {
     EXPECT_NE(refusal(R"({"adaptive": true, "radius": 1})").find("adaptive"), std::string::npos);
 }
 
+TEST(PhotonMapParams, SaveAndLoadNameFilesBesideTheFileThatNamesThem) {
+    EXPECT_EQ(params_of("{}").save, "");
+    EXPECT_EQ(params_of(R"({"save": "out/a.photons"})").save, "out/a.photons");
+    const PhotonMapParams given = params_of(R"({"load": "a.photons", "nearest": 20})");
+    EXPECT_EQ(given.load, "a.photons");
+    EXPECT_EQ(given.photons + given.emitted, 0U);
+    PhotonMapParams beside;
+    read(JsonNode::parse_text(R"({"load": "../a.photons"})", "params", "sweeps/b.json"), beside);
+    EXPECT_EQ(beside.load, "a.photons");
+    EXPECT_NE(refusal(R"({"save": ""})").find("/save"), std::string::npos);
+}
+
+TEST(PhotonMapParams, NothingOfTheTracingCanBeGivenWithLoad) {
+    for (const std::string key :
+         {R"("photons": 5)", R"("emitted": 5)", R"("emission": "random")", R"("max_bounces": 16)",
+          R"("interaction": "roulette")", R"("save": "b.photons")"}) {
+        const std::string line = refusal(R"({"load": "a.photons", )" + key + "}");
+        EXPECT_NE(line.find("with load"), std::string::npos) << key << ": " << line;
+    }
+}
+
 TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
     for (const std::string word : {R"("passes": 2)"}) {
         const std::string line = refusal("{" + word + "}");
