@@ -3,9 +3,16 @@
 #include <memory>
 
 #include "core/aimed_emission.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "core/transport_digest.h"
 #include "experiments/cli_options.h"
 #include "experiments/files.h"
+#include "experiments/interrupt.h"
+#include "experiments/map_info.h"
 #include "experiments/verbs.h"
+#include "photonmap/kept_photons.h"
 
 namespace caustics {
 
@@ -69,6 +76,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
     for (const auto& [name, hash] : file.assets)
         text += fmt::format("asset    {} ({})\n", name, hash);
+    text += fmt::format("photons  of maps with transport {}\n", hex(transport_digest(scene)));
     text += fmt::format("diameter {:.6g} m\n", scene.diameter());
     const PixelSampling& sampling = scene.sampling();
     text += fmt::format("film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
@@ -88,18 +96,75 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     return text;
 }
 
+struct InfoOptions {
+    SceneOptions scene;  ///< or a photon map
+    std::string map_scene;
+    std::string output;
+    double dot = 1;
+};
+
+void info_on_scene(const InfoOptions& options) {
+    if (!options.map_scene.empty() || !options.output.empty())
+        throw InputError(
+            fmt::format("{} is no photon map: --scene and -o are for these", options.scene.file));
+    const SceneFile file = options.scene.load();
+    const Scene scene(file.desc);
+    write_stdout(describe_scene(options.scene, file, scene));
+}
+
+void draw(const InfoOptions& options, SavedPhotons saved) {
+    const SceneFile file = load_scene(options.map_scene, options.scene.overrides());
+    const Scene scene(file.desc);
+    require_transport(saved.origin, scene, options.scene.file);
+    if (options.output.empty()) return;
+    RunOptions run;
+    run.threads = available_threads();
+    run.samples_per_pixel = scene.sampling().sample_count;
+    run.adaptive = false;
+    run.progress = [](double) { throw_if_interrupted(); };
+    write_png(draw_photons(scene, std::move(saved.photons), options.dot, run), options.output);
+}
+
+void info_on_map(const InfoOptions& options) {
+    if (options.map_scene.empty() && !(options.output.empty() && options.scene.sets.empty()))
+        throw InputError("-o and --set need --scene: the scene that the photons are drawn in");
+    if (!options.output.empty()) {
+        if (std::filesystem::path(options.output).extension() != ".png")
+            throw InputError(fmt::format("-o {}: photons are drawn as .png", options.output));
+        require_writable_place(options.output);
+    }
+    SavedPhotons saved = load_photon_map(options.scene.file);
+    const std::string text = describe_map(options.scene.file, saved);
+    if (!options.map_scene.empty()) draw(options, std::move(saved));
+    write_stdout(text);
+}
+
 }  // namespace
 
 Verb add_info(CLI::App& app) {
-    auto options = std::make_shared<SceneOptions>();
-    CLI::App* const verb =
-        app.add_subcommand("info", "What a scene holds, and which methods can serve it");
-    options->add_to(*verb);
-    verb->footer("Example:\n  causticbench info pool.json --set /water/resolution=64");
+    auto options = std::make_shared<InfoOptions>();
+    CLI::App* const verb = app.add_subcommand(
+        "info", "What a scene holds and which methods can serve it, or what a photon map holds");
+    options->scene.add_to(*verb);
+    verb->get_option("SCENE")->description("Scene file (JSON), or a photon map's file");
+    verb->add_option("--scene", options->map_scene,
+                     "Of a photon map: the scene that it must belong to, and is drawn in")
+        ->type_name("SCENE");
+    verb->add_option(
+            "-o,--output", options->output,
+            "Picture (.png) of a photon map's photons as dots, through the scene's camera; "
+            "as bright as the logarithm of their number, over the dim scene")
+        ->type_name("FILE");
+    verb->add_option("--dot", options->dot, "Radius of the dots in pixels (default 1)")
+        ->check(CLI::Range(0.1, 100.0));
+    verb->footer(
+        "Example:\n  causticbench info pool.json --set /water/resolution=64\n"
+        "  causticbench info pool.photons --scene pool.json -o photons.png");
     return {verb, [options] {
-                const SceneFile file = options->load();
-                const Scene scene(file.desc);
-                write_stdout(describe_scene(*options, file, scene));
+                if (is_photon_map(options->scene.file))
+                    info_on_map(*options);
+                else
+                    info_on_scene(*options);
                 return 0;
             }};
 }

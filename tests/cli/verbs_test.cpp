@@ -83,6 +83,30 @@ TEST(Info, TellsWhatTheSceneHolds) {
         EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
 }
 
+TEST(PhotonMaps, AreSavedLoadedDescribedAndDrawn) {
+    const support::TemporaryFolder folder;
+    const std::string map = folder / "ball.photons";
+    for (const auto& [param, picture] :
+         {std::pair("save=" + map, "traced.exr"), std::pair("load=" + map, "loaded.exr")}) {
+        std::vector<std::string> arguments = {"render",  scene,           "--method", "photonmap",
+                                              "--param", param,           "--param",  "nearest=20",
+                                              "-o",      folder / picture};
+        if (param[0] == 's') arguments.insert(arguments.end(), {"--param", "photons=1000"});
+        ASSERT_EQ(causticbench(arguments).exit_code, 0) << param;
+    }
+    const Film traced = read_exr(folder / "traced.exr"), loaded = read_exr(folder / "loaded.exr");
+    for (std::size_t i = 0; i < traced.pixel_count(); ++i)
+        EXPECT_TRUE((traced.rgb("", i) == loaded.rgb("", i)).all());
+    EXPECT_EQ(loaded.metadata.at("load_hash").size(), 16U);
+
+    const std::string drawing = folder / "photons.png";
+    const ProgramResult info = causticbench({"info", map, "--scene", scene, "-o", drawing});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+    for (const char* word : {"format version 1", "1000 stored", "seed 1", "param photons=1000"})
+        EXPECT_NE(info.out.find(word), std::string::npos) << word << "\n" << info.out;
+    EXPECT_TRUE(fs::exists(drawing));
+}
+
 TEST(Probe, KeepsTheRowsAndAddsItsAnswers) {
     const support::TemporaryFolder folder;
     const std::string points = folder / "points.csv";

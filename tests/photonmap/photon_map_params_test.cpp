@@ -117,9 +117,9 @@ TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
           R"({"nearest": 0})",          R"({"nearest": 1})",          R"({"max_radius": 0})",
           R"({"max_radius": -1})",      R"({"max_radius": 1e-30})",   R"({"max_radius": 1e30})",
           R"({"estimator": "biased"})", R"({"tree": "balancd"})",     R"({"max_bounces": 0})",
-          R"({"photons": "many"})",     R"({"tables": 1})",           R"({"filter": "box"})", R"({"adaptive": 1})",
-          R"({"radius": 0})",           R"({"radius": -1})",          R"({"radius": 1e-30})",
-          R"({"radius": "wide"})"}) {
+          R"({"photons": "many"})",     R"({"tables": 1})",           R"({"filter": "box"})",
+          R"({"adaptive": 1})",         R"({"radius": 0})",           R"({"radius": -1})",
+          R"({"radius": 1e-30})",       R"({"radius": "wide"})"}) {
         const std::string line = refusal(json);
         EXPECT_NE(line, "") << json;
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;
