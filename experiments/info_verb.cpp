@@ -12,7 +12,6 @@
 #include "experiments/interrupt.h"
 #include "experiments/map_info.h"
 #include "experiments/verbs.h"
-#include "photonmap/kept_photons.h"
 
 namespace caustics {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "experiments/pictures.h"
-#include "photonmap/photon_map_file.h"
+#include "photonmap/kept_photons.h"
 
 namespace caustics {
 

@@ -22,10 +22,12 @@ LAYERS = {
     "tests/bench": ["core", "photonmap", "tests/support"],
     "tests": ["core", "photonmap", "beamtree", "experiments", "tests/support"],
 }
-# The one file that names all methods.
+# The one file that names all methods, and what tells of a photon map's file.
 EXCEPTIONS = {
     "experiments/methods.h": ["photonmap", "beamtree"],
     "experiments/methods.cpp": ["photonmap", "beamtree"],
+    "experiments/map_info.h": ["photonmap"],
+    "experiments/map_info.cpp": ["photonmap"],
 }
 # Header prefix -> the files or folders that may include it. fmt, Eigen and the standard library are free.
 LIBRARIES = {
