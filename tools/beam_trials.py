@@ -46,7 +46,7 @@ def measured(folder, cell):
     phases = {phase: [trial["phases"][phase]["cpu"] for trial in trials] for phase in first["phases"]}
     parameters = {**{name: records.canonical(str(value)) for name, value in first["method"]["parameters"].items()},
                   **cell.parameters}
-    return Measured(cell.scene, cell.method, parameters, first["counters"], first["memory"]["map_bytes"],
+    return Measured(cell.scene, cell.method, parameters, first["counters"], first["memory"].get("map_bytes"),
                     {phase: records.Spread(sorted(times)[len(times) // 2], min(times), max(times))
                      for phase, times in phases.items()})
 

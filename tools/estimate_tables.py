@@ -1,0 +1,134 @@
+#!/usr/bin/python3
+"""Makes the tables and heat maps of results/photonmap from the records of experiments/sweeps/estimate_*.json.
+
+An error is the median over the seeds of sqrt(relmse), or of rmse over the reference's mean where it says so. The same
+records give the same bytes. Exit codes: 0 done, 2 bad input or usage.
+"""
+import argparse
+import math
+import os
+import statistics
+import sys
+
+sys.dont_write_bytecode = True  # the source folder may be read-only
+
+import records
+
+FILTERS = ("none", "cone", "gaussian", "epanechnikov")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("directory", metavar="DIR", help="folder with records.csv, as the sweep leaves it")
+    parser.add_argument("-o", "--output", metavar="OUT", default="results/photonmap", help="default: %(default)s")
+    arguments = parser.parse_args()
+    try:
+        cells = [Estimate(cell) for cell in records.read(os.path.join(arguments.directory, "records.csv")).cells]
+        write_all(cells, arguments.output)
+    except records.RecordsError as error:
+        return fail(error)
+    except ImportError as error:
+        return fail(f"{error}: the heat maps need matplotlib (Debian package python3-matplotlib, run by /usr/bin/python3)")
+    except OSError as error:
+        return fail(f"{error.filename or arguments.output}: {error.strerror}")
+    return 0
+
+
+def fail(reason):
+    print(f"estimate_tables: {reason}", file=sys.stderr)
+    return 2
+
+
+def write_all(cells, output):
+    import estimate_heat_maps  # here, so that a broken table is named even without matplotlib
+
+    os.makedirs(output, exist_ok=True)
+    scenes = sorted({cell.scene for cell in cells})
+    tables = {"filters.md": filters, "adaptive.md": adaptive}
+    for name, table in tables.items():
+        write(os.path.join(output, name), "\n".join(table(cells, scenes)) + "\n")
+    for scene in scenes:
+        picture = estimate_heat_maps.draw([cell for cell in cells if cell.scene == scene])
+        if picture:
+            write(os.path.join(output, f"heat_map-{scene}.svg"), picture)
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8", newline="\n") as file:
+        file.write(text)
+
+
+class Estimate:
+    """A cell of the records: what the estimate was, and its errors."""
+
+    def __init__(self, cell):
+        own = cell.parameters
+        self.scene, self.method = cell.scene, cell.method
+        self.photons = int(own["photons"]) if "photons" in own else None
+        self.nearest = int(own["nearest"]) if "nearest" in own else None
+        self.filter = own.get("filter", "none")
+        self.raw = own.get("estimator") == "raw"
+        self.adaptive = own.get("adaptive") == "true"
+        rows = cell.records
+        self.error = statistics.median(math.sqrt(float(row["relmse"])) for row in rows)
+        self.rmse = statistics.median(float(row["rmse"]) / float(row["reference_mean"]) for row in rows)
+
+
+def best(cells, key):
+    return min(cells, key=key, default=None)
+
+
+def by_error(cell):
+    return cell.error
+
+
+def by_rmse(cell):
+    return cell.rmse
+
+
+def fixed(cells, scene, **wanted):
+    return [cell for cell in cells if cell.scene == scene and cell.method == "photonmap" and not cell.adaptive
+            and all(getattr(cell, name) == value for name, value in wanted.items())]
+
+
+def filters(cells, scenes):
+    yield "Each estimator at its own best N, 100,000 photons. Error: sqrt(relmse), and rmse / mean; beside each its"
+    yield "ratio to eq. 4 (`raw` without a filter)."
+    for scene in scenes:
+        equation = fixed(cells, scene, photons=100000, filter="none", raw=True)
+        if not equation:
+            continue
+        yield f"\n## {scene}\n"
+        yield "| estimator | filter | best N | sqrt(relmse) | to eq. 4 | best N for rmse | rmse / mean | to eq. 4 |"
+        yield "|---|---|---|---|---|---|---|---|"
+        base = best(equation, by_error), best(equation, by_rmse)
+        for raw, kind in [(True, "none")] + [(False, kind) for kind in FILTERS]:
+            own = fixed(cells, scene, photons=100000, filter=kind, raw=raw)
+            if not own:
+                continue
+            error, rmse = best(own, by_error), best(own, by_rmse)
+            yield (f"| {'raw' if raw else 'unbiased'} | {kind} | {error.nearest} | {error.error:.3f} "
+                   f"| {error.error / base[0].error:.2f} | {rmse.nearest} | {rmse.rmse:.3f} "
+                   f"| {rmse.rmse / base[1].rmse:.2f} |")
+
+
+def adaptive(cells, scenes):
+    yield "Adaptive N against the best fixed N, both with the Epanechnikov filter. Ratios below 1: adaptive is better."
+    yield "The best N for sqrt(relmse) and for rmse are two."
+    for scene in scenes:
+        yield f"\n## {scene}\n"
+        yield "| photons | best N | sqrt(relmse) | adaptive | ratio | best N for rmse | rmse / mean | adaptive | ratio |"
+        yield "|---|---|---|---|---|---|---|---|---|"
+        for own in sorted((cell for cell in cells if cell.scene == scene and cell.method == "photonmap" and cell.adaptive),
+                          key=lambda cell: cell.photons):
+            others = fixed(cells, scene, photons=own.photons, filter=own.filter, raw=False)
+            if not others:
+                continue
+            error, rmse = best(others, by_error), best(others, by_rmse)
+            yield (f"| {own.photons} | {error.nearest} | {error.error:.3f} | {own.error:.3f} "
+                   f"| {own.error / error.error:.2f} | {rmse.nearest} | {rmse.rmse:.3f} | {own.rmse:.3f} "
+                   f"| {own.rmse / rmse.rmse:.2f} |")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
