@@ -13,6 +13,7 @@ import sys
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 import records
+from report_files import report, write
 
 FILTERS = ("none", "cone", "gaussian", "epanechnikov")
 
@@ -22,24 +23,12 @@ def main():
     parser.add_argument("directory", metavar="DIR", help="folder with records.csv, as the sweep leaves it")
     parser.add_argument("-o", "--output", metavar="OUT", default="results/photonmap", help="default: %(default)s")
     arguments = parser.parse_args()
-    try:
-        cells = [Estimate(cell) for cell in records.read(os.path.join(arguments.directory, "records.csv")).cells]
-        write_all(cells, arguments.output)
-    except records.RecordsError as error:
-        return fail(error)
-    except ImportError as error:
-        return fail(f"{error}: the heat maps need matplotlib (Debian package python3-matplotlib, run by /usr/bin/python3)")
-    except OSError as error:
-        return fail(f"{error.filename or arguments.output}: {error.strerror}")
-    return 0
+    return report("estimate_tables", "the heat maps", arguments.output,
+                  lambda: write_all(arguments.directory, arguments.output))
 
 
-def fail(reason):
-    print(f"estimate_tables: {reason}", file=sys.stderr)
-    return 2
-
-
-def write_all(cells, output):
+def write_all(directory, output):
+    cells = [Estimate(cell) for cell in records.read(os.path.join(directory, "records.csv")).cells]
     import estimate_heat_maps  # here, so that a broken table is named even without matplotlib
 
     os.makedirs(output, exist_ok=True)
@@ -51,11 +40,6 @@ def write_all(cells, output):
         picture = estimate_heat_maps.draw([cell for cell in cells if cell.scene == scene])
         if picture:
             write(os.path.join(output, f"heat_map-{scene}.svg"), picture)
-
-
-def write(path, text):
-    with open(path, "w", encoding="utf-8", newline="\n") as file:
-        file.write(text)
 
 
 class Estimate:
@@ -74,16 +58,9 @@ class Estimate:
         self.rmse = statistics.median(float(row["rmse"]) / float(row["reference_mean"]) for row in rows)
 
 
-def best(cells, key):
-    return min(cells, key=key, default=None)
-
-
-def by_error(cell):
-    return cell.error
-
-
-def by_rmse(cell):
-    return cell.rmse
+def best(cells):
+    """The cell of the least error, and that of the least rmse."""
+    return min(cells, key=lambda cell: cell.error), min(cells, key=lambda cell: cell.rmse)
 
 
 def fixed(cells, scene, **wanted):
@@ -101,12 +78,12 @@ def filters(cells, scenes):
         yield f"\n## {scene}\n"
         yield "| estimator | filter | best N | sqrt(relmse) | to eq. 4 | best N for rmse | rmse / mean | to eq. 4 |"
         yield "|---|---|---|---|---|---|---|---|"
-        base = best(equation, by_error), best(equation, by_rmse)
+        base = best(equation)
         for raw, kind in [(True, "none")] + [(False, kind) for kind in FILTERS]:
             own = fixed(cells, scene, photons=100000, filter=kind, raw=raw)
             if not own:
                 continue
-            error, rmse = best(own, by_error), best(own, by_rmse)
+            error, rmse = best(own)
             yield (f"| {'raw' if raw else 'unbiased'} | {kind} | {error.nearest} | {error.error:.3f} "
                    f"| {error.error / base[0].error:.2f} | {rmse.nearest} | {rmse.rmse:.3f} "
                    f"| {rmse.rmse / base[1].rmse:.2f} |")
@@ -124,7 +101,7 @@ def adaptive(cells, scenes):
             others = fixed(cells, scene, photons=own.photons, filter=own.filter, raw=False)
             if not others:
                 continue
-            error, rmse = best(others, by_error), best(others, by_rmse)
+            error, rmse = best(others)
             yield (f"| {own.photons} | {error.nearest} | {error.error:.3f} | {own.error:.3f} "
                    f"| {own.error / error.error:.2f} | {rmse.nearest} | {rmse.rmse:.3f} | {own.rmse:.3f} "
                    f"| {own.rmse / rmse.rmse:.2f} |")

@@ -8,7 +8,6 @@ Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
 import argparse
 import json
-import os
 import pathlib
 import re
 import subprocess
@@ -21,6 +20,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import beam_report
 import beam_trials
 import records
+from report_files import write
 
 SWEEPS = ("counts", "counts_quads", "bounds_pool", "bounds_ring", "height", "watt_ns", "watt_nd", "watt_nl")
 BLOCK = "<!-- {0} -->\n{1}<!-- end of {0} -->"
@@ -65,7 +65,7 @@ def fill(page, blocks):
     return page
 
 
-def write(output, folders):
+def write_results(output, folders):
     import beam_plots  # here, so that a missing matplotlib is told apart from bad records
 
     cells = {name: beam_trials.read(folder) for name, folder in folders.items()}
@@ -76,16 +76,9 @@ def write(output, folders):
     plots = {"bounds.svg": beam_plots.bounds({"pool": cells["bounds_pool"], "ring": cells["bounds_ring"]}),
              "height.svg": beam_plots.heights(cells["height"]), "watt.svg": beam_plots.watt(watt)}
     page = output / "README.md"
-    whole(page, fill(page.read_text(encoding="utf-8"), blocks))
+    write(page, fill(page.read_text(encoding="utf-8"), blocks))
     for name, text in plots.items():
-        whole(output / name, text)
-
-
-def whole(path, text):
-    """A reader never sees half of a file."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
+        write(output / name, text)
 
 
 def main():
@@ -94,7 +87,7 @@ def main():
     try:
         for name, folder in folders.items():
             run(name, folder, chosen.keep)
-        write(chosen.output, folders)
+        write_results(chosen.output, folders)
     except records.RecordsError as error:
         print(f"measure_beams: {error}", file=sys.stderr)
         return 2

@@ -12,6 +12,7 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 
 import record_tables
 import records
+from report_files import report, write
 
 OWN_PLOT = re.compile(r"((rmse|relmse|mean_ratio)_vs_(photons|time|alpha|mesh_resolution)-.*|mean_ratio)\.svg")
 
@@ -22,24 +23,11 @@ def main():
     parser.add_argument("-o", "--output", metavar="OUT", help="where the report goes (default: DIR/report)")
     arguments = parser.parse_args()
     output = arguments.output or os.path.join(arguments.directory, "report")
-    try:
-        table = records.read(os.path.join(arguments.directory, "records.csv"))
-        write_report(table, arguments.directory, output)
-    except records.RecordsError as error:
-        return fail(error)
-    except ImportError as error:
-        return fail(f"{error}: the plots need matplotlib (Debian package python3-matplotlib, run by /usr/bin/python3)")
-    except OSError as error:
-        return fail(f"{error.filename or output}: {error.strerror}")
-    return 0
+    return report("plot_records", "the plots", output, lambda: write_report(arguments.directory, output))
 
 
-def fail(reason):
-    print(f"plot_records: {reason}", file=sys.stderr)
-    return 2
-
-
-def write_report(table, directory, output):
+def write_report(directory, output):
+    table = records.read(os.path.join(directory, "records.csv"))
     import record_plots  # here, so that a broken table is named even without matplotlib
 
     plots, left_out = record_plots.make(table)
@@ -64,13 +52,6 @@ def find_figures(folder, output):
     found = [os.path.join(place, name) for place, _, names in os.walk(folder)
              for name in names if name.lower().endswith(".png")]
     return sorted(os.path.relpath(path, output).replace(os.sep, "/") for path in found)
-
-
-def write(path, text):
-    """Whole files only: a reader never sees half of one."""
-    with open(path + ".part", "w", encoding="utf-8", newline="\n") as file:
-        file.write(text)
-    os.replace(path + ".part", path)
 
 
 def tell(table, written, left_out, output):
