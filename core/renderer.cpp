@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/direct_light.h"
+#include "core/error.h"
 #include "core/eye_path.h"
 #include "core/film_layers.h"
 #include "core/parallel.h"
@@ -42,22 +43,22 @@ struct Worker {
 
 class EyePass {
 public:
-    EyePass(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options)
+    EyePass(const Scene& scene, const RunOptions& options)
         : scene_(scene),
-          estimator_(estimator),
           options_(options),
           adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
           most_samples_(adaptive_ ? scene.sampling().max_sample_count : options.samples_per_pixel),
           tiles_(all_tiles()),
           workers_(static_cast<std::size_t>(std::max(1, options.threads))) {}
 
-    Rendering run() {
+    Rendering run(const CausticEstimator& estimator) {
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
-        const auto layer = estimator_.camera_layer(options_);
+        estimator_ = &estimator;
+        const auto layer = estimator.camera_layer(options_);
         with_caustic_ = !layer.has_value();
         FilmLayers layers(rendering.film, {.unreached = layer.has_value(),
-                                           .standard_error = layer || estimator_.is_statistical(),
+                                           .standard_error = layer || estimator.is_statistical(),
                                            .samples = adaptive_});
         if (adaptive_)
             sample_adaptively(layers);
@@ -71,10 +72,39 @@ public:
             for (std::size_t pixel = 0; pixel < rendering.film.pixel_count(); ++pixel)
                 layers.write_caustic(pixel, layer->radiance[pixel], layer->standard_error[pixel]);
         layers.sum_beauty();
-        rendering.report.counters = counters();
+        take_counters(rendering.report.counters);
         if (layer)
             for (const auto& [name, count] : layer->counters)
                 rendering.report.counters[name] += count;
+        return rendering;
+    }
+
+    Rendering run(const Passes& passes) {
+        if (adaptive_)
+            throw InputError(
+                "a method of several passes cannot be sampled adaptively, because no pass knows "
+                "how the picture scatters: choose the sampler independent or stratified");
+        const Camera& camera = scene_.camera();
+        Rendering rendering{Film(camera.width, camera.height), {}};
+        FilmLayers layers(rendering.film, {});
+        std::vector<std::vector<PixelSums>> sums(tiles_.size());
+        const double share = 1.0 / passes.count;
+        for (int pass = 0; pass < passes.count; ++pass) {
+            const std::unique_ptr<const CausticEstimator> estimator = passes.build(pass);
+            estimator_ = estimator.get();
+            caustic_only_ = pass > 0;
+            for_each_tile(pass * share, (pass + 1) * share,
+                          [&](const Tile& tile, std::size_t i, Worker& worker) {
+                              sums[i].resize(pixel_count(tile));
+                              sample_all(tile, sums[i], worker);
+                          });
+            take_counters(rendering.report.counters);
+        }
+        for (std::size_t i = 0; i < tiles_.size(); ++i) {
+            for (PixelSums& pixel : sums[i]) pixel.caustic *= share;
+            write(tiles_[i], sums[i], layers);
+        }
+        layers.sum_beauty();
         return rendering;
     }
 
@@ -85,22 +115,21 @@ private:
         std::atomic<std::size_t> done{0};
         parallel_for(options_.threads, tiles_.size(), [&](std::size_t i, std::size_t w) {
             Worker& worker = workers_[w];
-            if (!worker.context) worker.context = estimator_.make_context();
+            if (!worker.context) worker.context = estimator_->make_context();
             body(tiles_[i], i, worker);
             const double share = static_cast<double>(++done) / static_cast<double>(tiles_.size());
             options_.report(from + share * (to - from));
         });
     }
 
-    Counters counters() const {
-        Counters all;
-        std::uint64_t camera_rays = 0;
-        for (const Worker& worker : workers_) {
-            if (worker.context) worker.context->add_to(all);
-            camera_rays += worker.camera_rays;
+    // Adds what was counted with the current estimator, and makes the workers ready for another.
+    void take_counters(Counters& counters) {
+        for (Worker& worker : workers_) {
+            if (worker.context) worker.context->add_to(counters);
+            counters["camera_rays"] += worker.camera_rays;
+            worker.context.reset();
+            worker.camera_rays = 0;
         }
-        all["camera_rays"] = camera_rays;
-        return all;
     }
 
     std::vector<Tile> all_tiles() const {
@@ -137,7 +166,8 @@ private:
         });
     }
 
-    // Doubles the samples of the pixels whose error is too large, until none is or none may have more.
+    // Doubles the samples of the pixels whose error is too large, until none is or none may have
+    // more.
     void refine(const Tile& tile, const SpectrumSum& mean, std::vector<PixelSums>& sums,
                 Worker& worker) const {
         for (int samples = options_.samples_per_pixel; samples < most_samples_;) {
@@ -196,6 +226,7 @@ private:
                 worker.values.push_back(trace_sample(x, y, i, pixel, sums[pixel], worker));
             }
         if (with_caustic_) add_caustic(worker, sums);
+        if (caustic_only_) return;
         for (std::size_t i = 0; i < worker.values.size(); ++i) {
             PixelSums& pixel = sums[worker.pixels[i / static_cast<std::size_t>(count)]];
             pixel.beauty_squares += worker.values[i].square();
@@ -211,7 +242,7 @@ private:
                static_cast<std::uint64_t>(sample);
     }
 
-    // Gives the sample's radiance without caustics.
+    // Gives the sample's radiance without caustics; in later passes its receiver points only.
     SpectrumSum trace_sample(int x, int y, int sample, std::size_t pixel, PixelSums& sums,
                              Worker& worker) const {
         const std::uint64_t id = sample_id(x, y, sample);
@@ -222,6 +253,18 @@ private:
         worker.found.clear();
         const EyePath path = trace_eye_path(scene_, ray, rng, worker.found);
         ++worker.camera_rays;
+        std::uint64_t branch = 0;
+        for (WeightedPoint& found : worker.found) {
+            found.point.id = id << 8U | (branch++ & 0xFFU);
+            worker.points.push_back(found.point);
+            worker.owners.push_back({pixel, worker.values.size(), found.weight});
+        }
+        if (caustic_only_) return SpectrumSum::Zero();
+        return add_eye_path(path, rng, sums, worker);
+    }
+
+    SpectrumSum add_eye_path(const EyePath& path, Rng& rng, PixelSums& sums,
+                             const Worker& worker) const {
         const SpectrumSum emitted = path.emitted.cast<double>();
         sums.emitted += emitted;
         sums.albedo += path.first.albedo.cast<double>();
@@ -230,20 +273,15 @@ private:
         sums.hits += path.first.depth > 0 ? 1 : 0;
         sums.through_caster += path.first.caster ? 1 : 0;
         SpectrumSum direct = SpectrumSum::Zero();
-        std::uint64_t branch = 0;
-        for (WeightedPoint& found : worker.found) {
+        for (const WeightedPoint& found : worker.found)
             direct += (found.weight * direct_radiance(scene_, found.point, rng)).cast<double>();
-            found.point.id = id << 8U | (branch++ & 0xFFU);
-            worker.points.push_back(found.point);
-            worker.owners.push_back({pixel, worker.values.size(), found.weight});
-        }
         sums.direct += direct;
         return emitted + direct;
     }
 
     void add_caustic(Worker& worker, std::vector<PixelSums>& sums) const {
         worker.estimates.assign(worker.points.size(), Estimate{});
-        estimator_.radiance(worker.points, worker.estimates, *worker.context);
+        estimator_->radiance(worker.points, worker.estimates, *worker.context);
         for (std::size_t i = 0; i < worker.points.size();) {
             const PointOwner& owner = worker.owners[i];
             SpectrumSum value = SpectrumSum::Zero();
@@ -273,11 +311,12 @@ private:
     }
 
     const Scene& scene_;
-    const CausticEstimator& estimator_;
+    const CausticEstimator* estimator_ = nullptr;
     RunOptions options_;
     bool adaptive_;
     int most_samples_;
     bool with_caustic_ = true;
+    bool caustic_only_ = false;  ///< the other layers are there from the first pass
     std::vector<Tile> tiles_;
     std::vector<Worker> workers_;
 };
@@ -285,7 +324,12 @@ private:
 }  // namespace
 
 Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options) {
-    return EyePass(scene, estimator, options).run();
+    return EyePass(scene, options).run(estimator);
+}
+
+Rendering render(const Scene& scene, const Passes& passes, const RunOptions& options) {
+    if (passes.count == 1) return render(scene, *passes.build(0), options);
+    return EyePass(scene, options).run(passes);
 }
 
 }  // namespace caustics

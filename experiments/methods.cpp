@@ -36,6 +36,7 @@ json describe_params(const PhotonMapParams& p) {
     json all = {{"estimator", unbiased ? "unbiased" : "raw"},
                 {"filter", name(p.filter)},
                 {"adaptive", p.adaptive},
+                {"passes", p.passes},
                 {"max_bounces", p.max_bounces},
                 {"emission", stratified ? "stratified" : "random"},
                 {"interaction", p.interaction == Interaction::split ? "split" : "roulette"},
@@ -172,10 +173,27 @@ bool writes_files(const Method& method) {
     return map != nullptr && !map->save.empty();
 }
 
+int pass_count(const Method& method) {
+    return std::visit(
+        [](const auto& params) {
+            if constexpr (requires { params.passes; })
+                return params.passes;
+            else
+                return 1;
+        },
+        method.params);
+}
+
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& method,
-                                              const RunOptions& options) {
-    return std::visit([&](const auto& params) { return build(scene, params, options); },
-                      method.params);
+                                              const RunOptions& options, int pass) {
+    return std::visit(
+        [&](const auto& params) {
+            if constexpr (requires { params.passes; })
+                return build_pass(scene, params, options, pass);
+            else
+                return build(scene, params, options);
+        },
+        method.params);
 }
 
 std::optional<std::string> why_unsupported(const Scene& scene, const Method& method) {

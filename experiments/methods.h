@@ -51,9 +51,12 @@ nlohmann::json identity(const Method& method);
 /// Whether building the method leaves a file behind.
 bool writes_files(const Method& method);
 
-/// Runs the method's precompute pass.
+/// How often the method goes through its precompute pass (`passes`); 1 for most.
+int pass_count(const Method& method);
+
+/// Runs the method's precompute pass, for a method of several passes the one of that number.
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& method,
-                                              const RunOptions& options);
+                                              const RunOptions& options, int pass = 0);
 
 /// Why the method cannot serve the scene; empty when it can.
 std::optional<std::string> why_unsupported(const Scene& scene, const Method& method);

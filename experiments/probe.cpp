@@ -111,22 +111,34 @@ Questions questions(const Scene& scene, const Method& method, const ProbeList& l
 using Query = void (CausticEstimator::*)(std::span<const ReceiverPoint>, std::span<Estimate>,
                                          QueryContext&) const;
 
-std::vector<Estimate> ask(const CausticEstimator& method, Query query, const Questions& asked,
-                          std::size_t batch, std::size_t rows, int threads) {
-    std::vector<Estimate> answers(asked.points.size());
-    std::vector<std::unique_ptr<QueryContext>> contexts;
-    for (int i = 0; i < threads; ++i) contexts.push_back(method.make_context());
-    const std::size_t batches = (answers.size() + batch - 1) / batch;
-    parallel_for(threads, batches, [&](std::size_t index, std::size_t worker) {
-        const std::size_t first = index * batch;
-        const std::size_t count = std::min(batch, answers.size() - first);
-        (method.*query)(std::span(asked.points).subspan(first, count),
-                        std::span(answers).subspan(first, count), *contexts[worker]);
-    });
-    std::vector<Estimate> all(rows);
-    for (std::size_t i = 0; i < answers.size(); ++i) all[asked.rows[i]] = answers[i];
-    return all;
-}
+/// A built method and the points it is asked at.
+struct Ask {
+    const CausticEstimator& method;
+    const Questions& asked;
+    bool at_once;  ///< all points in one batch, on the method's own threads
+    int threads;
+
+    /// Adds the answers to those of the points' rows.
+    void add(Query query, std::vector<Estimate>& rows) const {
+        std::vector<Estimate> answers(asked.points.size());
+        const std::size_t batch =
+            at_once ? std::max<std::size_t>(answers.size(), 1) : points_per_batch;
+        const int workers = at_once ? 1 : threads;
+        std::vector<std::unique_ptr<QueryContext>> contexts;
+        for (int i = 0; i < workers; ++i) contexts.push_back(method.make_context());
+        const std::size_t batches = (answers.size() + batch - 1) / batch;
+        parallel_for(workers, batches, [&](std::size_t index, std::size_t worker) {
+            const std::size_t first = index * batch;
+            const std::size_t count = std::min(batch, answers.size() - first);
+            (method.*query)(std::span(asked.points).subspan(first, count),
+                            std::span(answers).subspan(first, count), *contexts[worker]);
+        });
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            rows[asked.rows[i]].value += answers[i].value;
+            rows[asked.rows[i]].standard_error += answers[i].standard_error;
+        }
+    }
+};
 
 void append(std::string& line, const Spectrum& value) {
     for (int c = 0; c < 3; ++c) line += ',' + shortest(value[c]);
@@ -174,21 +186,21 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
 ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& list,
                    const RunOptions& options) {
     const Questions asked = questions(scene, method, list);
-    const std::unique_ptr<const CausticEstimator> built = build(scene, method, options);
-    const bool at_once = gathers_over_discs(method);
-    const std::size_t batch =
-        at_once ? std::max<std::size_t>(asked.points.size(), 1) : points_per_batch;
-    const int threads = at_once ? 1 : options.threads;
-
     ProbeAnswers answers;
-    answers.has_standard_errors = built->is_statistical();
-    answers.irradiance =
-        ask(*built, &CausticEstimator::irradiance, asked, batch, list.points.size(), threads);
-    require_finite(list, answers.irradiance);
-    if (!list.has_viewer) return answers;
-    answers.radiance =
-        ask(*built, &CausticEstimator::radiance, asked, batch, list.points.size(), threads);
-    require_finite(list, answers.radiance);
+    answers.irradiance.resize(list.points.size());
+    if (list.has_viewer) answers.radiance.resize(list.points.size());
+    const int passes = pass_count(method);
+    for (int pass = 0; pass < passes; ++pass) {
+        const std::unique_ptr<const CausticEstimator> built = build(scene, method, options, pass);
+        answers.has_standard_errors = built->is_statistical();
+        const Ask ask{*built, asked, gathers_over_discs(method), options.threads};
+        ask.add(&CausticEstimator::irradiance, answers.irradiance);
+        if (list.has_viewer) ask.add(&CausticEstimator::radiance, answers.radiance);
+    }
+    for (std::vector<Estimate>* const all : {&answers.irradiance, &answers.radiance}) {
+        for (Estimate& mean : *all) mean.value /= static_cast<float>(passes);
+        require_finite(list, *all);
+    }
     return answers;
 }
 

@@ -67,6 +67,9 @@ constexpr Column columns_of_all[] = {
     {"reference_mean", "/reference/mean"},
     {"spp", "/spp"},
     {"camera_rays", "/counters/camera_rays"},
+    {"gathers", "/counters/gathers"},
+    {"gathered_photons", "/counters/gathered_photons"},
+    {"used_photons", "/counters/used_photons"},
     {"message", "/message"},
 };
 

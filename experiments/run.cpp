@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "experiments/environment.h"
@@ -17,6 +18,14 @@ std::string shell_word(const std::string& text) {
     std::string quoted = "'";
     for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return quoted + "'";
+}
+
+/// Passes follow each other: counts add up, memory and parameters chosen are those of the largest.
+void add(BuildReport& report, const BuildReport& pass) {
+    report.bytes = std::max(report.bytes, pass.bytes);
+    for (const auto& [name, count] : pass.counters) report.counters[name] += count;
+    for (const auto& [name, value] : pass.resolved)
+        report.resolved[name] = std::max(report.resolved[name], value);
 }
 
 }  // namespace
@@ -70,13 +79,18 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
         if (on_phase) on_phase(phase);
     };
 
-    begin_stage("precompute");
-    const std::unique_ptr<const CausticEstimator> method = build(scene, request.method, options);
-    begin_stage("render");
-    Rendering rendering = render(scene, *method, options);
+    BuildReport report;
+    const auto build_pass = [&](int pass) {
+        begin_stage("precompute");
+        auto built = build(scene, request.method, options, pass);
+        add(report, built->build_report());
+        begin_stage("render");
+        return built;
+    };
+    Rendering rendering = render(scene, {pass_count(request.method), build_pass}, options);
     stopwatch.stop();
 
-    RunResult result{std::move(rendering.film), method->build_report(), {}};
+    RunResult result{std::move(rendering.film), std::move(report), {}};
     result.counters = result.report.counters;
     for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
     return result;

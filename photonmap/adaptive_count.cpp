@@ -20,22 +20,6 @@ double mean_factor(std::size_t rungs) {
     return rungs == 0 ? 1 : mean_factors[std::min(rungs, std::size(mean_factors)) - 1];
 }
 
-/// Copies the photons not beyond the radius.
-GatheredPhotons within(const GatheredPhotons& gathered, float squared_radius,
-                       CountScratch& scratch) {
-    GatheredPhotons chosen{scratch.squared_distance.data(), scratch.energy.data(),
-                           scratch.code.data(), 0, 0};
-    for (std::size_t i = 0; i < gathered.count; ++i) {
-        const float distance2 = gathered.squared_distance[i];
-        scratch.squared_distance[chosen.count] = distance2;
-        scratch.energy[chosen.count] = gathered.energy[i];
-        scratch.code[chosen.count] = gathered.direction[i];
-        if (distance2 == squared_radius) chosen.farthest = chosen.count;
-        chosen.count += distance2 <= squared_radius ? 1 : 0;
-    }
-    return chosen;
-}
-
 }  // namespace
 
 AdaptiveCount::AdaptiveCount(Isa isa) : chooser_(tree_kernels(isa).choose_count) {}
@@ -61,10 +45,7 @@ ChosenPhotons AdaptiveCount::choose(const ReceiverPoint& point, const GatheredPh
 
     const double mean = mean_factor(choice.rungs);
     if (!choice.stopped) return {gathered, full, 1 / mean};
-    scratch.squared_distance.reserve(room);
-    scratch.energy.reserve(room);
-    scratch.code.reserve(room);
-    return {within(gathered, choice.squared_radius, scratch), true,
+    return {scratch.near.within(gathered, choice.squared_radius), true,
             std::min(1.0, 1.5 * (1 - choice.lean)) / mean};
 }
 

@@ -5,8 +5,8 @@
 
 namespace caustics {
 
-/// CountChooser for registers of one kind. Directions are kept as whole numbers, so that sums, and with
-/// them choices, depend neither on the photons' order nor on the instruction set.
+/// CountChooser for registers of one kind. Directions are kept as whole numbers, so that sums, and
+/// with them choices, depend neither on the photons' order nor on the instruction set.
 template <typename Lanes>
 class CountChoiceOf {
 public:

@@ -5,8 +5,8 @@
 
 namespace caustics {
 
-/// A filter's weight at a squared distance over squared radius of u, in [0, 1]. Its mean over the disc,
-/// the integral over u, is 1:
+/// A filter's weight at a squared distance over squared radius of u, in [0, 1]. Its mean over the
+/// disc, the integral over u, is 1:
 ///
 ///   none          1
 ///   cone          (1 - sqrt(u) / c) / (1 - 2 / (3 c)),  c = 1.1 [Jensen 2001]
@@ -14,7 +14,8 @@ namespace caustics {
 ///   epanechnikov  2 (1 - u) [Epanechnikov 1969]
 ///
 /// The Gaussian is the filter of Jensen 2001, alpha (1 - (1 - exp(-b u / 2)) / (1 - exp(-b))),
-/// without its alpha of 0.918: with that its mean is 0.531, and pictures come out at half their light.
+/// without its alpha of 0.918: with that its mean is 0.531, and pictures come out at half their
+/// light.
 double filter_weight(FilterKind kind, double u);
 
 /// The same as the kernels take it, to 1e-6.

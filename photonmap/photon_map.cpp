@@ -1,11 +1,13 @@
 #include "photonmap/photon_map.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "photonmap/kept_photons.h"
 #include "photonmap/max_radius.h"
 #include "photonmap/photon_tree.h"
+#include "photonmap/progressive.h"
 #include "photonmap/radiance_estimate.h"
 
 namespace caustics {
@@ -108,6 +110,8 @@ void check(const PhotonMapParams& params) {
     if (!(params.radius >= 0)) throw InputError("photonmap: radius must be positive");
     if (params.radius > 0 && params.max_radius > 0)
         throw InputError("photonmap: radius takes the place of max_radius: give one of them");
+    if (params.passes < 1 || (params.passes > 1 && !(params.load.empty() && params.save.empty())))
+        throw InputError("photonmap: passes must be at least 1, and 1 with load and save");
     if (!params.adaptive) return;
     if (params.radius > 0)
         throw InputError("photonmap: a fixed radius leaves no N for adaptive to choose");
@@ -116,8 +120,10 @@ void check(const PhotonMapParams& params) {
         throw InputError("photonmap: nearest, the largest N, must be 20 to 100000 with adaptive");
 }
 
-GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const PhotonStore& photons) {
-    if (params.radius > 0) return {GatherLimits::all, static_cast<float>(params.radius)};
+GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const PhotonStore& photons,
+                    int pass) {
+    if (params.radius > 0)
+        return {GatherLimits::all, static_cast<float>(params.radius * std::sqrt(pass_share(pass)))};
     // From the photons in the order of their paths, so that it is the same for every tree.
     const double max_radius =
         params.max_radius > 0
@@ -131,14 +137,23 @@ GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const Pho
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,
                                               const RunOptions& options) {
+    return build_pass(scene, params, options, 0);
+}
+
+std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
+                                                   const PhotonMapParams& params,
+                                                   const RunOptions& options, int pass) {
     check(params);
-    SavedPhotons kept = kept_photons(scene, params, options);
+    RunOptions own = options;
+    own.seed = pass_seed(options.seed, pass);
+    SavedPhotons kept = kept_photons(scene, params, own);
     TracedPhotons& photons = kept.photons;
     RadianceEstimate::Settings settings;
     settings.estimator = params.estimator;
     settings.filter = params.filter;
     settings.adaptive = params.adaptive;
-    settings.limits = limits(params, scene, photons.store);
+    settings.share = params.radius > 0 ? 1 : pass_share(pass);
+    settings.limits = limits(params, scene, photons.store, pass);
     settings.flux_unit = photons.flux_per_energy();
 
     options.phase("balance");

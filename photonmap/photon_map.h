@@ -47,6 +47,9 @@ struct PhotonMapParams {
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
     FilterKind filter = FilterKind::none;
+    /// Progressive: so many maps of that size, one after another, whose estimates are averaged
+    /// (progressive.h).
+    int passes = 1;
     Estimator estimator = Estimator::unbiased;
     /// Shade by tables of f_r over the directions that stored photons can have [J96, section 5],
     /// one photon after another, instead of a register of photons at a time.
@@ -59,16 +62,21 @@ struct PhotonMapParams {
     std::filesystem::path load = {};
 };
 
-/// Relative names of files start at the folder of the file that names them (a sweep file), or at the
-/// working folder. Throws InputError for what cannot be used or is not built yet.
+/// Relative names of files start at the folder of the file that names them (a sweep file), or at
+/// the working folder. Throws InputError for what cannot be used or is not built yet.
 void read(const JsonNode& node, PhotonMapParams& params);
 
-/// Phases "trace" (or "load"), "save" and "balance". Counters: those of LightPathCounts, `tree_depth`
-/// of the unbalanced tree, `gathers`, `gathered_photons` and, where adaptive, the `used_photons` among
-/// them; flux is divided by photons_emitted x photons_stored / (photons_stored + photons_dropped), see
-/// scene_photons.h. Throws InputError for params that contradict each other and for a file whose
-/// photons are those of another scene, UnsupportedScene when the photons asked for cannot be had; with
-/// `emitted` an empty map is an answer, and black.
+/// Builds the map of pass 0, 1, ..., passes - 1; the passes' radiance is to be averaged.
+std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
+                                                   const PhotonMapParams& params,
+                                                   const RunOptions& options, int pass);
+
+/// The map of pass 0. Phases "trace" (or "load"), "save" and "balance". Counters: those of
+/// LightPathCounts, `tree_depth` of the unbalanced tree, `gathers`, `gathered_photons` and, where
+/// adaptive, the `used_photons` among them; flux is divided by photons_emitted x photons_stored /
+/// (photons_stored + photons_dropped), see scene_photons.h. Throws InputError for params that
+/// contradict each other and for a file whose photons are those of another scene, UnsupportedScene
+/// when the photons asked for cannot be had; with `emitted` an empty map is an answer, and black.
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,
                                               const RunOptions& options);
 

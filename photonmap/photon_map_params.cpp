@@ -12,15 +12,11 @@ constexpr std::int64_t most_photons = 2'000'000'000;
 constexpr std::int64_t most_paths = 1'000'000'000'000;
 constexpr std::int64_t most_bounces = 1'000;
 constexpr std::int64_t most_nearest = 1'000'000;
+constexpr std::int64_t most_passes = 100'000;
 
 constexpr FilterKind filter_kinds[] = {FilterKind::none, FilterKind::cone, FilterKind::gaussian,
                                        FilterKind::epanechnikov};
 constexpr TreeKind tree_kinds[] = {TreeKind::balanced, TreeKind::unbalanced, TreeKind::packed};
-
-void refuse(const JsonNode& node, const std::string& key) {
-    if (const std::optional<JsonNode> child = node.find(key))
-        child->fail("this parameter of photonmap is not built yet (leave it out)");
-}
 
 std::filesystem::path file_name(const JsonNode& node) {
     const std::string name = node.as_string();
@@ -138,7 +134,12 @@ void read(const JsonNode& node, PhotonMapParams& params) {
         params.tree = tree_kinds[tree->as_choice(
             {name(tree_kinds[0]), name(tree_kinds[1]), name(tree_kinds[2])})];
     if (const auto tables = node.find("tables")) params.tables = tables->as_bool();
-    for (const char* key : {"passes"}) refuse(node, key);
+    if (const auto passes = node.find("passes"))
+        params.passes = static_cast<int>(passes->as_integer_in(1, most_passes));
+    if (params.passes > 1)
+        for (const char* key : {"save", "load"})
+            if (const auto given = node.find(key))
+                given->fail("cannot be given with several passes, each of which has its own map");
     node.finish();
 }
 

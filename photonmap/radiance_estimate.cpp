@@ -25,8 +25,7 @@ RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
                                               EstimateScratch& scratch) const {
     ChosenPhotons chosen{gathered, gathered.count == settings_.limits.nearest, 1};
     if (settings_.adaptive) chosen = adaptive_.choose(point, gathered, chosen.full, scratch.count);
-    const GatheredPhotons& photons = chosen.photons;
-    scratch.used_photons += photons.count;
+    GatheredPhotons& photons = chosen.photons;
 
     const float max_radius = settings_.limits.max_radius;
     Disc disc{.photons = {.photons = photons},
@@ -39,6 +38,13 @@ RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
         if (settings_.estimator == PhotonMapParams::Estimator::unbiased)
             disc.photons.left_out = photons.farthest;
     }
+    if (settings_.share < 1) {
+        disc.squared_radius *= settings_.share;
+        photons = scratch.count.near.within(photons, static_cast<float>(disc.squared_radius));
+        disc.photons.left_out = WeightedPhotons::none;
+    }
+    disc.photons.photons = photons;
+    scratch.used_photons += photons.count;
     if (settings_.filter != FilterKind::none) {
         constexpr std::size_t widest_register = 16;
         scratch.weight.reserve(photons.count + widest_register);

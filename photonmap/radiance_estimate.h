@@ -22,14 +22,18 @@ struct EstimateScratch {
 /// Radiance from the N nearest photons, [J96] eqs. 1-4: the sum of f_r times flux over the area
 /// pi r^2 of the disc that holds them; each photon weighs as the filter says (density_filter.h).
 ///
-/// `raw` is eq. 4: r is the distance of the N-th photon. It reads high by w(1) / (N-1), w(1) being the
-/// filter's weight at the rim, because the disc is drawn through a photon. `unbiased` leaves
-/// that outermost photon out of the sum. When fewer than N lie within the maximum radius R, both sum
-/// all over pi R^2. In a uniform field `unbiased` is exactly so for any N, R and filter: given r,
-/// or given how many lie within R, the photons inside are spread evenly over the disc, where weights
-/// have a mean of 1, so that the filter changes no mean; and without a filter, with the density 1
-/// and a = pi r^2, the mean of (N-1)/a over the N-th photons inside the disc of area A = pi R^2 is
-/// P(at least N-1 in A), that of the number n < N in A over A is P(at most N-2 in A).
+/// `raw` is eq. 4: r is the distance of the N-th photon. It reads high by w(1) / (N-1), w(1) being
+/// the filter's weight at the rim, because the disc is drawn through a photon. `unbiased` leaves
+/// that outermost photon out of the sum. When fewer than N lie within the maximum radius R, both
+/// sum all over pi R^2. In a uniform field `unbiased` is exactly so for any N, R and filter: given
+/// r, or given how many lie within R, the photons inside are spread evenly over the disc, where
+/// weights have a mean of 1, so that the filter changes no mean; and without a filter, with the
+/// density 1 and a = pi r^2, the mean of (N-1)/a over the N-th photons inside the disc of area A =
+/// pi R^2 is P(at least N-1 in A), that of the number n < N in A over A is P(at most N-2 in A).
+///
+/// With a share below 1 the disc found so is drawn closer, and photons left outside do not count;
+/// so neither does the outermost one, for `raw` as for `unbiased`, and the mean stays what it is
+/// for `unbiased`.
 ///
 /// Photons that came from behind the point's geometric normal do not count. Photons carry flux,
 /// so density is per area of the geometric surface, and f_r is taken about the shading normal.
@@ -40,7 +44,8 @@ public:
         GatherLimits limits;
         PhotonMapParams::Estimator estimator = PhotonMapParams::Estimator::unbiased;
         FilterKind filter = FilterKind::none;
-        bool adaptive = false;                  ///< whether N is the largest number (AdaptiveCount)
+        bool adaptive = false;  ///< whether N is the largest number (AdaptiveCount)
+        double share = 1;       ///< of the squared radius within which photons count (pass_share)
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1
     };
 

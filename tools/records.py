@@ -19,7 +19,8 @@ REQUIRED = ("trial", "status", "scene", "method", "seed", "repeat", "photons_sto
 MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "balance_s", "render_s", "total_s",
             "cpu_s", "rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "beauty_rmse",
             "unreached_fraction", "reference_stderr", "reference_mean", "mask_rmse", "mask_relmse", "mask_mean_ratio",
-            "mask_fraction", "parse_cpu_s", "precompute_cpu_s", "balance_cpu_s", "render_cpu_s")
+            "mask_fraction", "parse_cpu_s", "precompute_cpu_s", "balance_cpu_s", "render_cpu_s", "gathers",
+            "gathered_photons", "used_photons")
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + ("message",)
 NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads") + MEASURES
 LABELS = ("isa", "code_version")  # never numbers, whatever they look like

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "core/error.h"
 #include "core/rng.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
@@ -178,6 +180,54 @@ TEST(Renderer, ACameraLayerTakesTheCausticsPlaceAndMarksWhatItCannotReach) {
     EXPECT_GT(fully, 10);
     EXPECT_GT(not_at_all, 100);
     EXPECT_EQ(rendering.report.counters.at("paths"), 7U);
+}
+
+/// An estimator that counts how many of its kind there are.
+class Counted final : public Stub {
+public:
+    Counted(float value, int& alive) : Stub(constant(value)), alive_(alive) { ++alive_; }
+    ~Counted() override { --alive_; }
+
+private:
+    int& alive_;
+};
+
+TEST(Renderer, PassesAreAveragedAtTheSameCameraSamplesOneInMemoryAtATime) {
+    const Scene scene(still_life(37, 21));
+    int alive = 0;
+    std::vector<int> built;
+    const Passes passes{3, [&](int pass) {
+                            EXPECT_EQ(alive, 0);
+                            built.push_back(pass);
+                            return std::make_unique<Counted>(static_cast<float>(pass + 1), alive);
+                        }};
+    std::vector<double> shares;
+    RunOptions options = run(4);
+    options.progress = [&](double share) { shares.push_back(share); };
+    const Rendering mean = render(scene, passes, options);
+    const Rendering twos = render(scene, constant(2), run(4));
+    EXPECT_EQ(built, (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(alive, 0);
+    EXPECT_TRUE(std::ranges::is_sorted(shares));
+    EXPECT_EQ(shares.back(), 1);
+    EXPECT_EQ(mean.report.counters.at("camera_rays"), 3 * twos.report.counters.at("camera_rays"));
+    for (const Plane& plane : twos.film.planes()) {
+        const std::vector<float>& other = *mean.film.find(plane.channel);
+        for (std::size_t i = 0; i < other.size(); ++i)
+            ASSERT_NEAR(other[i], plane.values[i], 1e-6F * std::abs(plane.values[i]))
+                << plane.channel;
+    }
+    EXPECT_TRUE(same_planes(render(scene, {1, passes.build}, run(4)).film,
+                            render(scene, constant(1), run(4)).film));
+    EXPECT_TRUE(same_planes(mean.film, render(scene, passes, run(4, 3)).film));
+}
+
+TEST(Renderer, PassesAreNotSampledAdaptively) {
+    SceneDesc desc = still_life(8, 8);
+    desc.sampling.max_sample_count = 16;
+    const Scene scene(std::move(desc));
+    const Passes passes{2, [&](int) { return std::make_unique<Stub>(constant(1)); }};
+    EXPECT_THROW(render(scene, passes, run(2)), InputError);
 }
 
 std::string message_of(const Scene& scene, const CausticEstimator& estimator) {

@@ -36,7 +36,8 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
         {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
         {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}},
         {"photonmap", {"adaptive=true", "nearest=120", "filter=gaussian"}},
-        {"photonmap", {"radius=0.25", "filter=cone", "emission=stratified", "interaction=split"}},
+        {"photonmap",
+         {"radius=0.25", "filter=cone", "passes=3", "emission=stratified", "interaction=split"}},
         {"photonmap", {"emission=stratified", "save=a.photons"}},
         {"photonmap", {"load=a.photons", "nearest=12"}}};
     for (const auto& [name, params] : cases) {

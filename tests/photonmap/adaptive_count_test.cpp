@@ -96,7 +96,8 @@ Choice by_the_book(std::vector<Vec2> places) {
     return {places.size(), 1, {}};
 }
 
-/// Places whose density grows from left to right by a random amount, or that fill a random half plane.
+/// Places whose density grows from left to right by a random amount, or that fill a random half
+/// plane.
 std::vector<Vec2> random_places(Rng& rng) {
     const std::size_t count = rng.next_word() % 300;
     const float growth = 2 * rng.next(), edge = 2 * rng.next() - 1.5F;

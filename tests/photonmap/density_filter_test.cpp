@@ -124,8 +124,8 @@ TEST_F(UniformField, RawReadsHighByTheWeightAtTheRim) {
 }
 
 TEST_F(UniformField, FiltersScatterByTheirMeanSquareWeight) {
-    // At a fixed radius with n photons on average the variance is that of a Poisson number times the
-    // mean square weight.
+    // At a fixed radius with n photons on average the variance is that of a Poisson number times
+    // the mean square weight.
     for (const FilterKind kind : kinds) {
         const auto moments =
             relative_irradiance({.limits = {GatherLimits::all, radius_of(25)}, .filter = kind});

@@ -103,11 +103,12 @@ TEST(PhotonMapParams, NothingOfTheTracingCanBeGivenWithLoad) {
     }
 }
 
-TEST(PhotonMapParams, RefuseByNameWhatIsNotBuilt) {
-    for (const std::string word : {R"("passes": 2)"}) {
-        const std::string line = refusal("{" + word + "}");
-        EXPECT_NE(line.find("not built yet"), std::string::npos) << word << ": " << line;
-    }
+TEST(PhotonMapParams, CountPasses) {
+    EXPECT_EQ(params_of("{}").passes, 1);
+    EXPECT_EQ(params_of(R"({"passes": 64, "radius": 0.1})").passes, 64);
+    EXPECT_EQ(params_of(R"({"passes": 1, "load": "a"})").passes, 1);
+    EXPECT_NE(refusal(R"({"passes": 2, "load": "a"})").find("/load"), std::string::npos);
+    EXPECT_NE(refusal(R"({"passes": 2, "save": "a"})").find("/save"), std::string::npos);
 }
 
 TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
@@ -118,8 +119,9 @@ TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
           R"({"max_radius": -1})",      R"({"max_radius": 1e-30})",   R"({"max_radius": 1e30})",
           R"({"estimator": "biased"})", R"({"tree": "balancd"})",     R"({"max_bounces": 0})",
           R"({"photons": "many"})",     R"({"tables": 1})",           R"({"filter": "box"})",
-          R"({"adaptive": 1})",         R"({"radius": 0})",           R"({"radius": -1})",
-          R"({"radius": 1e-30})",       R"({"radius": "wide"})"}) {
+          R"({"adaptive": 1})",         R"({"passes": 0})",           R"({"passes": 2.5})",
+          R"({"radius": 0})",           R"({"radius": -1})",          R"({"radius": 1e-30})",
+          R"({"radius": "wide"})"}) {
         const std::string line = refusal(json);
         EXPECT_NE(line, "") << json;
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "core/aimed_emission.h"
 #include "core/error.h"
+#include "photonmap/progressive.h"
 
 namespace caustics {
 namespace {
@@ -181,6 +183,30 @@ TEST(PhotonMap, CountsThePhotonsThatAdaptiveUses) {
     EXPECT_GT(counters.at("used_photons"), counters.at("gathered_photons") / 3);
 }
 
+TEST(PhotonMap, PassesAreIndependentMapsWithSmallerDiscs) {
+    const Scene scene(flat_mirror(grey));
+    const PhotonMapParams params{.photons = 20'000, .radius = 0.3, .passes = 4};
+    const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
+    std::vector<std::uint64_t> found;
+    std::set<float> values;
+    for (int pass = 0; pass < 4; ++pass) {
+        const auto map = build_pass(scene, params, {}, pass);
+        EXPECT_EQ(map->build_report().bytes, 400'000U);
+        const auto context = map->make_context();
+        std::vector<Estimate> out(1);
+        map->irradiance(points, out, *context);
+        values.insert(out[0].value[0]);
+        Counters counters;
+        context->add_to(counters);
+        found.push_back(counters.at("gathered_photons"));
+    }
+    EXPECT_EQ(values.size(), 4U);
+    const auto ratio = static_cast<double>(found[3]) / static_cast<double>(found[0]);
+    EXPECT_NEAR(ratio, pass_share(3), 4 / std::sqrt(static_cast<double>(found[3])));
+    EXPECT_EQ(irradiance(*build(scene, params, {}), points)[0].value[0],
+              irradiance(*build_pass(scene, params, {}, 0), points)[0].value[0]);
+}
+
 TEST(PhotonMap, RefusesToStorePhotonsWhereNoneCanBe) {
     SceneDesc desc = flat_mirror(grey);
     desc.shapes.front().bsdf = grey;
@@ -200,6 +226,7 @@ TEST(PhotonMap, RefusesParametersThatContradictEachOther) {
     EXPECT_NO_THROW(build(scene, {.photons = 10, .nearest = 1, .estimator = Estimator::raw}, {}));
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = -1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .radius = -1}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .passes = 0}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .adaptive = true, .radius = 1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .nearest = 10, .adaptive = true}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = 1, .radius = 1}, {}), InputError);
