@@ -36,6 +36,8 @@ std::optional<ReceiverPoint> receiver_point(const Scene& scene, const SurfacePoi
     receiver.uv = point.uv;
     receiver.offset = point.offset;
     receiver.bsdf = &bsdf;
+    receiver.shape = point.shape;
+    receiver.front = front;
     return receiver;
 }
 

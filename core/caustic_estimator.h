@@ -25,6 +25,8 @@ struct ReceiverPoint {
     Vec2 uv;
     float offset = 0;            ///< as SurfacePoint::offset
     const Bsdf* bsdf = nullptr;  ///< of the receiver; not read by irradiance()
+    std::uint32_t shape = 0;     ///< index into Scene::shapes
+    bool front = true;           ///< whether the viewer is on the front side of the surface
     std::uint64_t id = 0;        ///< names the point's random numbers
     float radius = 0;            ///< of the disc that `lighttrace` gathers over [m]
 };

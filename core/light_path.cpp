@@ -4,28 +4,53 @@
 
 namespace caustics {
 
+namespace {
+
+// Names of the counters beside the counts.
+template <typename Counts, typename Visit>
+void for_each_count(Counts& counts, const Visit& visit) {
+    visit("photons_emitted", counts.emitted);
+    visit("photons_aimed", counts.aimed);
+    visit("photons_branched", counts.branched);
+    visit("photons_reflected", counts.reflected);
+    visit("photons_refracted", counts.refracted);
+    visit("photons_missed", counts.missed);
+    visit("photons_escaped", counts.escaped);
+    visit("photons_absorbed", counts.absorbed);
+    visit("photons_on_black_side", counts.on_black_side);
+    visit("photons_depth_limited", counts.depth_limited);
+    visit("photons_stored", counts.stored);
+    visit("photons_dropped", counts.dropped);
+}
+
+}  // namespace
+
 void LightPathCounts::add(const LightPathCounts& other) {
     emitted += other.emitted;
     aimed += other.aimed;
     branched += other.branched;
+    reflected += other.reflected;
+    refracted += other.refracted;
     missed += other.missed;
     escaped += other.escaped;
     absorbed += other.absorbed;
+    on_black_side += other.on_black_side;
     depth_limited += other.depth_limited;
     stored += other.stored;
     dropped += other.dropped;
 }
 
 void LightPathCounts::add_to(Counters& counters) const {
-    counters["photons_emitted"] += emitted;
-    counters["photons_aimed"] += aimed;
-    counters["photons_branched"] += branched;
-    counters["photons_missed"] += missed;
-    counters["photons_escaped"] += escaped;
-    counters["photons_absorbed"] += absorbed;
-    counters["photons_depth_limited"] += depth_limited;
-    counters["photons_stored"] += stored;
-    counters["photons_dropped"] += dropped;
+    for_each_count(*this, [&](const char* name, std::uint64_t count) { counters[name] += count; });
+}
+
+LightPathCounts light_path_counts(const Counters& counters) {
+    LightPathCounts counts;
+    for_each_count(counts, [&](const char* name, std::uint64_t& count) {
+        const auto found = counters.find(name);
+        if (found != counters.end()) count = found->second;
+    });
+    return counts;
 }
 
 namespace {
@@ -52,6 +77,7 @@ void add_deposit(const Scene& scene, const SurfacePoint& hit, const Vec3& wi, co
     deposit.flux = flux;
     deposit.shape = hit.shape;
     deposit.bounces = bounces;
+    deposit.front = front;
 }
 
 // Moves a flight to its next caster. Empty when it has ended before, perhaps with a deposit.
@@ -74,9 +100,12 @@ std::optional<SurfacePoint> reach_caster(const Scene& scene, const LightPathSett
     const Vec3 w = -flight.ray.direction;
     flight.flux *= segment_transmittance(
         flight.start_medium, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
-    if (arrived) {
+    if (arrived && is_black(flight.flux)) {
+        ++counts.absorbed;
+        hit.reset();
+    } else if (arrived) {
         add_deposit(scene, *hit, w, flight.flux, flight.bounces, deposit);
-        ++(deposit ? counts.stored : counts.absorbed);
+        ++(deposit ? counts.stored : counts.on_black_side);
         hit.reset();
     } else if (flight.bounces == settings.max_bounces) {
         ++counts.depth_limited;
@@ -133,6 +162,7 @@ std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle&
             ++counts.absorbed;
             return deposit;
         }
+        ++(direction == &split.reflected ? counts.reflected : counts.refracted);
         leave(scene, *hit, *direction, flight);
     }
     return deposit;
@@ -161,6 +191,7 @@ public:
             const bool reflects = goes_on(split.reflected_weight, reflected);
             const bool refracts = goes_on(split.refracted_weight, flight);
             if (reflects) {
+                ++counts_.reflected;
                 counts_.branched += refracts ? 1 : 0;
                 leave(scene_, *hit, split.reflected, reflected);
                 follow(reflected);
@@ -169,6 +200,7 @@ public:
                 counts_.absorbed += reflects ? 0 : 1;
                 return;
             }
+            ++counts_.refracted;
             leave(scene_, *hit, split.refracted, flight);
         }
         if (deposit) deposits_.push_back(*deposit);

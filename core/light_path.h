@@ -28,6 +28,7 @@ struct Deposit {
     Spectrum flux = black();
     std::uint32_t shape = 0;
     int bounces = 0;
+    bool front = true;  ///< whether it arrived on the front side of the surface
 };
 
 /// What became of emitted particles. Each branch of a split path has its own end: the ends (missed
@@ -36,9 +37,12 @@ struct LightPathCounts {
     std::uint64_t emitted = 0;        ///< drawn, including those thinned out at the light
     std::uint64_t aimed = 0;          ///< sent on their way
     std::uint64_t branched = 0;       ///< second branches begun by splitting
+    std::uint64_t reflected = 0;      ///< specular events that went on by reflection
+    std::uint64_t refracted = 0;      ///< and by refraction
     std::uint64_t missed = 0;         ///< met no caster first
     std::uint64_t escaped = 0;        ///< left the scene after a caster
-    std::uint64_t absorbed = 0;       ///< by roulette, a black side, or a dropped shading normal
+    std::uint64_t absorbed = 0;       ///< by roulette, a medium, or a dropped shading normal
+    std::uint64_t on_black_side = 0;  ///< arrived where a receiver is black, behind it as a rule
     std::uint64_t depth_limited = 0;  ///< met one more caster after `max_bounces`
     std::uint64_t stored = 0;
     std::uint64_t dropped = 0;  ///< arrived, but left out so that a wanted number is exact
@@ -46,6 +50,9 @@ struct LightPathCounts {
     void add(const LightPathCounts& other);
     void add_to(Counters& counters) const;
 };
+
+/// The counts that add_to() has put there.
+LightPathCounts light_path_counts(const Counters& counters);
 
 /// What happens at a surface that both reflects and refracts.
 enum class Interaction {

@@ -52,10 +52,11 @@ std::string describe_map(const std::filesystem::path& file, const SavedPhotons& 
                         counts.emitted);
     text += extent(saved.photons);
     text += fmt::format(
-        "paths      {} aimed, {} branched, {} missed, {} escaped, {} absorbed, "
-        "{} cut at max_bounces, {} photons dropped\n",
-        counts.aimed, counts.branched, counts.missed, counts.escaped, counts.absorbed,
-        counts.depth_limited, counts.dropped);
+        "paths      {} aimed, {} branched, {} times reflected, {} times refracted, {} missed, "
+        "{} escaped, {} absorbed, {} on black sides, {} cut at max_bounces, {} photons dropped\n",
+        counts.aimed, counts.branched, counts.reflected, counts.refracted, counts.missed,
+        counts.escaped, counts.absorbed, counts.on_black_side, counts.depth_limited,
+        counts.dropped);
     text += fmt::format("traced     emission {}, interaction {}, max_bounces {}, seed {}\n",
                         stratified ? "stratified" : "random",
                         origin.interaction == Interaction::split ? "split" : "roulette",

@@ -18,7 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "photons are written as they lie");
 
 constexpr std::string_view magic = "causticbench photon map\n";
-constexpr std::size_t header_numbers = 11 * sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t);
+constexpr std::size_t header_numbers = 14 * sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t);
 constexpr std::size_t longest_header = 1 << 20;
 
 template <typename T>
@@ -34,8 +34,9 @@ std::string_view bytes_of(std::span<const Photon> photons) {
 template <typename Counts, typename Visit>
 void for_each_count(Counts& counts, const Visit& visit) {
     for (auto* count :
-         {&counts.emitted, &counts.aimed, &counts.branched, &counts.missed, &counts.escaped,
-          &counts.absorbed, &counts.depth_limited, &counts.stored, &counts.dropped})
+         {&counts.emitted, &counts.aimed, &counts.branched, &counts.reflected, &counts.refracted,
+          &counts.missed, &counts.escaped, &counts.absorbed, &counts.on_black_side,
+          &counts.depth_limited, &counts.stored, &counts.dropped})
         visit(*count);
 }
 

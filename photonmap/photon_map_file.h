@@ -25,12 +25,12 @@ struct SavedPhotons {
 };
 
 /// Of the format.
-inline constexpr std::uint32_t photon_map_version = 1;
+inline constexpr std::uint32_t photon_map_version = 2;
 
 /// One map serves many views [J96, section 5]: the photons of a scene in the order of their paths,
 /// before any tree is built, so that pictures from the file are bit-identical. The format, all
 /// numbers little-endian: "causticbench photon map\n", its version (u32), length of the header
-/// (u32), the header (transport, seed u64; emission, interaction, max_bounces u32; the nine counts
+/// (u32), the header (transport, seed u64; emission, interaction, max_bounces u32; the 12 counts
 /// of LightPathCounts u64; flux unit 3 x f32; command), number of photons (u64), 20 bytes each as
 /// photon.h has them, and the FNV-1a hash of all that (u64).
 void save_photon_map(const TracedPhotons& photons, const PhotonOrigin& origin,

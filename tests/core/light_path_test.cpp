@@ -234,9 +234,9 @@ TEST(LightPath, EveryPathHasOneEnd) {
             ASSERT_GT(deposit->geometric_normal.dot(deposit->wi), 0);
             ASSERT_TRUE(is_receiver(scene.shapes()[deposit->shape].bsdf));
         });
-        EXPECT_EQ(
-            counts.missed + counts.escaped + counts.absorbed + counts.depth_limited + counts.stored,
-            counts.aimed);
+        EXPECT_EQ(counts.missed + counts.escaped + counts.absorbed + counts.on_black_side +
+                      counts.depth_limited + counts.stored,
+                  counts.aimed);
         EXPECT_EQ(counts.stored, deposits);
         EXPECT_GT(counts.stored, 0U);
         EXPECT_GT(counts.depth_limited, 0U);
@@ -276,8 +276,40 @@ TEST(LightPath, BlackParticlesAndDeepChainsEnd) {
     const Ray ray{Vec3(0, 0, 0.5F), Vec3::UnitZ()};
     EXPECT_FALSE(trace_light_path(scene, {ray, Spectrum(Spectrum::Ones())}, {100}, rng, counts));
     EXPECT_EQ(counts.depth_limited, 1U);
+    EXPECT_EQ(counts.reflected, 100U);
     EXPECT_FALSE(trace_light_path(scene, {ray, black()}, {100}, rng, counts));
     EXPECT_EQ(counts.absorbed, 1U);
+}
+
+TEST(LightPath, TellsBlackSidesFromBlackWater) {
+    // Light falls through a sheet of water onto a floor that faces down, up, and under ink.
+    const auto counts_of = [](bool up, float absorption) {
+        SceneDesc desc;
+        desc.shapes.push_back(support::horizontal(
+            "water", 1, 1, true, support::glass(1.33F, 1, Spectrum::Constant(absorption))));
+        desc.shapes.push_back(support::horizontal("floor", 0, 2, up, support::diffuse(0.5F)));
+        desc.point_lights.push_back(support::point_light({0, 0, 3}, 1));
+        const Scene scene(std::move(desc));
+        LightPathCounts counts;
+        send(AimedEmission(scene), [&](const LightParticle& particle, Rng& rng) {
+            const auto deposit = trace_light_path(scene, particle, {16}, rng, counts);
+            EXPECT_TRUE(!deposit || deposit->front);
+        });
+        return counts;
+    };
+    const LightPathCounts lit = counts_of(true, 0), turned = counts_of(false, 0),
+                          inky = counts_of(true, 1000);
+    EXPECT_GT(lit.refracted, 20 * lit.reflected);
+    EXPECT_EQ(lit.stored, lit.refracted);
+    EXPECT_EQ(turned.on_black_side, turned.refracted);
+    EXPECT_EQ(inky.absorbed, inky.refracted);
+    for (const LightPathCounts& counts : {lit, turned, inky}) {
+        Counters named;
+        counts.add_to(named);
+        EXPECT_EQ(named.at("photons_refracted"), counts.refracted);
+        EXPECT_EQ(light_path_counts(named).on_black_side, counts.on_black_side);
+        EXPECT_EQ(counts.escaped, counts.reflected);
+    }
 }
 
 }  // namespace

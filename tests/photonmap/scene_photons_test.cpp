@@ -139,8 +139,8 @@ TEST(ScenePhotons, CountsAreExactAndEndsAddUp) {
             EXPECT_EQ(photons.store.size(), wanted);
             EXPECT_EQ(photons.counts.stored, wanted);
             const LightPathCounts& c = photons.counts;
-            EXPECT_EQ(c.missed + c.escaped + c.absorbed + c.depth_limited + c.stored +
-                          photons.counts.dropped,
+            EXPECT_EQ(c.missed + c.escaped + c.absorbed + c.on_black_side + c.depth_limited +
+                          c.stored + c.dropped,
                       c.aimed + c.branched);
             EXPECT_EQ(c.branched > 0, mode.interaction == Interaction::split);
         }
