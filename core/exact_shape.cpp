@@ -163,4 +163,40 @@ Vec2 exact_uv(const Shape& shape, const Vec3d& local) {
     return uv.cast<float>();
 }
 
+double exact_area_element(const Shape& shape, const Vec2d& uv) {
+    const double turn = 2 * pi_d;
+    const auto around = [&](double turns) {
+        return Vec3d(std::cos(turn * turns), std::sin(turn * turns), 0);
+    };
+    const auto along = [&](double turns) {
+        return Vec3d(-turn * std::sin(turn * turns), turn * std::cos(turn * turns), 0);
+    };
+    Vec3d du(2, 0, 0), dv(0, 2, 0);
+    switch (shape.primitive) {
+        case Primitive::disk:
+            du = around(uv.y());
+            dv = uv.x() * along(uv.y());
+            break;
+        case Primitive::sphere: {
+            const double polar = pi_d * uv.y();
+            du = std::sin(polar) * along(uv.x());
+            dv = pi_d * (std::cos(polar) * around(uv.x()) - std::sin(polar) * Vec3d::UnitZ());
+            break;
+        }
+        case Primitive::cylinder:
+            du = along(uv.x());
+            dv = Vec3d::UnitZ();
+            break;
+        case Primitive::heightfield: {
+            const Vec2d half = shape.field.half_size;
+            const Vec2d slope = shape.field.gradient(half.cwiseProduct(2 * uv - Vec2d::Ones()));
+            du = 2 * half.x() * Vec3d(1, 0, slope.x());
+            dv = 2 * half.y() * Vec3d(0, 1, slope.y());
+            break;
+        }
+        default: break;
+    }
+    return (shape.to_world.linear() * du).cross(shape.to_world.linear() * dv).norm();
+}
+
 }  // namespace caustics

@@ -20,5 +20,7 @@ std::optional<ExactHit> intersect_exact(const Shape& shape, const Vec3d& o, cons
 Vec3d exact_normal(const Shape& shape, const Vec3d& local);
 /// Texture coordinates as Mitsuba's.
 Vec2 exact_uv(const Shape& shape, const Vec3d& local);
+/// World area of the surface per area of texture coordinates, |dP/du x dP/dv| [m^2].
+double exact_area_element(const Shape& shape, const Vec2d& uv);
 
 }  // namespace caustics

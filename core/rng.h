@@ -36,6 +36,7 @@ enum class Stage : std::uint32_t {
     photon_pilot = 6,
     photon_choice = 7,
     beams = 8,
+    illumination_map = 9,
     test = 100,
 };
 

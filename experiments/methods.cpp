@@ -76,6 +76,10 @@ json describe_params(const BeamTreeParams& p) {
     return all;
 }
 
+json describe_params(const IlluminationMapParams& p) {
+    return {{"emitted", p.emitted}, {"resolution", p.resolution}, {"max_bounces", p.max_bounces}};
+}
+
 json describe_params(const CausticPolygonsParams& p) {
     return {{"polygons", name(p.polygons)},
             {"light_samples", p.light_samples},
@@ -100,6 +104,7 @@ constexpr Entry entries[] = {{"none", read_params<NoneParams>},
                              {"lighttrace", read_params<LightTraceParams>},
                              {"photonmap", read_params<PhotonMapParams>},
                              {"beamtree", read_params<BeamTreeParams>},
+                             {"illuminationmap", read_params<IlluminationMapParams>},
                              {"causticpolygons", read_params<CausticPolygonsParams>}};
 static_assert(std::size(entries) == std::variant_size_v<MethodParams>);
 
@@ -111,6 +116,7 @@ MethodParams with_least_work(MethodParams params) {
         map->emitted = std::min<std::uint64_t>(map->emitted, 1);
         map->save.clear();
     }
+    if (auto* const texels = std::get_if<IlluminationMapParams>(&params)) texels->emitted = 1;
     if (auto* const beams = std::get_if<BeamTreeParams>(&params)) beams->light_samples = 1;
     if (auto* const polygons = std::get_if<CausticPolygonsParams>(&params)) {
         polygons->light_samples = 1;

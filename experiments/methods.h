@@ -12,6 +12,7 @@
 #include "beamtree/caustic_polygons.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
+#include "core/reference/illumination_map.h"
 #include "core/reference/light_trace.h"
 #include "core/reference/path_trace.h"
 #include "photonmap/photon_map.h"
@@ -20,7 +21,7 @@ namespace caustics {
 
 /// The only place that names all methods: one alternative each, in the order of method_names().
 using MethodParams = std::variant<NoneParams, PathTraceParams, LightTraceParams, PhotonMapParams,
-                                  BeamTreeParams, CausticPolygonsParams>;
+                                  BeamTreeParams, IlluminationMapParams, CausticPolygonsParams>;
 
 struct Method {
     std::string name;

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/aimed_emission.h"
 #include "core/error.h"
-#include "core/light_path.h"
-#include "core/parallel.h"
 #include "core/reference/gather_grid.h"
+#include "core/reference/ordered_paths.h"
 
 namespace caustics {
 namespace {
-
-constexpr std::uint64_t paths_per_chunk = 4096;
-constexpr std::uint64_t chunks_per_round = 256;
 
 // Sums of what paths brought to each of a number of cells (pixels or probe points).
 struct Tally {
@@ -90,46 +85,18 @@ public:
     bool is_statistical() const override { return true; }
 
 private:
-    // Traces every path in rounds of chunks; `collect` says what a deposit brings to which cells.
-    // Chunks are summed in their order, so that threads change nothing.
+    // `collect` says what a deposit brings to which cells.
     template <typename Collect>
     Tally trace(std::size_t cells, const RunOptions& options, const Collect& collect,
                 LightPathCounts& total) const {
         Tally tally(cells);
-        const std::uint64_t chunks = (params_.paths + paths_per_chunk - 1) / paths_per_chunk;
-        std::vector<std::vector<Arrival>> arrivals(chunks_per_round);
-        std::vector<LightPathCounts> counts(chunks_per_round);
-        for (std::uint64_t first = 0; first < chunks; first += chunks_per_round) {
-            const std::uint64_t in_round = std::min(chunks_per_round, chunks - first);
-            parallel_for(options.threads, in_round, [&](std::size_t i, std::size_t) {
-                arrivals[i].clear();
-                counts[i] = {};
-                trace_chunk(first + i, counts[i],
-                            [&](const Deposit& d) { collect(d, arrivals[i]); });
-            });
-            for (std::size_t i = 0; i < in_round; ++i) {
-                for (const Arrival& arrival : arrivals[i]) tally.add(arrival.cell, arrival.value);
-                total.add(counts[i]);
-            }
-            options.report(static_cast<double>(first + in_round) / static_cast<double>(chunks));
-        }
+        const OrderedPaths paths{scene_,        emission_,
+                                 params_.paths, params_.max_bounces,
+                                 options_.seed, Stage::light_trace};
+        total.add(trace_in_order<Arrival>(
+            paths, options, collect,
+            [&tally](const Arrival& arrival) { tally.add(arrival.cell, arrival.value); }));
         return tally;
-    }
-
-    template <typename Sink>
-    void trace_chunk(std::uint64_t chunk, LightPathCounts& counts, const Sink& sink) const {
-        const std::uint64_t begin = chunk * paths_per_chunk;
-        const std::uint64_t end = std::min(begin + paths_per_chunk, params_.paths);
-        for (std::uint64_t path = begin; path < end; ++path) {
-            Rng rng(options_.seed, Stage::light_trace, path);
-            ++counts.emitted;
-            const std::optional<LightParticle> particle = emission_.emit(rng);
-            if (!particle) continue;
-            ++counts.aimed;
-            if (const auto deposit =
-                    trace_light_path(scene_, *particle, {params_.max_bounces}, rng, counts))
-                sink(*deposit);
-        }
     }
 
     // The pixel average of the radiance a deposit sends to the pinhole: with film area dp at unit

@@ -33,6 +33,7 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
          {"bound=double", "merging=cones", "hierarchy=binned", "leaf=k", "light_samples=3",
           "mesh_resolution=20", "max_bounces=1"}},
         {"beamtree", {"spread_threshold=22.5"}},
+        {"illuminationmap", {"emitted=1000", "resolution=12", "max_bounces=3"}},
         {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
         {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}},
         {"photonmap", {"adaptive=true", "nearest=120", "filter=gaussian"}},
@@ -64,7 +65,7 @@ TEST(Methods, NameTheAlternatives) {
     EXPECT_EQ(
         error("photonmpa", {}),
         "unknown method \"photonmpa\" (known: none, pathtrace, lighttrace, photonmap, beamtree, "
-        "causticpolygons)");
+        "illuminationmap, causticpolygons)");
     const std::string unknown = error("photonmap", {"photns=10"});
     EXPECT_NE(unknown.find("photns"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("photons"), std::string::npos) << unknown;
