@@ -5,14 +5,13 @@ An error is the median over the seeds of sqrt(relmse), or of rmse over the refer
 records give the same bytes. Exit codes: 0 done, 2 bad input or usage.
 """
 import argparse
-import math
 import os
-import statistics
 import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 import records
+from estimate_cells import Estimate, best, fixed
 from report_files import report, write
 
 FILTERS = ("none", "cone", "gaussian", "epanechnikov")
@@ -42,32 +41,6 @@ def write_all(directory, output):
             write(os.path.join(output, f"heat_map-{scene}.svg"), picture)
 
 
-class Estimate:
-    """A cell of the records: what the estimate was, and its errors."""
-
-    def __init__(self, cell):
-        own = cell.parameters
-        self.scene, self.method = cell.scene, cell.method
-        self.photons = int(own["photons"]) if "photons" in own else None
-        self.nearest = int(own["nearest"]) if "nearest" in own else None
-        self.filter = own.get("filter", "none")
-        self.raw = own.get("estimator") == "raw"
-        self.adaptive = own.get("adaptive") == "true"
-        rows = cell.records
-        self.error = statistics.median(math.sqrt(float(row["relmse"])) for row in rows)
-        self.rmse = statistics.median(float(row["rmse"]) / float(row["reference_mean"]) for row in rows)
-
-
-def best(cells):
-    """The cell of the least error, and that of the least rmse."""
-    return min(cells, key=lambda cell: cell.error), min(cells, key=lambda cell: cell.rmse)
-
-
-def fixed(cells, scene, **wanted):
-    return [cell for cell in cells if cell.scene == scene and cell.method == "photonmap" and not cell.adaptive
-            and all(getattr(cell, name) == value for name, value in wanted.items())]
-
-
 def filters(cells, scenes):
     yield "Each estimator at its own best N, 100,000 photons. Error: sqrt(relmse), and rmse / mean; beside each its"
     yield "ratio to eq. 4 (`raw` without a filter)."
@@ -94,8 +67,9 @@ def adaptive(cells, scenes):
     yield "The best N for sqrt(relmse) and for rmse are two."
     for scene in scenes:
         yield f"\n## {scene}\n"
-        yield "| photons | best N | sqrt(relmse) | adaptive | ratio | best N for rmse | rmse / mean | adaptive | ratio |"
-        yield "|---|---|---|---|---|---|---|---|---|"
+        yield ("| photons | best N | sqrt(relmse) | adaptive | ratio | best N for rmse | rmse / mean | adaptive | ratio "
+               "| mean N used |")
+        yield "|---|---|---|---|---|---|---|---|---|---|"
         for own in sorted((cell for cell in cells if cell.scene == scene and cell.method == "photonmap" and cell.adaptive),
                           key=lambda cell: cell.photons):
             others = fixed(cells, scene, photons=own.photons, filter=own.filter, raw=False)
@@ -104,7 +78,7 @@ def adaptive(cells, scenes):
             error, rmse = best(others)
             yield (f"| {own.photons} | {error.nearest} | {error.error:.3f} | {own.error:.3f} "
                    f"| {own.error / error.error:.2f} | {rmse.nearest} | {rmse.rmse:.3f} | {own.rmse:.3f} "
-                   f"| {own.rmse / rmse.rmse:.2f} |")
+                   f"| {own.rmse / rmse.rmse:.2f} | {own.used:.0f} |")
 
 
 if __name__ == "__main__":

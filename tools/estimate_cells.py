@@ -1,0 +1,44 @@
+"""Cells of records.csv as the tables of the photon map's estimate see them: what was estimated how, and its errors."""
+import math
+import statistics
+
+STAGES = ("precompute_cpu_s", "balance_cpu_s", "render_cpu_s")  # empty where a method has no such stage
+
+
+class Estimate:
+    """A cell of the records: what the estimate was, its errors against the reference, and its cost."""
+
+    def __init__(self, cell):
+        own = cell.parameters
+        self.scene, self.method = cell.scene, cell.method
+        self.photons = int(own["photons"]) if "photons" in own else None
+        self.nearest = int(own["nearest"]) if "nearest" in own else None
+        self.resolution = int(own["resolution"]) if "resolution" in own else None
+        self.filter = own.get("filter", "none")
+        self.raw = own.get("estimator") == "raw"
+        self.adaptive = own.get("adaptive") == "true"
+        self.passes = int(own.get("passes", 1))
+        rows = cell.records
+        self.error = statistics.median(math.sqrt(float(row["relmse"])) for row in rows)
+        shares = [float(row["rmse"]) / float(row["reference_mean"]) for row in rows]
+        self.rmse = statistics.median(shares)
+        self.square = statistics.mean(share * share for share in shares)
+        self.seconds = statistics.median(sum(float(row[stage] or 0) for stage in STAGES) for row in rows)
+        self.used = mean_used(rows)
+
+
+def mean_used(rows):
+    """The mean number of photons that an estimate was made from, or None where that was not counted."""
+    used, gathers = (sum(float(row[name]) for row in rows if row.get(name)) for name in ("used_photons", "gathers"))
+    return used / gathers if used and gathers else None
+
+
+def best(cells):
+    """The cell of the least error, and that of the least rmse."""
+    return min(cells, key=lambda cell: cell.error), min(cells, key=lambda cell: cell.rmse)
+
+
+def fixed(cells, scene, **wanted):
+    """The photon maps of a scene with a given N that have these attributes."""
+    return [cell for cell in cells if cell.scene == scene and cell.method == "photonmap" and not cell.adaptive
+            and all(getattr(cell, name) == value for name, value in wanted.items())]
