@@ -9,8 +9,6 @@ namespace caustics {
 
 namespace {
 
-constexpr std::size_t widest_register = 16;
-
 /// The mean of the factor over even directions when 1, 2, ... steps of the ladder can be tested; by
 /// ten million random sequences, to 3e-5 (adaptive_count_test.cpp draws its own).
 constexpr double mean_factors[] = {1,        0.999755, 0.999345, 0.998715, 0.998216, 0.997794,

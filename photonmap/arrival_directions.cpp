@@ -12,6 +12,8 @@ namespace caustics {
 namespace {
 
 constexpr std::size_t codes = 65'536;
+/// More than what the arithmetic of a cosine takes off.
+constexpr float rounding = 1e-5F;
 
 [[noreturn]] void fail_not_finite(std::size_t index, const Photon& photon) {
     std::ostringstream message;
@@ -55,8 +57,27 @@ ArrivalDirections::ArrivalDirections(std::span<const Photon> photons) {
     if (cosine > 0) sine_ = static_cast<float>(std::sqrt(std::max(0.0, 1 - cosine * cosine)));
 }
 
+bool ArrivalDirections::all_in_front(const Vec3& normal) const {
+    return empty_ || normal.dot(axis_) > sine_ + rounding;
+}
+
 SideTest side_test(const Vec3& normal) {
     return {&direction_tables(), {normal.x(), normal.y(), normal.z()}};
+}
+
+bool all_in_front(const SideTest& side, std::span<const std::uint16_t> directions) {
+    std::uint16_t largest = 0;
+    for (const std::uint16_t code : directions)
+        largest = std::max<std::uint16_t>(largest, code & 0xFFU);
+    // Above the horizon, the least cosine among a theta's directions falls as theta grows.
+    const SineCosine theta = side.tables->theta[largest];
+    const float across =
+        std::sqrt(side.normal[0] * side.normal[0] + side.normal[1] * side.normal[1]);
+    if (theta.cosine > 0 && theta.cosine * side.normal[2] > theta.sine * across + rounding)
+        return true;
+    return std::ranges::all_of(directions, [&side](std::uint16_t code) {
+        return on_front_side(side, code & 0xFFU, code >> 8U);
+    });
 }
 
 bool came_from_front(const Photon& photon, const Vec3& normal) {

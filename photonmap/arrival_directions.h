@@ -15,12 +15,9 @@ public:
     explicit ArrivalDirections(std::span<const Photon> photons);
 
     /// Whether certainly no photon came from behind `normal` (unit).
-    bool all_in_front(const Vec3& normal) const {
-        return empty_ || normal.dot(axis_) > sine_ + rounding;
-    }
+    bool all_in_front(const Vec3& normal) const;
 
 private:
-    static constexpr float rounding = 1e-5F;
     bool empty_ = true;
     Vec3 axis_ = Vec3::UnitZ();
     float sine_ = 1;  ///< of half the opening angle; at least 1 when that is not acute
@@ -30,5 +27,8 @@ private:
 bool came_from_front(const Photon& photon, const Vec3& normal);
 
 SideTest side_test(const Vec3& normal);
+
+/// Whether photons of all these direction codes came from the side of the test's normal.
+bool all_in_front(const SideTest& side, std::span<const std::uint16_t> directions);
 
 }  // namespace caustics

@@ -7,35 +7,18 @@ namespace caustics {
 /// The query of a group's member among the photons that were copied out for the group.
 template <typename Lanes>
 struct ColumnScan {
-    static void copy(const PackedView& tree, const Candidates& found, PhotonColumns& photons) {
-        for (size_t i = 0; i < found.count; ++i) {
-            const size_t number = found.index[i] / bucket_photons;
-            const size_t lane = found.index[i] % bucket_photons;
-            const unsigned char* const bucket = number + 1 == tree.bucket_count
-                                                    ? tree.last_bucket
-                                                    : tree.buckets + number * bucket_bytes;
-            for (unsigned axis = 0; axis < 3; ++axis)
-                memcpy(photons.position[axis] + i, bucket + 4 * (axis * bucket_photons + lane), 4);
-            memcpy(photons.energy + i, bucket + 12 * bucket_photons + 4 * lane, 4);
-            uint16_t direction;
-            memcpy(&direction, bucket + 16 * bucket_photons + 2 * lane, sizeof direction);
-            photons.direction[i] = direction;
-        }
-        photons.count = found.count;
-    }
-
-    static bool find(const PhotonColumns& photons, const NearestQuery& query, Candidates& found,
-                     const CopiedPhotons& to) {
-        found.count = collect(photons, query, found.squared_distance, to);
+    static bool find(const CopiedPhotons& photons, size_t count, const NearestQuery& query,
+                     Candidates& found, const CopiedPhotons& to) {
+        found.count = collect(photons, count, query, found.squared_distance, to);
         if (found.count <= query.nearest) return true;
         const auto smaller = Selection<Lanes>::bound_for(found.squared_distance, found.count,
                                                          found.count, query.nearest, query.nearest,
                                                          0, query.max_squared_distance);
         if (smaller.not_above > query.nearest) {
-            find_places(photons, query, smaller.value, found);
+            find_places(photons, count, query, smaller.value, found);
             return false;
         }
-        keep(smaller.value, found, to);
+        found.count = keep(smaller.value, found.squared_distance, found.count, to);
         return true;
     }
 
@@ -45,7 +28,7 @@ private:
     /// Squared distances of photons from the query's point, a register at a time.
     class Distances {
     public:
-        Distances(const PhotonColumns& photons, const NearestQuery& query)
+        Distances(const CopiedPhotons& photons, const NearestQuery& query)
             : x_(photons.position[0]),
               y_(photons.position[1]),
               z_(photons.position[2]),
@@ -66,12 +49,12 @@ private:
         Floats px_, py_, pz_;
     };
 
-    /// Puts the photons within the query's reach side by side; returns their number.
-    static size_t collect(const PhotonColumns& photons, const NearestQuery& query,
-                          float* squared_distance, const CopiedPhotons& to) {
+    /// Puts the photons within the query's reach side by side; returns their number. Like the others,
+    /// takes the arrays' addresses by value: what is stored could not change those.
+    static size_t collect(const CopiedPhotons photons, size_t count, const NearestQuery& query,
+                          float* squared_distance, const CopiedPhotons to) {
         const Distances distances(photons, query);
         const auto limit = Lanes::all(query.max_squared_distance);
-        const size_t count = photons.count;
         size_t kept = 0;
         for (size_t i = 0; i < count; i += Lanes::width) {
             const Floats d2 = distances.at(i);
@@ -81,7 +64,8 @@ private:
             if (mask == 0) continue;
             Lanes::compress(squared_distance + kept, mask, d2);
             Lanes::compress(to.energy + kept, mask, Lanes::load(photons.energy + i));
-            Lanes::compress_halves(to.direction + kept, mask, Lanes::load(photons.direction + i));
+            Lanes::compress_halves(to.direction + kept, mask,
+                                   Lanes::load_halves(photons.direction + i));
             compress_positions(photons.position, i, mask, to, kept);
             kept += Lanes::count(mask);
         }
@@ -89,22 +73,22 @@ private:
     }
 
     /// Of photons side by side, keeps those not above the bound, in their order.
-    static void keep(float bound, Candidates& found, const CopiedPhotons& to) {
+    static size_t keep(float bound, float* squared_distance, size_t count, const CopiedPhotons to) {
         const auto limit = Lanes::all(bound);
         size_t kept = 0;
-        for (size_t i = 0; i < found.count; i += Lanes::width) {
-            const Floats d2 = Lanes::load(found.squared_distance + i);
+        for (size_t i = 0; i < count; i += Lanes::width) {
+            const Floats d2 = Lanes::load(squared_distance + i);
             const auto energies = Lanes::load(to.energy + i);
             const auto directions = Lanes::load_halves(to.direction + i);
             const uint32_t mask =
-                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(found.count - i);
-            Lanes::compress(found.squared_distance + kept, mask, d2);
+                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(count - i);
+            Lanes::compress(squared_distance + kept, mask, d2);
             Lanes::compress(to.energy + kept, mask, energies);
             Lanes::compress_halves(to.direction + kept, mask, directions);
             compress_positions(to.position, i, mask, to, kept);
             kept += Lanes::count(mask);
         }
-        found.count = kept;
+        return kept;
     }
 
     /// The masked positions of register i, where they are wanted.
@@ -116,15 +100,15 @@ private:
     }
 
     /// The columns' photons not above the bound, by their places.
-    static void find_places(const PhotonColumns& photons, const NearestQuery& query, float bound,
-                            Candidates& found) {
+    static void find_places(const CopiedPhotons& photons, size_t count, const NearestQuery& query,
+                            float bound, Candidates& found) {
         const Distances distances(photons, query);
         const auto limit = Lanes::all(bound);
         size_t kept = 0;
-        for (size_t i = 0; i < photons.count; i += Lanes::width) {
+        for (size_t i = 0; i < count; i += Lanes::width) {
             const Floats d2 = distances.at(i);
             const uint32_t mask =
-                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(photons.count - i);
+                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(count - i);
             Lanes::compress(found.squared_distance + kept, mask, d2);
             Lanes::compress(found.index + kept, mask,
                             Lanes::counting_from(static_cast<uint32_t>(i)));

@@ -2,10 +2,6 @@
 
 namespace caustics {
 
-namespace {
-constexpr std::size_t widest_register = 16;
-}
-
 Candidates& CandidateArrays::reserve(std::size_t capacity) {
     if (capacity > candidates_.capacity) {
         squared_distance_.reserve(capacity + widest_register);
@@ -16,18 +12,17 @@ Candidates& CandidateArrays::reserve(std::size_t capacity) {
     return candidates_;
 }
 
-void GatherScratch::reserve(std::size_t count, bool positions) {
-    found.reserve(count);
-    energy.reserve(count + widest_register);
-    direction.reserve(count + widest_register);
+void CopyArrays::reserve(std::size_t count, bool positions) {
+    energy_.reserve(count + widest_register);
+    direction_.reserve(count + widest_register);
     if (!positions) return;
-    for (auto& axis : position) axis.reserve(count + widest_register);
+    for (auto& axis : position_) axis.reserve(count + widest_register);
 }
 
-CopiedPhotons GatherScratch::copied(bool positions) {
-    CopiedPhotons to{energy.data(), direction.data(), {nullptr, nullptr, nullptr}};
+CopiedPhotons CopyArrays::copied(bool positions) {
+    CopiedPhotons to{energy_.data(), direction_.data(), {nullptr, nullptr, nullptr}};
     if (positions)
-        for (std::size_t axis = 0; axis < 3; ++axis) to.position[axis] = position[axis].data();
+        for (std::size_t axis = 0; axis < 3; ++axis) to.position[axis] = position_[axis].data();
     return to;
 }
 

@@ -24,18 +24,30 @@ private:
     Candidates candidates_;
 };
 
+/// Copied photons with their memory.
+class CopyArrays {
+public:
+    /// Makes room for so many photons; forgets those held.
+    void reserve(std::size_t count, bool positions);
+    CopiedPhotons copied(bool positions);
+
+private:
+    AlignedArray<std::uint32_t> energy_;
+    AlignedArray<std::uint16_t> direction_;
+    AlignedArray<float> position_[3];
+};
+
 /// A thread's arrays for gathering, made once and filled by the trees; and how its queries were
 /// answered.
 struct GatherScratch {
     CandidateArrays found;
-    AlignedArray<std::uint32_t> energy;
-    AlignedArray<std::uint16_t> direction;
-    AlignedArray<float> position[3];
+    CopyArrays copies;
 
-    /// Makes room for so many found photons and a register behind them; forgets those held.
-    void reserve(std::size_t count, bool positions);
-    /// The arrays that found photons are copied to.
-    CopiedPhotons copied(bool positions);
+    /// Makes room for so many found photons; forgets those held.
+    void reserve(std::size_t count, bool positions) {
+        found.reserve(count);
+        copies.reserve(count, positions);
+    }
 
     /// A subtree that a walk has put off.
     struct Pending {
@@ -47,9 +59,7 @@ struct GatherScratch {
     // Groups of queries.
     std::vector<std::uint32_t> order;
     CandidateArrays group_found;
-    AlignedArray<float> column[3];
-    AlignedArray<std::uint32_t> column_energy;
-    AlignedArray<std::uint32_t> column_direction;
+    CopyArrays group_copies;
 
     std::uint64_t single_queries = 0;
     std::uint64_t grouped_queries = 0;

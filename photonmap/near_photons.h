@@ -4,6 +4,7 @@
 
 #include "photonmap/aligned_array.h"
 #include "photonmap/gathered_photons.h"
+#include "photonmap/tree_kernels.h"
 
 namespace caustics {
 
@@ -13,7 +14,6 @@ public:
     /// The photons not beyond the radius, without positions, good until the next call; they may be
     /// kept ones themselves.
     GatheredPhotons within(const GatheredPhotons& gathered, float squared_radius) {
-        constexpr std::size_t widest_register = 16;
         squared_distance_.reserve(gathered.count + widest_register);
         energy_.reserve(gathered.count + widest_register);
         direction_.reserve(gathered.count + widest_register);

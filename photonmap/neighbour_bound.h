@@ -12,17 +12,16 @@ namespace caustics {
 class NeighbourBound {
 public:
     /// Squared distance within which the N nearest of `point` lie [m^2], at most `max`.
-    /// `tested` tells whether photons behind `normal` are left out; then only a point with the same
-    /// normal is of use.
+    /// `tested` tells whether photons behind `normal` are left out; then only an answer for the same
+    /// normal is of use, because none of its photons lies behind.
     float at(const Vec3& point, const Vec3& normal, bool tested, float max) const {
-        if (!known_ || tested != tested_ || (tested && normal != normal_)) return max;
+        if (!known_ || (tested && normal != normal_)) return max;
         return std::min(max, reached(distance_ + (point - point_).norm()));
     }
 
     /// The largest squared distance of an answer that has all N photons.
-    void set(const Vec3& point, const Vec3& normal, bool tested, float squared_distance) {
+    void set(const Vec3& point, const Vec3& normal, float squared_distance) {
         known_ = true;
-        tested_ = tested;
         point_ = point;
         normal_ = normal;
         distance_ = std::sqrt(squared_distance);
@@ -30,13 +29,17 @@ public:
     void forget() { known_ = false; }
     bool known() const { return known_; }
     float distance() const { return distance_; }
+    /// Whether a search met photons behind its point, so that further ones will: they had better look
+    /// at each photon's side.
+    bool met_behind() const { return met_behind_; }
+    void meet_behind() { met_behind_ = true; }
 
     /// A distance squared, enlarged by more than rounding can take off.
     static float reached(float distance) { return distance * distance * 1.000004F + 1e-37F; }
 
 private:
     bool known_ = false;
-    bool tested_ = false;
+    bool met_behind_ = false;
     Vec3 point_ = Vec3::Zero();
     Vec3 normal_ = Vec3::UnitZ();
     float distance_ = 0;

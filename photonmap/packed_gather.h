@@ -10,9 +10,7 @@ namespace caustics {
 /// lie within r + 2R of the centre, because a member's distance is at most r + R.
 class PackedGather {
 public:
-    PackedGather(const PackedKdTree& tree, std::span<const ReceiverPoint> points,
-                 const GatherLimits& limits, GatherScratch& scratch,
-                 const PhotonTree::Consumer& consume);
+    PackedGather(const PackedKdTree& tree, const PackedKdTree::Batch& batch);
 
     void run();
 
@@ -22,20 +20,20 @@ private:
     void answer(Group group);
     bool answer_together(Group group, const Box& box);
     void answer_one_by_one(Group group);
-    void answer_member(std::uint32_t i, const Vec3& centre, float centre_distance);
+    bool collect(const Vec3& centre, const Vec3& normal, float radius, const SideTest* side);
+    bool members_in_front(Group group) const;
+    void answer_member(std::uint32_t i, const Vec3& centre);
     void choose_among_ties(std::size_t nearest, Candidates& found, const CopiedPhotons& to) const;
-    bool may_share(Group group, bool& tested) const;
-    PhotonColumns columns(std::size_t count);
+    void copy_for_group(const Candidates& collected);
 
     const PackedKdTree& tree_;
-    std::span<const ReceiverPoint> points_;
-    const GatherLimits& limits_;
-    GatherScratch& scratch_;
-    const PhotonTree::Consumer& consume_;
-    NeighbourBound bound_;
+    PackedKdTree::Batch batch_;
     float last_distance_;  ///< of the N-th photon in the answer before, or the maximum radius
-    bool tested_ = false;  ///< the group's side test
-    PhotonColumns columns_{};
+    // Of a group.
+    bool tested_ = false;        ///< whether photons behind its normal were left out
+    float centre_distance_ = 0;  ///< within which the centre's N nearest lie
+    CopiedPhotons columns_{};
+    std::size_t column_count_ = 0;
 };
 
 }  // namespace caustics

@@ -38,25 +38,23 @@ void fill_buckets(BucketRange range, const TreeKernels& kernels, OrderScratch& s
 PackedKdTree::PackedKdTree(PhotonStore photons, Isa isa)
     : SearchTree(tree_kernels(isa), ArrivalDirections(photons.photons())),
       photons_(std::move(photons)),
-      planes_(std::make_unique<std::uint32_t[]>(std::max<std::size_t>(1, bucket_count()))),
-      last_bucket_(std::make_unique<unsigned char[]>(bucket_bytes)) {
+      planes_(std::make_unique<std::uint32_t[]>(std::max<std::size_t>(1, bucket_count()))) {
     order();
 }
 
 void PackedKdTree::order() {
     const std::size_t buckets = bucket_count();
     if (buckets == 0) return;
+    static_assert(PhotonStore::block_photons % bucket_photons == 0,
+                  "buckets fill the store's blocks");
     unsigned char* const memory = bytes_of(photons_.photons());
-    const bool last_is_full = photons_.size() % bucket_photons == 0;
-    unsigned char* const last =
-        last_is_full ? memory + (buckets - 1) * bucket_bytes : last_bucket_.get();
     const auto scratch = std::make_unique<OrderScratch>();
-    fill_buckets({memory, photons_.size(), 1, buckets, planes_.get(), last}, kernels_, *scratch);
-    view_ = {memory, last, planes_.get(), buckets};
+    fill_buckets({memory, photons_.size(), 1, buckets, planes_.get()}, kernels_, *scratch);
+    view_ = {memory, planes_.get(), buckets};
 }
 
 std::uint64_t PackedKdTree::bytes() const {
-    return photons_.bytes() + bucket_count() * sizeof(std::uint32_t) + bucket_bytes;
+    return bucket_count() * (bucket_bytes + sizeof(std::uint32_t));
 }
 
 void PackedKdTree::find(const NearestQuery& query, GatherScratch& scratch) const {
@@ -64,14 +62,19 @@ void PackedKdTree::find(const NearestQuery& query, GatherScratch& scratch) const
 }
 
 void PackedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) const {
-    for (std::size_t i = 0; i < found.count; ++i) {
-        const unsigned char* const at = bucket(found.index[i] / bucket_photons);
-        const std::size_t lane = found.index[i] % bucket_photons;
-        std::memcpy(to.energy + i, at + 12 * bucket_photons + 4 * lane, 4);
-        std::memcpy(to.direction + i, at + 16 * bucket_photons + 2 * lane, 2);
-        if (to.position[0] == nullptr) continue;
+    // Addresses by value: no photon that is stored could change those.
+    const unsigned char* const buckets = view_.buckets;
+    const Candidates all = found;
+    const CopiedPhotons copies = to;
+    for (std::size_t i = 0; i < all.count; ++i) {
+        const unsigned char* const x = buckets + all.index[i] / bucket_photons * bucket_bytes +
+                                       4 * (all.index[i] % bucket_photons);
+        std::memcpy(copies.energy + i, x + 12 * bucket_photons, 4);
+        std::memcpy(copies.direction + i,
+                    x + 16 * bucket_photons - 2 * (all.index[i] % bucket_photons), 2);
+        if (copies.position[0] == nullptr) continue;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            std::memcpy(to.position[axis] + i, at + 4 * (axis * bucket_photons + lane), 4);
+            std::memcpy(copies.position[axis] + i, x + 4 * axis * bucket_photons, 4);
     }
 }
 

@@ -11,7 +11,7 @@ namespace caustics {
 /// directions and flags of its photons one array after the other, so that a register takes many photons
 /// at once. The tree above is a heap of splitting planes, four bytes a bucket (heap_shape.h): inner
 /// node i's plane is planes[i], its axis in the lowest two bits. The last bucket, when it is not
-/// full, lies apart and is filled up with positions at infinity.
+/// full, is filled up with positions at infinity.
 class PackedKdTree final : public SearchTree {
 public:
     PackedKdTree(PhotonStore photons, Isa isa);
@@ -33,15 +33,10 @@ private:
     std::size_t bucket_count() const {
         return (photons_.size() + bucket_photons - 1) / bucket_photons;
     }
-    const unsigned char* bucket(std::size_t number) const {
-        return number + 1 == bucket_count() ? view_.last_bucket
-                                            : view_.buckets + number * bucket_bytes;
-    }
     void order();
 
     PhotonStore photons_;
     std::unique_ptr<std::uint32_t[]> planes_;
-    std::unique_ptr<unsigned char[]> last_bucket_;
     PackedView view_{};
 };
 

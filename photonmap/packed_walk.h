@@ -15,9 +15,10 @@ public:
     }
 
 private:
-    /// A subtree put off: no photon in it is nearer than `offset` along each axis.
+    /// A subtree put off: along each axis the square of a distance that no photon in it is within,
+    /// and their sum.
     struct Pending {
-        float offset[3];
+        float square[3];
         float squared_distance;
         uint64_t node;
     };
@@ -35,12 +36,10 @@ private:
 
     bool run() {
         if (tree_.bucket_count == 0) return true;
-        Pending at{{0, 0, 0}, 0, 1};
+        Pending at{{0, 0, 0}, 0, root_of_search()};
         for (;;) {
             const uint64_t leaf = descend(at);
-            scan(leaf + 1 == tree_.bucket_count ? tree_.last_bucket
-                                                : tree_.buckets + leaf * bucket_bytes,
-                 static_cast<uint32_t>(leaf * bucket_photons));
+            scan(tree_.buckets + leaf * bucket_bytes, static_cast<uint32_t>(leaf * bucket_photons));
             if (found_.count >= trigger_ && !shrink()) return false;
             do {
                 if (pending_count_ == 0) return finish();
@@ -49,29 +48,47 @@ private:
         }
     }
 
-    /// Goes down to the bucket on the point's side of every plane. A plane's lowest two bits hold its
-    /// axis: its place is known up to the four numbers that share the other bits.
+    /// Where the point lies as seen from a plane. The plane's lowest two bits hold its axis: its place
+    /// is known up to the four numbers that share the other bits.
+    struct Side {
+        unsigned axis;
+        bool right;
+        float square;  ///< of a distance that nothing on the other side is within
+    };
+    Side side_of(uint32_t plane) const {
+        const unsigned axis = plane & 3U;
+        const float one_end = float_of(plane & ~3U), other_end = float_of(plane | 3U);
+        const float low = -largest(-one_end, -other_end), high = largest(one_end, other_end);
+        const float x = query_.point[axis];
+        // One of the two is negative; no branch, because none could be foretold.
+        const float gap = largest(largest(x - high, low - x), 0);
+        return {axis, x > low, gap * gap};
+    }
+
+    /// The smallest subtree that holds all that is within the bound.
+    uint64_t root_of_search() const {
+        uint64_t node = 1;
+        while (node < tree_.bucket_count) {
+            const Side side = side_of(tree_.planes[node]);
+            if (side.square <= bound_) break;
+            node = 2 * node + (side.right ? 1 : 0);
+        }
+        return node;
+    }
+
+    /// Goes down to the bucket on the point's side of every plane.
     uint64_t descend(const Pending& from) {
         Pending at = from;
         while (at.node < tree_.bucket_count) {
-            const uint32_t plane = tree_.planes[at.node];
-            const unsigned axis = plane & 3U;
-            const float one_end = float_of(plane & ~3U), other_end = float_of(plane | 3U);
-            const float low = one_end < other_end ? one_end : other_end;
-            const float high = one_end < other_end ? other_end : one_end;
-            const float x = query_.point[axis];
-            const bool right = x > low;
-            float gap = right ? x - high : low - x;
-            gap = gap > 0 ? gap : 0;
+            const Side side = side_of(tree_.planes[at.node]);
             Pending& far = pending_[pending_count_];
-            far.offset[0] = at.offset[0];
-            far.offset[1] = at.offset[1];
-            far.offset[2] = at.offset[2];
-            far.offset[axis] = gap;
+            far.square[0] = at.square[0];
+            far.square[1] = at.square[1];
+            far.square[2] = at.square[2];
+            far.square[side.axis] = side.square;
             // The same operations as for a photon: rounding keeps the order of distances.
-            far.squared_distance = far.offset[0] * far.offset[0] + far.offset[1] * far.offset[1] +
-                                   far.offset[2] * far.offset[2];
-            at.node = 2 * at.node + (right ? 1 : 0);
+            far.squared_distance = far.square[0] + far.square[1] + far.square[2];
+            at.node = 2 * at.node + (side.right ? 1 : 0);
             far.node = at.node ^ 1U;
             pending_count_ += far.squared_distance <= bound_ ? 1 : 0;
         }
@@ -88,6 +105,8 @@ private:
         const auto pz = Lanes::all(query_.point[2]);
         const size_t before = found_.count;
         size_t count = before;
+        float* const squared_distance = found_.squared_distance;
+        uint32_t* const index = found_.index;
         for (size_t i = 0; i < bucket_photons; i += Lanes::width) {
             const auto dx = Lanes::sub(Lanes::load(x + i), px);
             const auto dy = Lanes::sub(Lanes::load(y + i), py);
@@ -95,8 +114,8 @@ private:
             const auto d2 =
                 Lanes::add(Lanes::add(Lanes::mul(dx, dx), Lanes::mul(dy, dy)), Lanes::mul(dz, dz));
             const uint32_t mask = Lanes::not_above(d2, limit);
-            Lanes::compress(found_.squared_distance + count, mask, d2);
-            Lanes::compress(found_.index + count, mask,
+            Lanes::compress(squared_distance + count, mask, d2);
+            Lanes::compress(index + count, mask,
                             Lanes::counting_from(first_index + static_cast<uint32_t>(i)));
             count += Lanes::count(mask);
         }
@@ -162,6 +181,8 @@ private:
         const float distance = __builtin_sqrtf(squared_distance) + query_.margin;
         return distance * distance * 1.000004F + 1e-37F;
     }
+
+    static float largest(float a, float b) { return a > b ? a : b; }
 
     static float float_of(uint32_t bits) {
         float value;

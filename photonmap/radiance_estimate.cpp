@@ -46,7 +46,6 @@ RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
     disc.photons.photons = photons;
     scratch.used_photons += photons.count;
     if (settings_.filter != FilterKind::none) {
-        constexpr std::size_t widest_register = 16;
         scratch.weight.reserve(photons.count + widest_register);
         shading_.weigh(filter_polynomial(settings_.filter), photons, disc.squared_radius,
                        scratch.weight.data());

@@ -25,23 +25,18 @@ unsigned widest_axis(std::span<const Photon> photons, const TreeKernels& kernels
 
 void SearchTree::gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
                         GatherScratch& scratch, const Consumer& consume) const {
-    make_room(limits, scratch);
-    NeighbourBound bound;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        answer(points, i, limits, bound, scratch, consume);
+    Batch batch{points, limits, scratch, consume};
+    begin(batch);
+    for (std::size_t i = 0; i < points.size(); ++i) answer(batch, i);
 }
 
 std::size_t SearchTree::nearest(const GatherLimits& limits) const {
     return std::max<std::size_t>(1, std::min(limits.nearest, size()));
 }
 
-void SearchTree::make_room(const GatherLimits& limits, GatherScratch& scratch) const {
-    scratch.reserve(room_for(nearest(limits)), limits.positions);
-}
-
-NearestQuery SearchTree::query_at(const Vec3& point, const GatherLimits& limits) const {
-    NearestQuery query{};
-    std::copy_n(point.data(), 3, query.point);
+void SearchTree::begin(Batch& batch) const {
+    const GatherLimits& limits = batch.limits;
+    NearestQuery& query = batch.query;
     query.nearest = nearest(limits);
     query.max_squared_distance = limits.max_radius * limits.max_radius;
     query.tie_context = this;
@@ -50,31 +45,49 @@ NearestQuery SearchTree::query_at(const Vec3& point, const GatherLimits& limits)
         keep_smallest_codes(found, wanted,
                             [&self](std::uint32_t photon) { return self.code_of(photon); });
     };
-    return query;
+    batch.scratch.reserve(room_for(query.nearest), limits.positions);
 }
 
-void SearchTree::answer(std::span<const ReceiverPoint> points, std::size_t i,
-                        const GatherLimits& limits, NeighbourBound& bound, GatherScratch& scratch,
-                        const Consumer& consume) const {
-    const ReceiverPoint& point = points[i];
-    const Vec3& x = point.position;
-    const Vec3& normal = point.geometric_normal;
-    const bool tested = !directions_.all_in_front(normal);
-    const SideTest side = side_test(normal);
-    NearestQuery query = query_at(x, limits);
-    query.max_squared_distance = bound.at(x, normal, tested, query.max_squared_distance);
-    query.side = tested ? &side : nullptr;
-    find(query, scratch);
-    ++scratch.single_queries;
+NearestQuery SearchTree::Batch::query_at(const Vec3& point) const {
+    NearestQuery at = query;
+    std::copy_n(point.data(), 3, at.point);
+    return at;
+}
+
+void SearchTree::answer(Batch& batch, std::size_t i) const {
+    const GatherLimits& limits = batch.limits;
+    GatherScratch& scratch = batch.scratch;
+    NeighbourBound& bound = batch.bound;
+    const Vec3& x = batch.points[i].position;
+    const Vec3& normal = batch.points[i].geometric_normal;
     const Candidates& found = scratch.found.candidates();
-    const CopiedPhotons copied = scratch.copied(limits.positions);
-    copy_out(found, copied);
+    const CopiedPhotons copied = scratch.copies.copied(limits.positions);
+    const auto find_all = [&](const SideTest* side) {
+        NearestQuery query = batch.query_at(x);
+        query.max_squared_distance =
+            bound.at(x, normal, side != nullptr, query.max_squared_distance);
+        query.side = side;
+        find(query, scratch);
+        copy_out(found, copied);
+    };
+    if (directions_.all_in_front(normal)) {
+        find_all(nullptr);
+    } else {
+        // Where none of the nearest lies behind, they need no test one by one.
+        const SideTest side = side_test(normal);
+        if (!bound.met_behind()) find_all(nullptr);
+        if (bound.met_behind() || !all_in_front(side, {copied.direction, found.count})) {
+            bound.meet_behind();
+            find_all(&side);
+        }
+    }
+    ++scratch.single_queries;
     const GatheredPhotons answer = gathered(found, copied);
     if (answer.count == limits.nearest)
-        bound.set(x, normal, tested, answer.squared_distance[answer.farthest]);
+        bound.set(x, normal, answer.squared_distance[answer.farthest]);
     else
         bound.forget();
-    consume(i, answer);
+    batch.consume(i, answer);
 }
 
 GatheredPhotons SearchTree::gathered(const Candidates& found, const CopiedPhotons& copied) const {

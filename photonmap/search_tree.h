@@ -67,11 +67,22 @@ protected:
     static std::size_t room_for(std::size_t nearest) {
         return nearest + nearest / 2 + 4 * bucket_photons;
     }
-    NearestQuery query_at(const Vec3& point, const GatherLimits& limits) const;
-    void make_room(const GatherLimits& limits, GatherScratch& scratch) const;
-    /// Answers one point; `bound` is used and renewed.
-    void answer(std::span<const ReceiverPoint> points, std::size_t i, const GatherLimits& limits,
-                NeighbourBound& bound, GatherScratch& scratch, const Consumer& consume) const;
+
+    /// One call of `gather`.
+    struct Batch {
+        std::span<const ReceiverPoint> points;
+        const GatherLimits& limits;
+        GatherScratch& scratch;
+        const Consumer& consume;
+        NearestQuery query{};  ///< without a point: up to the maximum radius, and no side test
+        NeighbourBound bound{};
+
+        NearestQuery query_at(const Vec3& point) const;
+    };
+    /// Prepares the query and makes room.
+    void begin(Batch& batch) const;
+    /// Answers one point; the bound is used and renewed.
+    void answer(Batch& batch, std::size_t i) const;
     GatheredPhotons gathered(const Candidates& found, const CopiedPhotons& copied) const;
 
     /// Of candidates at the largest distance leaves those of the smallest codes, `nearest` in all.

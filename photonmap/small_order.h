@@ -211,8 +211,7 @@ private:
 
     void write_bucket(unsigned from, size_t begin, size_t count) {
         const Columns& columns = scratch_.columns[from];
-        unsigned char* const bucket =
-            count == bucket_photons ? photons_ + 20 * begin : range_->last_bucket;
+        unsigned char* const bucket = photons_ + 20 * begin;
         float position[bucket_photons];
         for (unsigned a = 0; a < 3; ++a) {
             for (size_t i = 0; i < bucket_photons; ++i)

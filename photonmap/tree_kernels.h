@@ -11,6 +11,9 @@ namespace caustics {
 /// What the loops that are written for several instruction sets share: plain data, so that a
 /// source compiled for wide registers includes no inline code of Eigen or the standard library.
 
+/// Floats in a register of the widest kind.
+constexpr size_t widest_register = 16;
+
 /// Photons that may belong to a query's answer. Arrays have room for `capacity` entries and a
 /// register of the widest kind behind them.
 struct Candidates {
@@ -53,27 +56,18 @@ struct NearestQuery {
 /// A packed tree's memory (packed_kd_tree.h).
 struct PackedView {
     const unsigned char* buckets;
-    const unsigned char* last_bucket;  ///< padded with positions at infinity
-    const uint32_t* planes;            ///< of nodes 1 .. bucket_count - 1
+    const uint32_t* planes;  ///< of nodes 1 .. bucket_count - 1
     uint64_t bucket_count;
 };
 
-/// Photons copied out for a group of queries. Room as in Candidates.
-struct PhotonColumns {
-    float* position[3];
-    uint32_t* energy;
-    uint32_t* direction;
-    size_t count;
-};
-
-constexpr size_t bucket_photons = 32;
+constexpr size_t bucket_photons = 64;
 constexpr size_t bucket_bytes = 20 * bucket_photons;
 /// Ranges of at most so many photons are ordered in registers and fixed scratch.
 constexpr size_t small_range = 4096;
 
 /// Two sets of columns and the photons' other halves, in which a small range is ordered.
 struct OrderScratch {
-    static constexpr size_t room = small_range + 16;
+    static constexpr size_t room = small_range + widest_register;
     struct Columns {
         float position[3][room];
         uint32_t source[room];
@@ -89,10 +83,9 @@ struct BucketRange {
     uint64_t node;    ///< of the range in the tree of buckets
     uint64_t leaves;  ///< buckets in the range
     uint32_t* planes;
-    unsigned char* last_bucket;  ///< where a bucket that is not full goes
 };
 
-/// Where found photons are copied to. Room as in Candidates.
+/// Found photons, copied out. Room as in Candidates.
 struct CopiedPhotons {
     uint32_t* energy;
     uint16_t* direction;
@@ -109,12 +102,10 @@ struct TreeKernels {
     /// Finds the nearest in a packed tree and returns a squared distance within which they lie. With a
     /// margin it gives up, and returns a negative number, when the photons do not fit.
     float (*find_packed)(const PackedView&, const NearestQuery&, Candidates&);
-    /// Copies those photons out of the tree.
-    void (*copy_columns)(const PackedView&, const Candidates&, PhotonColumns&);
-    /// Finds the nearest of the columns and copies them. False when equal distances leave a choice;
-    /// then `found` holds, as indices into the columns, more photons than wanted.
-    bool (*find_in_columns)(const PhotonColumns&, const NearestQuery&, Candidates& found,
-                            const CopiedPhotons& to);
+    /// Finds the nearest of `count` photons that are copied out, and copies them. False when equal
+    /// distances leave a choice; then `found` holds, as places among these photons, more than wanted.
+    bool (*find_in_columns)(const CopiedPhotons&, size_t count, const NearestQuery&,
+                            Candidates& found, const CopiedPhotons& to);
     /// Drops candidates until `most` or (ties aside) fewer, but at least `nearest` are left, and
     /// returns the largest squared distance that a further one may have.
     float (*shrink)(Candidates&, size_t nearest, size_t most, float bound);

@@ -12,7 +12,6 @@ template <typename Lanes>
 struct TreeKernelsOf {
     static constexpr TreeKernels value{
         .find_packed = &PackedWalk<Lanes>::find,
-        .copy_columns = &ColumnScan<Lanes>::copy,
         .find_in_columns = &ColumnScan<Lanes>::find,
         .shrink = &CandidateLoops<Lanes>::shrink,
         .farthest = &CandidateLoops<Lanes>::farthest,
