@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numeric>
 
 namespace caustics {
@@ -17,23 +19,59 @@ struct Cells {
 class QuadtreeBuilder {
 public:
     QuadtreeBuilder(const BeamSet& set, std::span<const std::uint32_t> beams,
-                    std::span<const GridPatch> patches) {
-        std::uint32_t triangles = 0;
-        for (const GridPatch& patch : patches)
-            triangles = std::max(triangles, patch.first_triangle +
-                                                patch.columns * patch.rows * patch.cell_triangles);
-        beam_of_.assign(triangles, Beam::none);
-        for (const std::uint32_t beam : beams) beam_of_[set.beams[beam].triangle] = beam;
+                    std::span<const GridPatch> patches)
+        : set_(set), beams_(beams.begin(), beams.end()) {
+        std::stable_sort(beams_.begin(), beams_.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return set.beams[a].triangle < set.beams[b].triangle;
+        });
+        count_triangles(patches);
         tree_.nodes.resize(1);
-        std::vector<Cells> roots;
+        std::vector<Cells> cells;
         for (const GridPatch& patch : patches)
-            roots.push_back({&patch, 0, patch.columns, 0, patch.rows});
-        fill(0, roots);
+            cells.push_back({&patch, 0, patch.columns, 0, patch.rows});
+        const std::vector<std::uint32_t> others = outside(patches);
+        if (others.empty()) {
+            fill(0, cells);
+        } else if (others.size() == beams_.size()) {
+            graft(0, others);
+        } else {
+            const std::uint32_t first = add_children(0, 2);
+            fill(first, cells);
+            graft(first + 1, others);
+            cover(0, 0);
+        }
     }
 
     Hierarchy take() { return std::move(tree_); }
 
 private:
+    // Which beams are of which triangle: any number of them may be.
+    void count_triangles(std::span<const GridPatch> patches) {
+        std::uint32_t triangles = 0;
+        for (const GridPatch& patch : patches) triangles = std::max(triangles, end_of(patch));
+        for (const std::uint32_t beam : beams_)
+            triangles = std::max(triangles, set_.beams[beam].triangle + 1);
+        begin_of_.assign(triangles + 1, 0);
+        for (const std::uint32_t beam : beams_) ++begin_of_[set_.beams[beam].triangle + 1];
+        std::partial_sum(begin_of_.begin(), begin_of_.end(), begin_of_.begin());
+    }
+
+    static std::uint32_t end_of(const GridPatch& patch) {
+        return patch.first_triangle + patch.columns * patch.rows * patch.cell_triangles;
+    }
+
+    // Beams of triangles that no patch has.
+    std::vector<std::uint32_t> outside(std::span<const GridPatch> patches) const {
+        std::vector<std::uint32_t> others;
+        std::ranges::copy_if(beams_, std::back_inserter(others), [&](std::uint32_t beam) {
+            const std::uint32_t triangle = set_.beams[beam].triangle;
+            return std::ranges::none_of(patches, [triangle](const GridPatch& patch) {
+                return triangle >= patch.first_triangle && triangle < end_of(patch);
+            });
+        });
+        return others;
+    }
+
     // Makes a node of what the parts hold: its children are those parts that hold beams.
     void fill(std::uint32_t node, std::vector<Cells> parts) {
         std::erase_if(parts, [&](const Cells& cells) { return !any_beam(cells); });
@@ -41,7 +79,7 @@ private:
         if (parts.size() == 1) {
             const Cells& only = parts.front();
             if (only.column1 - only.column0 == 1 && only.row1 - only.row0 == 1)
-                fill_cell(node, only);
+                graft(node, beams_in(only, only.row0));
             else
                 fill(node, quarters(only));
             return;
@@ -52,24 +90,29 @@ private:
         cover(node, begin);
     }
 
-    void fill_cell(std::uint32_t node, const Cells& cell) {
-        std::vector<std::uint32_t> beams;
-        for (std::uint32_t i = 0; i < cell.patch->cell_triangles; ++i)
-            if (const std::uint32_t beam = beam_in(cell, cell.column0, cell.row0, i);
-                beam != Beam::none)
-                beams.push_back(beam);
+    // Makes a node of beams that no grid orders: its children, where they are few, else a binary
+    // tree by their places.
+    void graft(std::uint32_t node, std::span<const std::uint32_t> beams) {
         const auto begin = static_cast<std::uint32_t>(tree_.order.size());
-        if (beams.size() == 1) {
-            tree_.order.push_back(beams[0]);
-            cover(node, begin);
+        tree_.order.insert(tree_.order.end(), beams.begin(), beams.end());
+        cover(node, begin);
+        if (beams.size() == 1) return;
+        if (beams.size() <= 4) {
+            const std::uint32_t first = add_children(node, beams.size());
+            for (std::uint32_t i = 0; i < beams.size(); ++i)
+                tree_.nodes[first + i] = {begin + i, 1, 0, 0};
             return;
         }
-        const std::uint32_t first = add_children(node, beams.size());
-        for (std::uint32_t i = 0; i < beams.size(); ++i) {
-            tree_.order.push_back(beams[i]);
-            cover(first + i, begin + i);
+        const Hierarchy branch = binned_hierarchy(set_, beams, 0);
+        std::ranges::copy(branch.order, tree_.order.begin() + begin);
+        const auto first = static_cast<std::uint32_t>(tree_.nodes.size());
+        tree_.nodes.insert(tree_.nodes.end(), branch.nodes.begin() + 1, branch.nodes.end());
+        for (std::uint32_t i = 0; i < branch.nodes.size(); ++i) {
+            Hierarchy::Node& grafted = tree_.nodes[i == 0 ? node : first + i - 1];
+            grafted = branch.nodes[i];
+            grafted.first_beam += begin;
+            if (grafted.child_count > 0) grafted.first_child += first - 1;
         }
-        cover(node, begin);
     }
 
     static std::vector<Cells> quarters(const Cells& c) {
@@ -83,17 +126,19 @@ private:
         return parts;
     }
 
-    std::uint32_t beam_in(const Cells& c, std::uint32_t column, std::uint32_t row,
-                          std::uint32_t triangle) const {
-        return beam_of_[c.patch->first_triangle +
-                        (row * c.patch->columns + column) * c.patch->cell_triangles + triangle];
+    // Of the cells of one row.
+    std::span<const std::uint32_t> beams_in(const Cells& c, std::uint32_t row) const {
+        const auto triangle = [&](std::uint32_t column) {
+            return c.patch->first_triangle +
+                   (row * c.patch->columns + column) * c.patch->cell_triangles;
+        };
+        const std::uint32_t begin = begin_of_[triangle(c.column0)];
+        return std::span(beams_).subspan(begin, begin_of_[triangle(c.column1)] - begin);
     }
 
     bool any_beam(const Cells& c) const {
         for (std::uint32_t row = c.row0; row < c.row1; ++row)
-            for (std::uint32_t column = c.column0; column < c.column1; ++column)
-                for (std::uint32_t i = 0; i < c.patch->cell_triangles; ++i)
-                    if (beam_in(c, column, row, i) != Beam::none) return true;
+            if (!beams_in(c, row).empty()) return true;
         return false;
     }
 
@@ -108,11 +153,13 @@ private:
     void cover(std::uint32_t node, std::uint32_t begin) {
         tree_.nodes[node].first_beam = begin;
         tree_.nodes[node].beam_count = static_cast<std::uint32_t>(tree_.order.size()) - begin;
-        if (tree_.nodes[node].child_count == 0) tree_.nodes[node].beam_count = 1;
     }
 
+    const BeamSet& set_;
+    std::vector<std::uint32_t> beams_;  ///< by ascending triangle
+    std::vector<std::uint32_t>
+        begin_of_;  ///< a triangle's first among them; the next one's is its end
     Hierarchy tree_;
-    std::vector<std::uint32_t> beam_of_;
 };
 
 using Key = Eigen::Matrix<float, 6, 1>;
@@ -121,7 +168,9 @@ using KeyBox = Eigen::AlignedBox<float, 6>;
 class BinnedBuilder {
 public:
     BinnedBuilder(const BeamSet& set, std::span<const std::uint32_t> beams, float reach) {
-        keys_.resize(set.beams.size());
+        const auto [least, most] = std::minmax_element(beams.begin(), beams.end());
+        first_beam_ = *least;
+        keys_.resize(*most - *least + 1);
         for (const std::uint32_t i : beams) {
             const auto corners = set.triangle(set.beams[i], 0);
             Key key = Key::Zero();
@@ -129,7 +178,7 @@ public:
                 key.head<3>() += ray->position / 3;
                 key.tail<3>() += reach / 3 * ray->direction;
             }
-            keys_[i] = key;
+            keys_[i - first_beam_] = key;
         }
         tree_.order.assign(beams.begin(), beams.end());
         tree_.nodes.push_back({0, static_cast<std::uint32_t>(beams.size()), 0, 0});
@@ -141,6 +190,8 @@ public:
 
 private:
     static constexpr std::size_t bins = 16;
+
+    const Key& key_of(std::uint32_t beam) const { return keys_[beam - first_beam_]; }
 
     void split(std::uint32_t node) {
         const std::uint32_t first = tree_.nodes[node].first_beam;
@@ -165,7 +216,7 @@ private:
     // Sorts the beams into two halves and returns the number in the first.
     std::size_t partition(std::span<std::uint32_t> beams) const {
         KeyBox box;
-        for (const std::uint32_t beam : beams) box.extend(keys_[beam]);
+        for (const std::uint32_t beam : beams) box.extend(key_of(beam));
         double best = std::numeric_limits<double>::infinity();
         int best_axis = -1;
         std::size_t best_bin = 0;
@@ -184,7 +235,7 @@ private:
     }
 
     std::size_t bin_of(std::uint32_t beam, const KeyBox& box, int axis) const {
-        const float share = (keys_[beam][axis] - box.min()[axis]) / box.sizes()[axis];
+        const float share = (key_of(beam)[axis] - box.min()[axis]) / box.sizes()[axis];
         return std::min(bins - 1, static_cast<std::size_t>(share * static_cast<float>(bins)));
     }
 
@@ -197,7 +248,7 @@ private:
         std::array<std::size_t, bins> counts{};
         for (const std::uint32_t beam : beams) {
             const std::size_t bin = bin_of(beam, box, axis);
-            boxes[bin].extend(keys_[beam]);
+            boxes[bin].extend(key_of(beam));
             ++counts[bin];
         }
         std::array<double, bins> right{};
@@ -219,7 +270,8 @@ private:
     }
 
     Hierarchy tree_;
-    std::vector<Key> keys_;
+    std::uint32_t first_beam_ = 0;
+    std::vector<Key> keys_;  ///< of the beams from first_beam_ on
 };
 
 }  // namespace

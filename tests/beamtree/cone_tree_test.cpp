@@ -89,29 +89,63 @@ TEST(ConeSection, LiesOnTheConeAndThePlane) {
     EXPECT_GT(ellipses, 200);
 }
 
+void expect_every_beam_once(const Hierarchy& tree, std::vector<std::uint32_t> beams) {
+    std::vector<std::uint32_t> order = tree.order;
+    std::sort(order.begin(), order.end());
+    std::sort(beams.begin(), beams.end());
+    EXPECT_EQ(order, beams);
+    std::size_t leaves = 0;
+    for (const Hierarchy::Node& node : tree.nodes) {
+        leaves += node.child_count == 0;
+        EXPECT_TRUE(node.child_count > 0 || node.beam_count == 1);
+        std::uint32_t next = node.first_beam;
+        for (std::uint32_t c = 0; c < node.child_count; ++c) {
+            const Hierarchy::Node& child = tree.nodes[node.first_child + c];
+            EXPECT_EQ(child.first_beam, next);
+            next += child.beam_count;
+        }
+        if (node.child_count > 0) {
+            EXPECT_EQ(next, node.first_beam + node.beam_count);
+        }
+    }
+    EXPECT_EQ(leaves, beams.size());
+}
+
 TEST(Hierarchy, HoldsEveryBeamOnce) {
     for (const int resolution : {1, 5, 8}) {
         const BeamScene pool("pool", pool_desc(resolution));
         const BeamSet& set = pool.sets[0];
         const auto beams = receiver_planes(set)[0].beams;
-        for (const Hierarchy& tree : {quadtree(set, beams, pool.casters[0].mesh.patches),
-                                      binned_hierarchy(set, beams, 1)}) {
-            std::vector<std::uint32_t> order = tree.order;
-            std::sort(order.begin(), order.end());
-            EXPECT_EQ(order, beams);
-            std::size_t leaves = 0;
-            for (const Hierarchy::Node& node : tree.nodes) {
-                leaves += node.child_count == 0;
-                std::uint32_t below = 0;
-                for (std::uint32_t c = 0; c < node.child_count; ++c)
-                    below += tree.nodes[node.first_child + c].beam_count;
-                EXPECT_EQ(below, node.child_count > 0 ? node.beam_count : 0);
-            }
-            EXPECT_EQ(leaves, beams.size());
-        }
+        expect_every_beam_once(quadtree(set, beams, pool.casters[0].mesh.patches), beams);
+        expect_every_beam_once(binned_hierarchy(set, beams, 1), beams);
         // Quarters down to a cell, then its triangles.
         const std::uint32_t height = quadtree(set, beams, pool.casters[0].mesh.patches).height();
         EXPECT_EQ(height, resolution == 1 ? 2U : 5U);
+    }
+}
+
+// A mesh may have more triangles than its patches, and a triangle any number of beams.
+TEST(Hierarchy, HoldsBeamsOutsideOfThePatchesAndManyOfOneTriangle) {
+    const BeamScene pool("pool", pool_desc(8));
+    const std::vector<GridPatch> whole = pool.casters[0].mesh.patches;
+    std::vector<GridPatch> half = whole;
+    half[0].rows /= 2;
+    for (const std::size_t repeated : {1U, 3U, 20U}) {
+        BeamSet set = pool.sets[0];
+        set.beams.clear();
+        for (const Beam& beam : pool.sets[0].beams) {
+            const std::size_t count = beam.triangle % 5 == 0 ? repeated : 1;
+            set.beams.insert(set.beams.end(), count, beam);
+        }
+        const auto beams = receiver_planes(set)[0].beams;
+        for (const auto& patches : {whole, half}) {
+            const Hierarchy tree = quadtree(set, beams, patches);
+            expect_every_beam_once(tree, beams);
+            EXPECT_LE(tree.height(), 14U);
+        }
+        // None of its patches has a beam of this group.
+        const std::span<const std::uint32_t> last(beams.data() + beams.size() - 6, 6);
+        expect_every_beam_once(quadtree(set, last, half), {last.begin(), last.end()});
     }
 }
 
