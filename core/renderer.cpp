@@ -39,6 +39,8 @@ struct Worker {
     std::vector<Estimate> estimates;
     std::vector<SpectrumSum> values;  ///< of the samples of a round
     std::uint64_t camera_rays = 0;
+    std::uint64_t receiver_points = 0;
+    std::uint64_t lit_points = 0;
 };
 
 class EyePass {
@@ -127,8 +129,10 @@ private:
         for (Worker& worker : workers_) {
             if (worker.context) worker.context->add_to(counters);
             counters["camera_rays"] += worker.camera_rays;
+            counters["receiver_points"] += worker.receiver_points;
+            if (with_caustic_) counters["lit_points"] += worker.lit_points;
             worker.context.reset();
-            worker.camera_rays = 0;
+            worker.camera_rays = worker.receiver_points = worker.lit_points = 0;
         }
     }
 
@@ -225,6 +229,7 @@ private:
                 const int y = tile.y0 + static_cast<int>(pixel) / width;
                 worker.values.push_back(trace_sample(x, y, i, pixel, sums[pixel], worker));
             }
+        worker.receiver_points += worker.points.size();
         if (with_caustic_) add_caustic(worker, sums);
         if (caustic_only_) return;
         for (std::size_t i = 0; i < worker.values.size(); ++i) {
@@ -282,6 +287,8 @@ private:
     void add_caustic(Worker& worker, std::vector<PixelSums>& sums) const {
         worker.estimates.assign(worker.points.size(), Estimate{});
         estimator_->radiance(worker.points, worker.estimates, *worker.context);
+        for (const Estimate& estimate : worker.estimates)
+            worker.lit_points += is_black(estimate.value) ? 0 : 1;
         for (std::size_t i = 0; i < worker.points.size();) {
             const PointOwner& owner = worker.owners[i];
             SpectrumSum value = SpectrumSum::Zero();

@@ -11,7 +11,9 @@ namespace caustics {
 
 /// What a render counted.
 struct RenderReport {
-    Counters counters;  ///< of the method's queries and of the eye pass
+    /// Of the method's queries and of the eye pass: camera_rays, the receiver_points that they
+    /// found and, of a method that answers at points, those that it did not leave black (lit_points).
+    Counters counters;
 };
 
 struct Rendering {

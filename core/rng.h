@@ -37,6 +37,7 @@ enum class Stage : std::uint32_t {
     photon_choice = 7,
     beams = 8,
     illumination_map = 9,
+    survey = 10,
     test = 100,
 };
 

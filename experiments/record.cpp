@@ -70,6 +70,14 @@ constexpr Column columns_of_all[] = {
     {"gathers", "/counters/gathers"},
     {"gathered_photons", "/counters/gathered_photons"},
     {"used_photons", "/counters/used_photons"},
+    {"photons_aimed", "/counters/photons_aimed"},
+    {"photons_reflected", "/counters/photons_reflected"},
+    {"photons_refracted", "/counters/photons_refracted"},
+    {"photons_connected", "/counters/photons_connected"},
+    {"empty_gathers", "/counters/empty_gathers"},
+    {"receiver_points", "/counters/receiver_points"},
+    {"lit_points", "/counters/lit_points"},
+    {"why_empty", "/why_empty"},
     {"message", "/message"},
 };
 

@@ -35,6 +35,26 @@ void check_outputs(const std::vector<std::string>& outputs) {
     }
 }
 
+/// What became of light paths and of the camera's, as far as the method counted.
+std::string told_counts(const Counters& counters) {
+    std::string text;
+    const auto tell = [&](const char* what, const char* name) {
+        const auto found = counters.find(name);
+        if (found == counters.end()) return;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", found->second, what);
+    };
+    tell("light paths", "photons_emitted");
+    tell("aimed", "photons_aimed");
+    tell("reflections", "photons_reflected");
+    tell("refractions", "photons_refracted");
+    tell("photons stored", "photons_stored");
+    tell("connected to the camera", "photons_connected");
+    tell("beams", "beams");
+    tell("receiver points seen", "receiver_points");
+    tell("lit", "lit_points");
+    return text;
+}
+
 int render_picture(const RenderOptions& options) {
     check_outputs(options.outputs);
     const SceneFile file = options.scene.load();
@@ -46,10 +66,13 @@ int render_picture(const RenderOptions& options) {
         run(scene, request, options.run.options(request.samples_per_pixel), stopwatch);
 
     for (const auto& layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
+    fmt::print(stderr, "{}\n", told_counts(result.counters));
+    if (result.why_empty) fmt::print(stderr, "the caustic is empty: {}\n", *result.why_empty);
     const double exposure = options.exposure.value_or(auto_exposure(result.film, ""));
     result.film.metadata = picture_metadata(request, file);
     result.film.metadata["tone_mapping"] = tone_mapping_rule;
     result.film.metadata["exposure"] = shortest(exposure);
+    if (result.why_empty) result.film.metadata["why_empty"] = *result.why_empty;
     for (const std::string& output : options.outputs) {
         if (std::filesystem::path(output).extension() == ".exr")
             write_exr(result.film, output);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/environment.h"
+#include "experiments/why_empty.h"
 
 namespace caustics {
 
@@ -90,9 +91,11 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
     Rendering rendering = render(scene, {pass_count(request.method), build_pass}, options);
     stopwatch.stop();
 
-    RunResult result{std::move(rendering.film), std::move(report), {}};
+    RunResult result{std::move(rendering.film), std::move(report), {}, {}};
     result.counters = result.report.counters;
     for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
+    result.why_empty =
+        why_empty(scene, request.method, result.film, result.report, result.counters);
     return result;
 }
 

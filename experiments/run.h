@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "core/renderer.h"
@@ -34,7 +35,8 @@ std::map<std::string, std::string> picture_metadata(const RunRequest& request,
 struct RunResult {
     Film film;
     BuildReport report;
-    Counters counters;  ///< of build and queries
+    Counters counters;                     ///< of build and queries
+    std::optional<std::string> why_empty;  ///< of a caustic that is black all over
 };
 
 /// Builds the method and renders, cutting the time into "precompute", "precompute/PHASE", "render"

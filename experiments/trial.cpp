@@ -57,6 +57,7 @@ void record_report(json& record, const RunResult& result) {
     for (const auto& [name, value] : result.report.resolved)
         record["method"]["resolved"][name] = value;
     if (result.report.bytes > 0) record["memory"]["map_bytes"] = result.report.bytes;
+    if (result.why_empty) record["why_empty"] = *result.why_empty;
 }
 
 void record_errors(json& record, const Film& film, const Reference& reference) {
@@ -98,6 +99,7 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     record["memory"]["peak_rss_bytes"] = peak_resident_bytes();
     record_seconds(record, stopwatch);
     record_report(record, result);
+    if (result.why_empty) log("the caustic is empty: " + *result.why_empty);
 
     log("measure");
     for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/empty_caustic.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -137,10 +138,13 @@ private:
         }
         counts_.add(chunk.counts);
         if (end == last_path_) done_ = true;
-        if (!done_ && target_.stored > 0 && counts_.emitted >= target_.patience &&
-            counts_.stored < counts_.emitted / 2000)
-            give_up(counts_, target_.stored);
+        if (!done_ && target_.stored > 0 && is_hopeless()) give_up(counts_, target_.stored);
         return store_.extend(chunk.counts.stored);
+    }
+
+    bool is_hopeless() const {
+        if (counts_.stored == 0) return counts_.emitted >= target_.patience_for_first;
+        return counts_.emitted >= target_.patience && counts_.stored < counts_.emitted / 2000;
     }
 
     /// Counts of the paths from `path` on, before the one that would store photon `limit` + 1.
@@ -214,12 +218,13 @@ void PhotonChunk::add(std::uint64_t path, const Deposit& deposit) {
 
 void give_up(const LightPathCounts& counts, std::uint64_t wanted) {
     std::ostringstream message;
-    message << "photonmap: " << counts.emitted << " light paths stored only " << counts.stored
-            << " of " << wanted << " photons: " << counts.emitted - counts.aimed
-            << " thinned out at the light, " << counts.missed << " met no caster first, "
-            << counts.escaped << " left the scene, " << counts.absorbed << " absorbed, "
-            << counts.depth_limited
-            << " cut at max_bounces (give `emitted` instead of `photons` to accept few or none)";
+    message << "photonmap: ";
+    if (counts.stored == 0)
+        message << "no photon can be stored: " << why_nothing_arrives(counts);
+    else
+        message << counts.emitted << " light paths stored only " << counts.stored << " of "
+                << wanted << " photons: " << ends_of(counts);
+    message << " (give `emitted` instead of `photons` to accept few or none)";
     throw UnsupportedScene(message.str());
 }
 

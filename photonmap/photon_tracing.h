@@ -15,8 +15,10 @@ struct PhotonTarget {
     std::uint64_t emitted = 0;   ///< paths to trace
     std::uint64_t capacity = 0;  ///< the most photons that may come
     std::uint64_t certain = 0;   ///< photons that surely come
-    /// Tracing for `stored` gives up when, after this many paths, fewer than one in 2,000 stored.
+    /// Tracing for `stored` gives up when, after this many paths, fewer than one in 2,000 stored,
     std::uint64_t patience = 50'000'000;
+    /// and when, after this many, none did.
+    std::uint64_t patience_for_first = 2'000'000;
 };
 
 /// What a run of consecutive paths brought.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/aimed_emission.h"
+#include "core/empty_caustic.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "photonmap/stratified_square.h"
@@ -162,8 +163,8 @@ private:
     TracedPhotons none() const {
         if (params_.photons > 0)
             throw UnsupportedScene(
-                "photonmap: no photon can be stored, because no light shines on a specular "
-                "surface (give `emitted` instead of `photons` to accept an empty map)");
+                "photonmap: no photon can be stored: " + why_nothing_is_aimed(scene_).value() +
+                " (give `emitted` instead of `photons` to accept an empty map)");
         LightPathCounts counts;
         counts.emitted = params_.emitted;
         return {PhotonStore(0), counts, Spectrum::Ones()};
@@ -199,13 +200,15 @@ private:
     }
 
     Pilot run_pilot() const {
-        constexpr std::uint64_t patience = PhotonTarget{}.patience;
+        constexpr PhotonTarget defaults;
         const std::uint64_t part =
             std::clamp<std::uint64_t>(params_.photons / (32 * pilot_parts), 64, 16'384);
         for (Plan plan = plan_of(static_cast<double>(part));;
              plan = plan_of(4 * static_cast<double>(plan.emitted))) {
             const Pilot pilot = run_pilot(plan);
             const LightPathCounts counts = pilot.total();
+            const std::uint64_t patience =
+                counts.stored == 0 ? defaults.patience_for_first : defaults.patience;
             if (counts.stored < pilot_photons && counts.emitted < patience) continue;
             // What would be given up while tracing is given up before.
             const auto wanted = static_cast<double>(params_.photons);

@@ -13,6 +13,7 @@ namespace {
 // Sums of what paths brought to each of a number of cells (pixels or probe points).
 struct Tally {
     std::vector<SpectrumSum> sum, squares;
+    std::uint64_t added = 0;
 
     explicit Tally(std::size_t cells)
         : sum(cells, SpectrumSum::Zero()), squares(cells, SpectrumSum::Zero()) {}
@@ -21,6 +22,7 @@ struct Tally {
         const SpectrumSum v = value.cast<double>();
         sum[cell] += v;
         squares[cell] += v * v;
+        ++added;
     }
     // Mean over n paths, each of which brought at most one value to a cell.
     Estimate estimate(std::size_t cell, double n) const {
@@ -60,6 +62,7 @@ public:
         const Tally tally = trace(cells, options, collect, counts);
         CameraLayer layer;
         counts.add_to(layer.counters);
+        layer.counters["photons_connected"] = tally.added;
         for (std::size_t i = 0; i < cells; ++i) {
             const Estimate e = tally.estimate(i, static_cast<double>(params_.paths));
             layer.radiance.push_back(e.value);

@@ -11,7 +11,7 @@ namespace caustics {
 /// `lighttrace`: particles from the lights through the casters to a receiver, there connected to
 /// the pinhole (render) or gathered over a disc round the point (probe). Unbiased up to the disc's
 /// average; serves every light; cannot reach pixels that see the receiver through a specular
-/// surface.
+/// surface. Counters: those of LightPathCounts and, in render, `photons_connected` to the pinhole.
 struct LightTraceParams {
     std::uint64_t paths = 1'000'000;  ///< emitted, thinned ones included
     int max_bounces = 16;             ///< specular events between light and receiver

@@ -85,6 +85,30 @@ protected:
 const std::string two_methods =
     R"([{"method": "none"}, {"method": "photonmap", "param": {"photons": [500, 1000]}}])";
 
+TEST_F(Sweeps, RecordCountsAndWhyACausticIsEmpty) {
+    const std::string file = folder_ / "lamps.json";
+    write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1],
+        "set": {{"lamp": {{"pointer": "/light/intensity", "values": [0, 10]}}}},
+        "methods": [{{"method": "photonmap", "param": {{"emitted": 500}}}}]}})",
+                                       scene));
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const std::vector<Row> table = rows();
+    ASSERT_EQ(table.size(), 2U);
+    for (const Row& row : table) {
+        const bool dark = row.at("lamp") == "0";
+        EXPECT_EQ(row.at("photons_emitted"), "500");
+        EXPECT_EQ(row.at("photons_aimed") == "0", dark);
+        EXPECT_EQ(row.at("photons_refracted") == "0", dark);
+        EXPECT_EQ(row.at("lit_points") == "0", dark);
+        EXPECT_EQ(row.at("empty_gathers") == row.at("gathers"), dark);
+        EXPECT_EQ(row.at("why_empty").find("no light shines towards a caster") == 0, dark);
+        EXPECT_EQ(row.at("why_empty").empty(), !dark);
+        const std::string log =
+            read_whole_file(fs::path(out_) / "trials" / row.at("trial") / "log.txt");
+        EXPECT_EQ(log.find("the caustic is empty: ") != std::string::npos, dark);
+    }
+}
+
 TEST_F(Sweeps, LeaveATableAndPicturesBehind) {
     const ProgramResult result = sweep(write_sweep(two_methods));
     ASSERT_EQ(result.exit_code, 0) << result.err;

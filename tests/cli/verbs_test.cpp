@@ -75,6 +75,23 @@ TEST(Render, WritesTheWholeConfigurationIntoThePicture) {
     }
 }
 
+TEST(Render, TellsItsCountsAndWhyACausticIsEmpty) {
+    const support::TemporaryFolder folder;
+    const std::string file = folder / "a.exr";
+    std::vector<std::string> arguments = {"render",  scene,         "--method", "photonmap",
+                                          "--param", "emitted=200", "-o",       file};
+    const ProgramResult lit = causticbench(arguments);
+    EXPECT_NE(lit.err.find("200 light paths, "), std::string::npos) << lit.err;
+    EXPECT_EQ(lit.err.find("empty"), std::string::npos) << lit.err;
+    EXPECT_FALSE(read_exr(file).metadata.contains("why_empty"));
+    arguments.insert(arguments.end(), {"--set", R"(/ball/bsdf={"type": "diffuse"})"});
+    const ProgramResult empty = causticbench(arguments);
+    EXPECT_EQ(empty.exit_code, 0);
+    EXPECT_NE(empty.err.find("\nthe caustic is empty: no shape is a caster"), std::string::npos)
+        << empty.err;
+    EXPECT_EQ(read_exr(file).metadata.at("why_empty").find("no shape is a caster"), 0U);
+}
+
 TEST(Info, TellsWhatTheSceneHolds) {
     const ProgramResult result = causticbench({"info", scene});
     EXPECT_EQ(result.exit_code, 0) << result.err;

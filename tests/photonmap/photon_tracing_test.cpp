@@ -185,6 +185,15 @@ TEST(PhotonTracing, GivesUpAndSaysWhy) {
         EXPECT_NE(message.find("met no caster first"), std::string::npos) << message;
         EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
     }
+    try {
+        trace(synthetic_paths(0), {.stored = 1, .patience_for_first = 20'000});
+        FAIL() << "expected UnsupportedScene";
+    } catch (const UnsupportedScene& e) {
+        const std::string message = e.what();
+        EXPECT_NE(message.find("no photon can be stored: no light path met a caster"),
+                  std::string::npos)
+            << message;
+    }
     EXPECT_EQ(trace(synthetic_paths(0.01F), {.stored = 1'000, .patience = 20'000}).store.size(),
               1'000U);
     EXPECT_EQ(trace(synthetic_paths(0), {.emitted = 1'000}).store.size(), 0U);
