@@ -71,6 +71,7 @@ void ReferenceCache::make(const ReferenceRequest& request, const RunOptions& opt
     // file depends on neither.
     film.metadata.erase("command");
     film.metadata["reference_key"] = request.key;
+    if (result.why_empty) film.metadata["why_empty"] = *result.why_empty;
     const std::filesystem::path target = file_of(request);
     std::filesystem::create_directories(target.parent_path());
     write_exr(film, target);

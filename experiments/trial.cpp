@@ -70,6 +70,8 @@ void record_errors(json& record, const Film& film, const Reference& reference) {
     record["unreached_fraction"] = 1 - fraction(reached);
     record["reference"]["mean"] = reference.mean;
     if (reference.standard_error) record["reference"]["stderr"] = *reference.standard_error;
+    const auto empty = reference.film.metadata.find("why_empty");
+    if (empty != reference.film.metadata.end()) record["reference"]["why_empty"] = empty->second;
 }
 
 /// The trial itself; what it knows when it throws is in the record and the log.

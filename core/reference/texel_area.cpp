@@ -12,6 +12,7 @@ namespace {
 /// rounding.
 constexpr double outside_tolerance = 1e-5;
 constexpr double overlap_tolerance = 0.01;
+constexpr const char* overlap = "has texture coordinates that overlap";
 
 /// Where the shares of texels change their slopes: 0, the centres, 1.
 std::vector<double> breaks(int resolution) {
@@ -79,8 +80,7 @@ public:
             for (std::size_t column = 0; column < cells; ++column) {
                 const double cell =
                     (breaks_[column + 1] - breaks_[column]) * (breaks_[row + 1] - breaks_[row]);
-                if (covered_[row * cells + column] > (1 + overlap_tolerance) * cell)
-                    fail("has texture coordinates that overlap");
+                if (covered_[row * cells + column] > (1 + overlap_tolerance) * cell) fail(overlap);
             }
     }
 
@@ -106,6 +106,9 @@ private:
         const double mapped = std::abs(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2;
         if (area == 0) return;
         if (!(mapped > 0)) fail("has a triangle whose texture coordinates span no area");
+        // The square is full: the cells would show it, but later.
+        mapped_ += mapped;
+        if (mapped_ > 1 + overlap_tolerance) fail(overlap);
         for_each_cell(corners, area / mapped);
     }
 
@@ -150,6 +153,7 @@ private:
     std::vector<double>& areas_;
     std::vector<double> breaks_;
     std::vector<double> covered_;  ///< of each cell between the breaks
+    double mapped_ = 0;            ///< of the unit square, by all triangles
 };
 
 }  // namespace

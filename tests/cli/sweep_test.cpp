@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "experiments/files.h"
@@ -89,7 +90,8 @@ TEST_F(Sweeps, RecordCountsAndWhyACausticIsEmpty) {
     const std::string file = folder_ / "lamps.json";
     write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1],
         "set": {{"lamp": {{"pointer": "/light/intensity", "values": [0, 10]}}}},
-        "methods": [{{"method": "photonmap", "param": {{"emitted": 500}}}}]}})",
+        "methods": [{{"method": "photonmap", "param": {{"emitted": 500}}}}],
+        "reference": {{"method": "lighttrace", "param": {{"paths": 500}}}}}})",
                                        scene));
     ASSERT_EQ(sweep(file).exit_code, 0);
     const std::vector<Row> table = rows();
@@ -103,9 +105,12 @@ TEST_F(Sweeps, RecordCountsAndWhyACausticIsEmpty) {
         EXPECT_EQ(row.at("empty_gathers") == row.at("gathers"), dark);
         EXPECT_EQ(row.at("why_empty").find("no light shines towards a caster") == 0, dark);
         EXPECT_EQ(row.at("why_empty").empty(), !dark);
-        const std::string log =
-            read_whole_file(fs::path(out_) / "trials" / row.at("trial") / "log.txt");
-        EXPECT_EQ(log.find("the caustic is empty: ") != std::string::npos, dark);
+        const fs::path trial = fs::path(out_) / "trials" / row.at("trial");
+        EXPECT_EQ(
+            read_whole_file(trial / "log.txt").find("the caustic is empty: ") != std::string::npos,
+            dark);
+        const auto record = nlohmann::json::parse(read_whole_file(trial / "record.json"));
+        EXPECT_EQ(record.at("reference").contains("why_empty"), dark);
     }
 }
 
