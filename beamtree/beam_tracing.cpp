@@ -4,36 +4,50 @@
 #include <cmath>
 #include <span>
 
+#include "beamtree/bent_light.h"
 #include "core/optics.h"
 #include "core/parallel.h"
 
 namespace caustics {
 namespace {
 
-enum Event : std::size_t { reflection, refraction };
-constexpr std::array<Event, 2> events = {reflection, refraction};
+// How often a triangle is quartered whose corners do not tell what it does.
+constexpr int most_splits = 5;
+// The rays of a beam part by less than 60 degrees.
+constexpr float widest_cosine = 0.5F;
 
-/// What the surface does with the light at one point.
-struct BentLight {
-    bool front = false;  ///< the light comes to the normal's side
-    std::array<Vec3, 2> direction;
-    std::array<Spectrum, 2> weight = {black(), black()};  ///< strength after each event
-};
-
-/// A beam while it is put together.
-struct Corner {
-    std::uint32_t ray;
-    Spectrum weight;
+/// How a triangle of the mesh stands to the light.
+struct Facing {
     Vec3 normal;
+    bool front;   ///< the light comes to its front
+    bool hidden;  ///< and no light can come to that side
 };
 
-/// The part of one or two triangles of the mesh that sends light on.
-struct Polygon {
-    std::vector<Corner> corners;  ///< three or four
-    std::uint32_t triangle;       ///< the first
+/// What a piece of the mesh is part of, and what happens there.
+struct Origin {
+    std::uint32_t triangle;  ///< the first, of a quad
     std::uint32_t triangle_count;
-    bool front;  ///< the light comes to its front
+    const Facing& facing;
+    Event event;
 };
+
+// The rule of split_specular, for a point whose light was bent by the vertex normal alone: the
+// light must come to the same side of both normals, and leave on the right side of both.
+bool sends_on(const MeshPoint& point, const Origin& origin) {
+    const BentLight& bent = point.bent;
+    const Facing& facing = origin.facing;
+    const bool leaves_front = facing.normal.dot(bent.direction[origin.event]) > 0;
+    return bent.front == facing.front &&
+           leaves_front == (facing.front == (origin.event == reflection)) &&
+           !is_black(bent.weight[origin.event]);
+}
+
+bool part_widely(std::span<const MeshPoint> corners, Event event) {
+    for (const MeshPoint& a : corners)
+        for (const MeshPoint& b : corners)
+            if (a.bent.direction[event].dot(b.bent.direction[event]) < widest_cosine) return true;
+    return false;
+}
 
 class BeamTracer {
 public:
@@ -43,6 +57,7 @@ public:
           caster_(caster),
           mesh_(caster.mesh),
           light_(light),
+          bender_(scene, caster.shape, light),
           hidden_(caster.closed.hidden_from(caster.mesh, light)),
           surface_offset_(scene.offset(caster.shape)) {
         for (const Event event : events) {
@@ -56,43 +71,24 @@ public:
     }
 
     std::array<BeamSet, 2> run() {
-        for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
-            at_vertex_.push_back(bend(mesh_.positions[i], mesh_.normals[i], mesh_.normals[i]));
+        for (std::uint32_t i = 0; i < mesh_.positions.size(); ++i) {
+            vertices_.push_back(bender_.at(mesh_.positions[i], mesh_.normals[i]));
+            vertices_.back().vertex = i;
+        }
         auto quad = caster_.quads.begin();
         for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
             if (quad != caster_.quads.end() && quad->triangle == i) {
                 trace_quad(*quad++);
                 ++i;
             } else if (!caster_.left_out[i]) {
-                trace_triangle(i, facing_of(i));
+                const Facing facing = facing_of(i);
+                for (const Event event : events) trace_triangle({i, 1, facing, event});
             }
         }
         return std::move(sets_);
     }
 
 private:
-    BentLight bend(const Vec3& position, const Vec3& ng, const Vec3& ns) const {
-        BentLight bent;
-        const Vec3 w = to_light(light_, position);
-        if (w.isZero(0) || ns.isZero(0)) return bent;
-        bent.front = ng.dot(w) > 0;
-        const SpecularSplit split = split_specular(bsdf_, ng, ns, w);
-        const Spectrum* const medium = medium_absorption(bsdf_, ng, w);
-        const Spectrum arriving =
-            strength_along(light_, w) *
-            segment_transmittance(nullptr, medium, distance_from(light_, position));
-        bent.direction = {split.reflected, split.refracted};
-        bent.weight = {split.reflected_weight * arriving, split.refracted_weight * arriving};
-        return bent;
-    }
-
-    /// How a triangle stands to the light.
-    struct Facing {
-        Vec3 normal;
-        bool front;   ///< the light comes to its front
-        bool hidden;  ///< and no light can come to that side
-    };
-
     Facing facing_of(std::uint32_t index) const {
         const auto& [i, j, k] = mesh_.triangles[index];
         const Vec3& a = mesh_.positions[i];
@@ -107,21 +103,10 @@ private:
         return facing;
     }
 
-    void trace_triangle(std::uint32_t index, const Facing& facing) {
-        for (const Event event : events) trace_triangle(index, facing, event);
-    }
-
-    void trace_triangle(std::uint32_t index, const Facing& facing, Event event) {
-        if (facing.hidden) return;
-        const auto& triangle = mesh_.triangles[index];
-        std::array<bool, 3> bends{};
-        for (std::size_t i = 0; i < 3; ++i)
-            bends[i] = sends_on(at_vertex_[triangle[i]], event, facing);
-        const auto count = std::count(bends.begin(), bends.end(), true);
-        if (count == 0) return;
-        add_beam({count == 3 ? whole(triangle, event) : cut(triangle, bends, event, facing), index,
-                  1, facing.front},
-                 event);
+    void trace_triangle(const Origin& origin) {
+        if (origin.facing.hidden) return;
+        const auto& [a, b, c] = mesh_.triangles[origin.triangle];
+        trace_piece({vertices_[a], vertices_[b], vertices_[c]}, origin, most_splits);
     }
 
     // One polygon where both of its triangles send all of their light on, else they go by themselves.
@@ -129,149 +114,118 @@ private:
         const std::array<Facing, 2> sides = {facing_of(quad.triangle),
                                              facing_of(quad.triangle + 1)};
         const bool alike = sides[0].front == sides[1].front && !sides[0].hidden && !sides[1].hidden;
+        const auto& [a, b, c, d] = quad.corners;
+        const std::array<MeshPoint, 4> corners = {vertices_[a], vertices_[b], vertices_[c],
+                                                  vertices_[d]};
         for (const Event event : events) {
-            const auto& [a, b, c, d] = quad.corners;
-            bool is_whole = alike;
-            for (const std::uint32_t vertex : {a, b, c})
-                is_whole = is_whole && sends_on(at_vertex_[vertex], event, sides[0]);
-            for (const std::uint32_t vertex : {a, c, d})
-                is_whole = is_whole && sends_on(at_vertex_[vertex], event, sides[1]);
+            const Origin whole{quad.triangle, 2, sides[0], event};
+            const Origin second{quad.triangle + 1, 1, sides[1], event};
+            bool is_whole = alike && !part_widely(corners, event);
+            for (const std::size_t i : {0, 1, 2})
+                is_whole = is_whole && sends_on(corners[i], whole);
+            for (const std::size_t i : {0, 2, 3})
+                is_whole = is_whole && sends_on(corners[i], second);
             if (is_whole) {
-                add_beam({whole(quad.corners, event), quad.triangle, 2, sides[0].front}, event);
+                add_beam(corners, whole);
             } else {
-                trace_triangle(quad.triangle, sides[0], event);
-                trace_triangle(quad.triangle + 1, sides[1], event);
+                trace_triangle({quad.triangle, 1, sides[0], event});
+                trace_triangle(second);
             }
         }
     }
 
-    // The rule of split_specular, for a corner whose light was bent by the vertex normal alone: the
-    // light must come to the same side of both normals, and leave on the right side of both.
-    static bool sends_on(const BentLight& bent, Event event, const Facing& facing) {
-        const bool leaves_front = facing.normal.dot(bent.direction[event]) > 0;
-        return bent.front == facing.front &&
-               leaves_front == (facing.front == (event == reflection)) &&
-               !is_black(bent.weight[event]);
-    }
-
-    std::vector<Corner> whole(std::span<const std::uint32_t> polygon, Event event) {
-        std::vector<Corner> corners;
-        for (const std::uint32_t vertex : polygon) corners.push_back(shared(vertex, event));
-        return corners;
-    }
-
-    Corner shared(std::uint32_t vertex, Event event) {
-        const BentLight& bent = at_vertex_[vertex];
-        std::uint32_t& ray = ray_of_vertex_[event][vertex];
-        if (ray == Beam::none) ray = add_ray(event, mesh_.positions[vertex], bent.direction[event]);
-        return {ray, bent.weight[event], mesh_.normals[vertex]};
-    }
-
-    std::uint32_t add_ray(Event event, const Vec3& position, const Vec3& direction) {
-        sets_[event].rays.push_back({position, direction});
-        return static_cast<std::uint32_t>(sets_[event].rays.size() - 1);
-    }
-
-    std::vector<Corner> cut(const std::array<std::uint32_t, 3>& triangle,
-                            const std::array<bool, 3>& bends, Event event, const Facing& facing) {
-        std::vector<Corner> corners;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            if (bends[i]) corners.push_back(shared(triangle[i], event));
-            if (bends[i] == bends[j]) continue;
-            const std::uint32_t good = triangle[bends[i] ? i : j];
-            const std::uint32_t bad = triangle[bends[i] ? j : i];
-            corners.push_back(cut_edge(good, bad, event, facing));
+    void trace_piece(const MeshPiece& piece, const Origin& origin, int splits) {
+        const std::vector<MeshPoint> lit = lit_part(piece, origin);
+        if (splits > 0 && (part_widely(lit, origin.event) || deceives(piece, origin))) {
+            const auto& [a, b, c] = piece;
+            const MeshPoint ab = bender_.between(a, b, 0.5F);
+            const MeshPoint bc = bender_.between(b, c, 0.5F);
+            const MeshPoint ca = bender_.between(c, a, 0.5F);
+            for (const MeshPiece& part : {MeshPiece{a, ab, ca}, MeshPiece{ab, b, bc},
+                                          MeshPiece{ca, bc, c}, MeshPiece{ab, bc, ca}})
+                trace_piece(part, origin, splits - 1);
+        } else if (!lit.empty()) {
+            add_beam(lit, origin);
         }
-        return corners;
+    }
+
+    // Whether corners that are all lit or all dark do not tell what the piece does: inside it, or
+    // straight below the light, it is another thing.
+    bool deceives(const MeshPiece& piece, const Origin& origin) const {
+        const auto& [a, b, c] = piece;
+        const auto middle = [&] {
+            return sends_on(bender_.inside(piece, Vec3::Constant(1.0F / 3)), origin);
+        };
+        const int lit = sends_on(a, origin) + sends_on(b, origin) + sends_on(c, origin);
+        if (lit > 0) return lit == 3 && weights_differ(piece, origin.event) && !middle();
+        if (origin.event == refraction && !std::holds_alternative<Dielectric>(bsdf_.model))
+            return false;
+        return middle() || sends_on(bender_.nearest_to_light(piece), origin) ||
+               sends_on(bender_.between(a, b, 0.5F), origin) ||
+               sends_on(bender_.between(b, c, 0.5F), origin) ||
+               sends_on(bender_.between(c, a, 0.5F), origin);
+    }
+
+    // The corners of what sends light on, by the piece's own corners: none, three or four.
+    std::vector<MeshPoint> lit_part(const MeshPiece& piece, const Origin& origin) const {
+        std::vector<MeshPoint> left;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const MeshPoint& a = piece[i];
+            const MeshPoint& b = piece[(i + 1) % 3];
+            const bool a_sends = sends_on(a, origin);
+            if (a_sends) left.push_back(a);
+            if (a_sends != sends_on(b, origin))
+                left.push_back(a_sends ? cut_edge(a, b, origin) : cut_edge(b, a, origin));
+        }
+        return left;
     }
 
     // The last point of an edge, from its good end, where light is still sent on.
-    Corner cut_edge(std::uint32_t good, std::uint32_t bad, Event event, const Facing& facing) {
-        Vec3 position = mesh_.positions[good];
-        Vec3 normal = mesh_.normals[good];
-        BentLight bent = at_vertex_[good];
+    MeshPoint cut_edge(const MeshPoint& good, const MeshPoint& bad, const Origin& origin) const {
+        MeshPoint last = good;
+        last.vertex = MeshPoint::no_vertex;
         float low = 0;
         float high = 1;
         for (int step = 0; step < 20; ++step) {
             const float t = (low + high) / 2;
-            const Vec3 p =
-                mesh_.positions[good] + t * (mesh_.positions[bad] - mesh_.positions[good]);
-            const Vec3 n = (1 - t) * mesh_.normals[good] + t * mesh_.normals[bad];
-            const Vec3 unit = n.squaredNorm() > 0 ? Vec3(n.normalized()) : n;
-            const BentLight here = bend(p, unit, unit);
-            if (!sends_on(here, event, facing)) {
-                high = t;
-                continue;
-            }
-            low = t;
-            position = p;
-            normal = unit;
-            bent = here;
+            const MeshPoint here = bender_.between(good, bad, t);
+            const bool sends = sends_on(here, origin);
+            (sends ? low : high) = t;
+            if (sends) last = here;
         }
-        return {add_ray(event, position, bent.direction[event]), bent.weight[event], normal};
+        return last;
     }
 
-    void add_beam(const Polygon& polygon, Event event) {
-        const std::vector<Corner>& corners = polygon.corners;
-        BeamSet& set = sets_[event];
+    void add_beam(std::span<const MeshPoint> corners, const Origin& origin) {
+        BeamSet& set = sets_[origin.event];
         Beam beam;
-        beam.corners = {corners[0].ray, corners[1].ray, corners[2].ray,
-                        corners.size() > 3 ? corners[3].ray : Beam::none};
-        beam.triangle = polygon.triangle;
-        beam.inside = polygon.front == (event == refraction);
-        for (std::uint32_t i = 0; i < polygon.triangle_count; ++i)
-            beam.offset = std::max(beam.offset,
-                                   surface_offset_ + distance_to_exact_surface(beam.triangle + i));
         std::array<Spectrum, 2> flux = {black(), black()};
-        for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
-            flux[i] = triangle_flux({corners[0], corners[1 + i], corners[2 + i]}, event);
-        }
+        for (std::size_t i = 0; i + 2 < corners.size(); ++i)
+            flux[i] = bender_.flux({corners[0], corners[1 + i], corners[2 + i]}, origin.event);
         beam.flux = flux[0] + flux[1];
         if (!(beam.flux.mean() > 0)) return;
         beam.first_share = flux[0].mean() / beam.flux.mean();
+        beam.triangle = origin.triangle;
+        beam.inside = origin.facing.front == (origin.event == refraction);
+        for (std::uint32_t i = 0; i < origin.triangle_count; ++i)
+            beam.offset = std::max(beam.offset,
+                                   surface_offset_ + distance_to_exact_surface(beam.triangle + i));
+        beam.corners.fill(Beam::none);
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            beam.corners[i] = ray_of(corners[i], origin.event);
         set.beams.push_back(beam);
     }
 
-    // The mean of the corners' weights is right to second order where they are alike. Near total
-    // reflection, where Fresnel's shares run like a root, the surface is asked inside as well.
-    Spectrum triangle_flux(const std::array<Corner, 3>& corners, Event event) const {
-        const std::vector<VertexRay>& rays = sets_[event].rays;
-        const Vec3& a = rays[corners[0].ray].position;
-        const Vec3& b = rays[corners[1].ray].position;
-        const Vec3& c = rays[corners[2].ray].position;
-        float least = corners[0].weight.mean();
-        float most = least;
-        for (const Corner& corner : corners) {
-            least = std::min(least, corner.weight.mean());
-            most = std::max(most, corner.weight.mean());
-        }
-        if (most <= 1.5F * least)
-            return (corners[0].weight + corners[1].weight + corners[2].weight) *
-                   static_cast<float>(measure(light_, a, b, c) / 3);
-        const std::array<Vec3, 3> normals = {corners[0].normal, corners[1].normal,
-                                             corners[2].normal};
-        const auto at = [&](const Vec3& l) -> Vec3 { return l[0] * a + l[1] * b + l[2] * c; };
-        const auto piece = [&](const Vec3& u, const Vec3& v, const Vec3& w) -> Spectrum {
-            const Vec3 l = (u + v + w) / 3;
-            const Vec3 n = l[0] * normals[0] + l[1] * normals[1] + l[2] * normals[2];
-            const Vec3 unit = n.squaredNorm() > 0 ? Vec3(n.normalized()) : n;
-            return bend(at(l), unit, unit).weight[event] *
-                   static_cast<float>(measure(light_, at(u), at(v), at(w)));
-        };
-        constexpr int n = 8;
-        const auto corner = [](int i, int j) -> Vec3 {
-            const Vec2 share(static_cast<float>(i) / n, static_cast<float>(j) / n);
-            return {1 - share.x() - share.y(), share.x(), share.y()};
-        };
-        Spectrum sum = black();
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; i + j < n; ++j) {
-                sum += piece(corner(i, j), corner(i + 1, j), corner(i, j + 1));
-                if (i + j + 2 <= n)
-                    sum += piece(corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
-            }
-        return sum;
+    // Beams that meet in a vertex share its ray.
+    std::uint32_t ray_of(const MeshPoint& point, Event event) {
+        std::vector<VertexRay>& rays = sets_[event].rays;
+        const bool shared = point.vertex != MeshPoint::no_vertex;
+        if (shared && ray_of_vertex_[event][point.vertex] != Beam::none)
+            return ray_of_vertex_[event][point.vertex];
+        rays.push_back({point.position, point.bent.direction[event]});
+        const auto ray = static_cast<std::uint32_t>(rays.size() - 1);
+        if (shared) ray_of_vertex_[event][point.vertex] = ray;
+        return ray;
     }
 
     // Bound of how far the exact shape bulges from its triangle: |edge| |turn of the normal| / 8 for
@@ -294,9 +248,10 @@ private:
     const CasterMesh& caster_;
     const TriangleMesh& mesh_;
     const LightSample& light_;
+    LightBender bender_;
     ClosedParts::Hidden hidden_;
     float surface_offset_;
-    std::vector<BentLight> at_vertex_;
+    std::vector<MeshPoint> vertices_;
     std::array<std::vector<std::uint32_t>, 2> ray_of_vertex_;
     std::array<BeamSet, 2> sets_;
 };

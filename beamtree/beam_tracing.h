@@ -12,8 +12,9 @@ namespace caustics {
 /// Vertex rays follow the vertex normals; their Fresnel shares, colours and the absorption on the
 /// way from the light weigh the flux, which is strength x solid angle x their mean. Where the light
 /// is bent at some corners of a triangle only (total internal reflection, a normal turned away, the
-/// horizon of an area light), the triangle is cut by bisection along its edges, the same way from
-/// both of its sides. Polygons of a closed caster send nothing from the side that the light cannot
+/// horizon of an area light), the triangle is cut by bisection along its edges. Where its corners do
+/// not tell what it does (all dark and light inside, rays that part by 60 degrees), it is quartered,
+/// up to five times: a mesh's triangle may send several beams. Polygons of a closed caster send nothing from the side that the light cannot
 /// reach; what else stands between surfaces is not known here.
 std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light);
