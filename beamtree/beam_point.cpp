@@ -13,6 +13,10 @@ namespace {
 // Rays flatter than this to the plane count as going along it.
 constexpr double least_steepness = 1e-4;
 
+// How much more steeply the light may go down in one corner than in another for the caustic polygon
+// to count as evenly lit.
+constexpr double most_uneven = 2;
+
 double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// A ray as the plane sees it.
@@ -191,8 +195,7 @@ Vec3d weights_at_origin(const ClippedPolygon& polygon) {
     return best.sum() > 0 ? Vec3d(best / best.sum()) : Vec3d::Constant(1.0 / 3);
 }
 
-Projected project_clipped(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays) {
-    const ClippedPolygon polygon = clipped(plane, rays);
+Projected project_polygon(const ClippedPolygon& polygon) {
     Projected found;
     double kept = 0;
     for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -204,8 +207,52 @@ Projected project_clipped(const TestPlane& plane, const std::array<RayOnPlane, 3
         kept += a.weights[1] * b.weights[2] - a.weights[2] * b.weights[1];
     }
     found.share = std::abs(kept);
+    return found;
+}
+
+Projected project_clipped(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays) {
+    const ClippedPolygon polygon = clipped(plane, rays);
+    Projected found = project_polygon(polygon);
     if (found.winding != 0) found.weights = weights_at_origin(polygon);
     return found;
+}
+
+using Corners = std::array<const VertexRay*, 3>;
+
+std::array<RayOnPlane, 3> on_plane(const Corners& corners, const TestPlane& plane) {
+    return {on_plane(*corners[0], plane), on_plane(*corners[1], plane),
+            on_plane(*corners[2], plane)};
+}
+
+// Whether the light goes down to the plane much more steeply on one side of the triangle than on
+// another, or there along the plane or away from it.
+bool is_uneven(const std::array<RayOnPlane, 3>& rays) {
+    const auto [least, most] =
+        std::minmax({rays[0].steepness, rays[1].steepness, rays[2].steepness});
+    return !(most <= most_uneven * least);
+}
+
+// A caustic polygon that runs towards the horizon is not lit evenly: its area says nothing of the
+// density where the point is. On the plane across the light that arrives at the point it is; from
+// there come area, share and weights. The area is the one on the test's plane with that density.
+void measure_across(const Corners& corners, const TestPlane& plane, Projected& found) {
+    for (int round = 0; round < 2; ++round) {
+        Vec3 light = Vec3::Zero();
+        for (std::size_t i = 0; i < 3; ++i)
+            light += static_cast<float>(found.weights[static_cast<Eigen::Index>(i)]) *
+                     corners[i]->direction;
+        if (light.isZero(0)) return;
+        light.normalize();
+        const TestPlane across(plane.point().cast<float>(), -light);
+        const ClippedPolygon polygon = clipped(across, on_plane(corners, across));
+        const Projected even = project_polygon(polygon);
+        if (even.area == 0) return;
+        const double steepness = std::max(least_steepness, plane.steepness(light));
+        found.area = std::copysign(
+            even.area * across.area_scale() / (steepness * plane.area_scale()), found.area);
+        found.share = even.share;
+        found.weights = weights_at_origin(polygon);
+    }
 }
 
 BeamHit hit_in(const Projected& found, std::size_t triangle, const TestPlane& plane) {
@@ -233,24 +280,20 @@ TestPlane::TestPlane(const Vec3& point, const Vec3& normal)
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits) {
     std::array<Projected, 2> found;
-    bool clipped = false;
+    bool apart = false;
     const std::size_t count = beam.triangle_count();
     for (std::size_t i = 0; i < count; ++i) {
-        const auto corners = set.triangle(beam, i);
-        const std::array<RayOnPlane, 3> rays = {on_plane(*corners[0], plane),
-                                                on_plane(*corners[1], plane),
-                                                on_plane(*corners[2], plane)};
-        const int down = rays[0].comes_down() + rays[1].comes_down() + rays[2].comes_down();
-        if (down == 3) {
-            found[i] = project_whole(rays);
-        } else {
-            clipped = true;
-            found[i] = project_clipped(plane, rays);
-        }
+        const Corners corners = set.triangle(beam, i);
+        const std::array<RayOnPlane, 3> rays = on_plane(corners, plane);
+        const bool whole = rays[0].comes_down() && rays[1].comes_down() && rays[2].comes_down();
+        const bool uneven = is_uneven(rays);
+        apart = apart || !whole || uneven;
+        found[i] = whole ? project_whole(rays) : project_clipped(plane, rays);
+        if (uneven && found[i].winding != 0) measure_across(corners, plane, found[i]);
     }
-    // Four corners that keep their orientation are one caustic polygon; otherwise each triangle
-    // keeps its own flux.
-    const bool together = count == 2 && !clipped && found[0].area * found[1].area > 0;
+    // Four corners that keep their orientation and are lit evenly are one caustic polygon; otherwise
+    // each triangle keeps its own flux.
+    const bool together = count == 2 && !apart && found[0].area * found[1].area > 0;
     int written = 0;
     for (std::size_t i = 0; i < count; ++i) {
         if (found[i].winding == 0 || found[i].area == 0) continue;

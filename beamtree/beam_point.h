@@ -44,7 +44,7 @@ struct BeamHit {
     std::int8_t winding = 1;  ///< -1 or 1: has the beam passed through its caustic or not
     Vec3 plane_normal;        ///< of the plane of the caustic polygon
     Vec3 weights;             ///< barycentric, of the triangle's corners: where the light left
-    double area = 0;          ///< of the caustic polygon [m^2]
+    double area = 0;          ///< of the caustic polygon [m^2], see test_beam
     double flux_share = 1;    ///< of the beam's flux that falls on it
 };
 
@@ -55,7 +55,9 @@ struct BeamHit {
 /// Half-open crossing rule: an edge that two triangles share is met by exactly one of them, and the
 /// windings of a mesh add up to the winding of its boundary, whatever the rounding, because both
 /// sides compute the edge from the same bits. Rays that do not come down to the plane, and polygons
-/// that the plane cuts, are clipped at it.
+/// that the plane cuts, are clipped at it. Where the light comes down more than twice as steeply in
+/// one corner as in another, the polygon's light is uneven, and the area is the one with which
+/// share / area is the density at the point.
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits);
 
