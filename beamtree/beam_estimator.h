@@ -13,6 +13,7 @@ public:
     void add_to(Counters& counters) const override;
 
     std::vector<BeamHit> hits;
+    std::vector<std::uint32_t> stack;
     SearchCounts counts;
 };
 

@@ -10,15 +10,13 @@ namespace caustics {
 
 namespace {
 
-/// A thread's scratch and counters.
+/// Its counts name the tests of cones as well.
 class ConeSearch final : public BeamSearch {
 public:
     void add_to(Counters& counters) const override {
         BeamSearch::add_to(counters);
         counters["cone_point_tests"] += counts.cone_point_tests;
     }
-
-    std::vector<std::uint32_t> stack;
 };
 
 /// The trees of all lights, casters and events.
@@ -52,10 +50,9 @@ public:
 
 private:
     void find(const ReceiverPoint& point, BeamSearch& search) const override {
-        auto& own = dynamic_cast<ConeSearch&>(search);
         for (const ConeTree& tree : forest_.trees)
             tree.find(traced().sets[tree.set_index()], point.position, point.geometric_normal,
-                      own.stack, own.hits, own.counts);
+                      search.stack, search.hits, search.counts);
     }
 
     Forest forest_;

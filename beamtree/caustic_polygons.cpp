@@ -18,7 +18,7 @@ public:
         for (const Vec3& p : {polygon.a, polygon.b, polygon.c})
             box_.extend(plane_.project(p, 0, Vec3::Zero()));
         // Points of the polygon are its own to rounding.
-        const double margin = 1e-5 * (1 + box_.diagonal().norm());
+        const double margin = position_rounding(polygon) + 1e-5 * box_.diagonal().norm();
         box_.min().array() -= margin;
         box_.max().array() += margin;
     }
@@ -103,7 +103,8 @@ private:
     // The caustic polygons that hold the point, on the plane of its diffuse polygon.
     void find(const ReceiverPoint& point, BeamSearch& search) const override {
         if (receivers_.polygons().empty()) return;
-        const std::uint32_t index = receivers_.nearest(point.position, point.geometric_normal);
+        const std::uint32_t index =
+            receivers_.nearest(point.position, point.geometric_normal, search.stack);
         const ReceiverPolygon& polygon = receivers_.polygons()[index];
         const bool front = polygon.normal.dot(point.geometric_normal) > 0;
         const Vec3 normal = front ? polygon.normal : Vec3(-polygon.normal);

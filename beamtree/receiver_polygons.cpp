@@ -30,7 +30,23 @@ double squared_distance(const Vec3d& p, const ReceiverPolygon& polygon) {
                      squared_distance_to_edge(p, c, a)});
 }
 
+// Eight float spacings of the largest coordinate: half of one for each of the corners and the point,
+// and as much again for what was computed between them.
+double rounding_of(const Box& box) {
+    const float largest =
+        std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+    return 8 * static_cast<double>(std::numeric_limits<float>::epsilon() * largest);
+}
+
+// Cosines of normals that differ by less tell nothing.
+constexpr float least_misfit = 1e-4F;
+
 }  // namespace
+
+double position_rounding(const ReceiverPolygon& polygon) {
+    Box box(polygon.a);
+    return rounding_of(box.extend(polygon.b).extend(polygon.c));
+}
 
 ReceiverPolygons::ReceiverPolygons(const Scene& scene, int resolution) {
     for (const Shape& shape : scene.shapes()) {
@@ -74,22 +90,27 @@ void ReceiverPolygons::build_tree() {
     }
 }
 
-std::uint32_t ReceiverPolygons::nearest(const Vec3& point, const Vec3& normal) const {
+std::uint32_t ReceiverPolygons::nearest(const Vec3& point, const Vec3& normal,
+                                        std::vector<std::uint32_t>& stack) const {
     const Vec3d p = point.cast<double>();
-    // Points of one surface lie this near to it: rounding of the point.
-    const double close = 1e-6 * static_cast<double>(std::max(1e-3F, point.cwiseAbs().maxCoeff()));
     double best = std::numeric_limits<double>::infinity();
     float best_fit = -1;
     std::uint32_t found = 0;
-    std::vector<std::uint32_t> stack = {0};
+    stack.assign(1, 0);
     while (!stack.empty()) {
         const Node& node = nodes_[stack.back()];
         stack.pop_back();
-        if (static_cast<double>(node.box.exteriorDistance(point)) > best + 2 * close) continue;
+        if (static_cast<double>(node.box.exteriorDistance(point)) >
+            best + 2 * rounding_of(node.box))
+            continue;
         for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
             const double distance = std::sqrt(squared_distance(p, polygons_[k]));
+            const double close = position_rounding(polygons_[k]);
             const float fit = std::abs(polygons_[k].normal.dot(normal));
-            if (distance > best + close || (distance > best - close && fit <= best_fit)) continue;
+            // Of two that fit alike, one above the other, the nearer one.
+            const bool fits_better =
+                fit > best_fit + least_misfit || (fit > best_fit - least_misfit && distance < best);
+            if (distance > best + close || (distance > best - close && !fits_better)) continue;
             best = std::min(best, distance);
             best_fit = fit;
             found = k;

@@ -294,5 +294,43 @@ TEST(BeamTree, DoesNotKnowTheSizeOfTheScene) {
     }
 }
 
+// Where float positions are far apart: every beam that holds a point of a diffuse polygon is in the
+// polygon's list.
+// Corners of tilted polygons are not where they should be, so that single points may differ a little.
+void expect_nothing_lost(const Vec3& place, double tilt) {
+    SceneDesc desc = pool_desc(12);
+    for (Vec3& p : desc.shapes[0].mesh.positions) p += place;
+    Transform& floor = desc.shapes[1].to_world;
+    floor.prerotate(Eigen::AngleAxisd(tilt, Vec3d(1, 0.3, 0).normalized()));
+    floor.pretranslate(place.cast<double>());
+    desc.point_lights[0].position += place;
+    const Vec3d normal = floor.linear().col(2).normalized();
+    std::vector<ReceiverPoint> points;
+    Rng rng(3, Stage::test, 0);
+    const Scene scene(desc);
+    for (int i = 0; i < 600; ++i) {
+        const Vec3 share(0.6F * rng.next() - 0.3F, 0.6F * rng.next() - 0.3F, 0);
+        points.push_back(
+            support::probe(scene, 1, scene.shapes()[1].to_world * share.cast<double>(), normal, 0));
+    }
+    CausticPolygonsParams params;
+    params.receiver_resolution = 48;
+    const auto tree = support::irradiance(*build(scene, BeamTreeParams{}, {}), points);
+    const auto polygons = support::irradiance(*build(scene, params, {}), points);
+    int different = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        different += ((tree[i].value - polygons[i].value).abs() > 0.1F * tree[i].value).any();
+    EXPECT_LE(different, 5) << place.transpose() << ", " << tilt;
+    EXPECT_NEAR(mean(polygons) / mean(tree), 1, 1e-3) << place.transpose() << ", " << tilt;
+}
+
+TEST(CausticPolygons, LoseNothingFarFromTheOrigin) {
+    for (const double tilt : {0.0, 0.2}) {
+        expect_nothing_lost({0, 0, 0}, tilt);
+        expect_nothing_lost({30'000, 20'000, -5'000}, tilt);
+        expect_nothing_lost({0, 0, 1e5F}, tilt);
+    }
+}
+
 }  // namespace
 }  // namespace caustics
