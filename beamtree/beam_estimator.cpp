@@ -8,7 +8,7 @@ void BeamSearch::add_to(Counters& counters) const {
 }
 
 BeamEstimator::BeamEstimator(const Scene& scene, TracedScene traced)
-    : traced_(std::move(traced)), light_(scene, traced_.sets) {}
+    : report_(traced.report()), sets_(std::move(traced.sets)), light_(scene, sets_) {}
 
 std::unique_ptr<QueryContext> BeamEstimator::make_context() const {
     return std::make_unique<BeamSearch>();
@@ -22,12 +22,6 @@ void BeamEstimator::radiance(std::span<const ReceiverPoint> points, std::span<Es
 void BeamEstimator::irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                                QueryContext& context) const {
     answer(points, out, context, &BeamLight::irradiance);
-}
-
-BuildReport BeamEstimator::build_report() const {
-    BuildReport report;
-    traced_.add_to(report);
-    return report;
 }
 
 void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,

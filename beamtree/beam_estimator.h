@@ -27,12 +27,13 @@ public:
     void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                     QueryContext& context) const final;
     /// Of the beams; methods add their own.
-    BuildReport build_report() const override;
+    BuildReport build_report() const override { return report_; }
 
 protected:
+    /// Keeps the beams; the casters' meshes are needed no more.
     BeamEstimator(const Scene& scene, TracedScene traced);
 
-    const TracedScene& traced() const { return traced_; }
+    const std::vector<BeamSet>& sets() const { return sets_; }
 
 private:
     /// Appends the beams that hold the point to `search.hits`; `search` is of the kind that the
@@ -43,7 +44,8 @@ private:
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                 QueryContext& context, Query query) const;
 
-    TracedScene traced_;
+    BuildReport report_;
+    std::vector<BeamSet> sets_;
     BeamLight light_;
 };
 

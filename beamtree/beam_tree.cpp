@@ -51,7 +51,7 @@ public:
 private:
     void find(const ReceiverPoint& point, BeamSearch& search) const override {
         for (const ConeTree& tree : forest_.trees)
-            tree.find(traced().sets[tree.set_index()], point.position, point.geometric_normal,
+            tree.find(sets()[tree.set_index()], point.position, point.geometric_normal,
                       search.stack, search.hits, search.counts);
     }
 
@@ -103,10 +103,7 @@ Forest grow(const Scene& scene, const TracedScene& traced, const BeamTreeParams&
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
-    TracedScene traced = trace_scene(scene,
-                                     {"beamtree", params.light_samples, params.mesh_resolution,
-                                      params.max_bounces, params.polygons},
-                                     options);
+    TracedScene traced = trace_scene(scene, "beamtree", params, options);
     options.phase("tree");
     Forest forest = grow(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));

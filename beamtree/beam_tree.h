@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "beamtree/caster_mesh.h"
+#include "beamtree/beam_params.h"
 #include "beamtree/cone_tree.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
@@ -11,7 +11,7 @@ namespace caustics {
 
 /// `beamtree` [CC95]: the light that each specular polygon sends on is a beam; the beams of each
 /// light are found from a receiver point through a tree of cones. One specular event.
-struct BeamTreeParams {
+struct BeamTreeParams : BeamParams {
     enum class Tree {
         quadtree,  ///< of a regular subdivision; casters that have none get `binned`, and the report
                    ///< tells how many
@@ -26,13 +26,6 @@ struct BeamTreeParams {
     ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
     Tree hierarchy = Tree::quadtree;
     Leaf leaf = Leaf::n;
-    int light_samples = 16;  ///< for each area light
-    PolygonKind polygons = PolygonKind::triangle;
-    int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
-    /// Specular events that light paths may have. 1 asks for just those that beams can give. From 2
-    /// on, a scene where more than half of the flux goes on to a second event is refused, and
-    /// the report tells the share where it is less.
-    int max_bounces = 16;
 };
 
 /// Throws InputError for what cannot be used or is not built yet.

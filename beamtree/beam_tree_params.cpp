@@ -1,5 +1,4 @@
 #include "beamtree/beam_tree.h"
-#include "beamtree/traced_scene.h"
 
 namespace caustics {
 
@@ -42,13 +41,7 @@ void read(const JsonNode& node, BeamTreeParams& params) {
     if (const auto intensity = node.find("intensity"))
         if (intensity->as_choice({"area", "refined"}) == 1)
             intensity->fail("\"refined\" is not built yet (built: \"area\")");
-    read_polygons(node, params.polygons);
-    if (const auto samples = node.find("light_samples"))
-        params.light_samples = static_cast<int>(samples->as_integer_in(1, 65'536));
-    if (const auto resolution = node.find("mesh_resolution"))
-        params.mesh_resolution = static_cast<int>(resolution->as_integer_in(2, 4096));
-    if (const auto max_bounces = node.find("max_bounces"))
-        params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, 1'000));
+    read_beam_params(node, params);
     node.finish();
 }
 

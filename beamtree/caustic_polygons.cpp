@@ -92,7 +92,7 @@ public:
         report.bytes += receivers_.bytes();
         report.counters["receiver_polygons"] = receivers_.polygons().size();
         report.counters["beam_polygon_tests"] =
-            receivers_.polygons().size() * traced().beam_count();
+            receivers_.polygons().size() * report.counters["beams"];
         std::uint64_t& pairs = report.counters["caustic_polygons"];
         for (const std::vector<BeamNumber>& list : lists_) pairs += list.size();
         report.bytes += pairs * sizeof(BeamNumber);
@@ -111,7 +111,7 @@ private:
         const float off = normal.dot(point.position - polygon.a);
         const TestPlane plane(point.position - off * normal, normal);
         for (const BeamNumber& number : lists_[index])
-            find_in_beam(traced().sets[number.set], number, plane, search.hits, search.counts);
+            find_in_beam(sets()[number.set], number, plane, search.hits, search.counts);
         // The polygon stands for the surface: its irradiance is the surface's.
         for (BeamHit& hit : search.hits) hit.plane_normal = point.geometric_normal;
     }
@@ -123,25 +123,16 @@ private:
 }  // namespace
 
 void read(const JsonNode& node, CausticPolygonsParams& params) {
-    read_polygons(node, params.polygons);
-    if (const auto samples = node.find("light_samples"))
-        params.light_samples = static_cast<int>(samples->as_integer_in(1, 65'536));
-    if (const auto resolution = node.find("mesh_resolution"))
-        params.mesh_resolution = static_cast<int>(resolution->as_integer_in(2, 4096));
+    read_beam_params(node, params);
     if (const auto resolution = node.find("receiver_resolution"))
         params.receiver_resolution = static_cast<int>(resolution->as_integer_in(2, 4096));
-    if (const auto max_bounces = node.find("max_bounces"))
-        params.max_bounces = static_cast<int>(max_bounces->as_integer_in(1, 1'000));
     node.finish();
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene,
                                               const CausticPolygonsParams& params,
                                               const RunOptions& options) {
-    TracedScene traced = trace_scene(scene,
-                                     {"causticpolygons", params.light_samples,
-                                      params.mesh_resolution, params.max_bounces, params.polygons},
-                                     options);
+    TracedScene traced = trace_scene(scene, "causticpolygons", params, options);
     options.phase("polygons");
     ReceiverPolygons receivers(scene, params.receiver_resolution);
     std::vector<std::vector<BeamNumber>> lists(receivers.polygons().size());

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "beamtree/caster_mesh.h"
+#include "beamtree/beam_params.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
 
@@ -12,12 +12,8 @@ namespace caustics {
 /// of the polygonised receivers, and those it meets keep it; a point is lit by the caustic polygons
 /// that hold it among those of its own diffuse polygon. The same beams, visibility and flux as
 /// `beamtree`; cost n_s n_d n_l. One specular event.
-struct CausticPolygonsParams {
-    PolygonKind polygons = PolygonKind::triangle;
-    int mesh_resolution = 64;      ///< of exact casters
+struct CausticPolygonsParams : BeamParams {
     int receiver_resolution = 16;  ///< of exact receivers; meshes are taken as they are
-    int light_samples = 16;        ///< for each area light
-    int max_bounces = 16;          ///< as BeamTreeParams::max_bounces
 };
 
 /// Throws InputError for what cannot be used.

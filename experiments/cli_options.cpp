@@ -86,6 +86,10 @@ int samples_per_pixel(const PixelSampling& sampling, int asked) {
     return count;
 }
 
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
 void require_writable_place(const std::filesystem::path& file) {
     const std::filesystem::path folder =
         file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");

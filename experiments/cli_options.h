@@ -53,6 +53,9 @@ int samples_per_pixel(const PixelSampling& sampling, int asked);
 /// Throws InputError unless `file` can be written to: its folder exists and it is no folder itself.
 void require_writable_place(const std::filesystem::path& file);
 
+/// What a user should know beside the answer: a line each on stderr.
+void print_notes(const std::vector<std::string>& notes);
+
 /// An option that may be given many times, each time with one value.
 CLI::Option* add_repeatable(CLI::App& verb, const std::string& name,
                             std::vector<std::string>& values, const std::string& help);

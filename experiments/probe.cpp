@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "experiments/notes.h"
 
 namespace caustics {
 
@@ -193,6 +194,7 @@ ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& li
     for (int pass = 0; pass < passes; ++pass) {
         const std::unique_ptr<const CausticEstimator> built = build(scene, method, options, pass);
         answers.has_standard_errors = built->is_statistical();
+        if (pass == 0) answers.notes = notes(scene, method, built->build_report());
         const Ask ask{*built, asked, gathers_over_discs(method), options.threads};
         ask.add(&CausticEstimator::irradiance, answers.irradiance);
         if (list.has_viewer) ask.add(&CausticEstimator::radiance, answers.radiance);

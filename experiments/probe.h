@@ -35,6 +35,7 @@ struct ProbeAnswers {
     std::vector<Estimate> irradiance;
     std::vector<Estimate> radiance;  ///< empty without viewers
     bool has_standard_errors = false;
+    std::vector<std::string> notes;  ///< as RunResult::notes
 };
 
 /// Builds the method and asks it at the points. A point on a black side (the back of a one-sided

@@ -30,7 +30,9 @@ int probe_points(const ProbeOptions& options) {
     RunOptions run = options.run.options(1);
     run.origin = command("probe", {options.scene.file, options.scene.overrides(), method,
                                    options.run.seed, run.samples_per_pixel});
-    const std::string table = probe_table(list, probe(scene, method, list, run));
+    const ProbeAnswers answers = probe(scene, method, list, run);
+    print_notes(answers.notes);
+    const std::string table = probe_table(list, answers);
     if (options.output.empty())
         write_stdout(table);
     else

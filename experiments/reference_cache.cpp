@@ -66,7 +66,7 @@ void ReferenceCache::make(const ReferenceRequest& request, const RunOptions& opt
     const RunResult result = run(scene, request.request, options, stopwatch);
     for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the reference");
     Film film = reference_film(result.film);
-    film.metadata = picture_metadata(request.request, file);
+    film.metadata = picture_metadata(request.request, file, result.report);
     // The command names the scene as it was reached from here, and the version that of today; the
     // file depends on neither.
     film.metadata.erase("command");

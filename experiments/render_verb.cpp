@@ -68,8 +68,9 @@ int render_picture(const RenderOptions& options) {
     for (const auto& layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
     fmt::print(stderr, "{}\n", told_counts(result.counters));
     if (result.why_empty) fmt::print(stderr, "the caustic is empty: {}\n", *result.why_empty);
+    print_notes(result.notes);
     const double exposure = options.exposure.value_or(auto_exposure(result.film, ""));
-    result.film.metadata = picture_metadata(request, file);
+    result.film.metadata = picture_metadata(request, file, result.report);
     result.film.metadata["tone_mapping"] = tone_mapping_rule;
     result.film.metadata["exposure"] = shortest(exposure);
     if (result.why_empty) result.film.metadata["why_empty"] = *result.why_empty;

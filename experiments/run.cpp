@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/environment.h"
+#include "experiments/notes.h"
 #include "experiments/why_empty.h"
 
 namespace caustics {
@@ -46,7 +47,8 @@ std::string command(const std::string& verb, const RunRequest& request) {
 }
 
 std::map<std::string, std::string> picture_metadata(const RunRequest& request,
-                                                    const SceneFile& scene) {
+                                                    const SceneFile& scene,
+                                                    const BuildReport& report) {
     nlohmann::json assets = nlohmann::json::object();
     for (const auto& [name, hash] : scene.assets) assets[name] = hash;
     std::map<std::string, std::string> metadata = {
@@ -61,6 +63,7 @@ std::map<std::string, std::string> picture_metadata(const RunRequest& request,
         {"command", command("render", request)}};
     for (const auto& [parameter, hash] : files_read(request.method))
         metadata[parameter + "_hash"] = hash;
+    if (!report.resolved.empty()) metadata["resolved"] = nlohmann::json(report.resolved).dump();
     return metadata;
 }
 
@@ -91,8 +94,9 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
     Rendering rendering = render(scene, {pass_count(request.method), build_pass}, options);
     stopwatch.stop();
 
-    RunResult result{std::move(rendering.film), std::move(report), {}, {}};
+    RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}};
     result.counters = result.report.counters;
+    result.notes = notes(scene, request.method, result.report);
     for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
     result.why_empty =
         why_empty(scene, request.method, result.film, result.report, result.counters);

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/renderer.h"
 #include "core/scene_io.h"
@@ -26,10 +27,11 @@ struct RunRequest {
 std::string command(const std::string& verb, const RunRequest& request);
 
 /// The resolved configuration as attributes of a picture: scene, method with every parameter in
-/// force, seed, samples, code version, and the command that makes it. The same request gives the
-/// same text, whatever the number of threads.
+/// force and what it chose by itself, seed, samples, code version, and the command that makes it.
+/// The same request gives the same text, whatever the number of threads.
 std::map<std::string, std::string> picture_metadata(const RunRequest& request,
-                                                    const SceneFile& scene);
+                                                    const SceneFile& scene,
+                                                    const BuildReport& report);
 
 /// Values in a record's JSON: what the method counted and chose.
 struct RunResult {
@@ -37,6 +39,7 @@ struct RunResult {
     BuildReport report;
     Counters counters;                     ///< of build and queries
     std::optional<std::string> why_empty;  ///< of a caustic that is black all over
+    std::vector<std::string> notes;        ///< what a user should know, one line each
 };
 
 /// Builds the method and renders, cutting the time into "precompute", "precompute/PHASE", "render"

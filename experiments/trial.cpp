@@ -56,6 +56,7 @@ void record_report(json& record, const RunResult& result) {
     for (const auto& [name, count] : result.counters) record["counters"][name] = count;
     for (const auto& [name, value] : result.report.resolved)
         record["method"]["resolved"][name] = value;
+    if (!result.notes.empty()) record["notes"] = result.notes;
     if (result.report.bytes > 0) record["memory"]["map_bytes"] = result.report.bytes;
     if (result.why_empty) record["why_empty"] = *result.why_empty;
 }
@@ -102,11 +103,12 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     record_seconds(record, stopwatch);
     record_report(record, result);
     if (result.why_empty) log("the caustic is empty: " + *result.why_empty);
+    for (const std::string& note : result.notes) log("note: " + note);
 
     log("measure");
     for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
     if (reference != nullptr) record_errors(record, result.film, *reference);
-    result.film.metadata = picture_metadata(trial.request, file);
+    result.film.metadata = picture_metadata(trial.request, file, result.report);
     outcome.film = std::move(result.film);
     record["status"] = "done";
     log("done");

@@ -20,8 +20,10 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "cpu_s", "rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "beauty_rmse",
             "unreached_fraction", "reference_stderr", "reference_mean", "mask_rmse", "mask_relmse", "mask_mean_ratio",
             "mask_fraction", "parse_cpu_s", "precompute_cpu_s", "balance_cpu_s", "render_cpu_s", "gathers",
-            "gathered_photons", "used_photons")
-NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + ("message",)
+            "gathered_photons", "used_photons", "camera_rays", "trees", "trees_binned", "nodes", "height",
+            "casters_with_face_normals", "flux_share_to_second_event", "photons_aimed", "photons_reflected",
+            "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points")
+NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + ("message", "why_empty")
 NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads") + MEASURES
 LABELS = ("isa", "code_version")  # never numbers, whatever they look like
 NOT_NEGATIVE = ("photons_stored", "total_s", "rmse", "relmse", "reference_stderr")

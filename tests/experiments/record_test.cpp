@@ -18,19 +18,25 @@ TEST(RecordsCsv, BeginsWithTheColumnsOfTheContract) {
         "reference,reference_stderr,config_hash,code_version,";
     const std::string header = csv_line(record_columns({"nearest", "alpha", "photons"}));
     EXPECT_EQ(header.substr(0, contract.size()), contract);
+    for (const char* name : {",trees,", ",trees_binned,", ",nodes,", ",height,",
+                             ",casters_with_face_normals,", ",flux_share_to_second_event,"})
+        EXPECT_NE(header.find(name), std::string::npos) << name;
     EXPECT_EQ(header.substr(header.size() - 9), ",photons\n") << "swept keys come last, once";
 }
 
 TEST(RecordsCsv, LeavesEmptyWhatDoesNotApply) {
-    const nlohmann::json record = {{"trial", "a, b"},
-                                   {"seed", 12345678901234},
-                                   {"method", {{"parameters", {{"nearest", 50}}}}},
-                                   {"swept", {{"alpha", 0.1}, {"bound", "hybrid"}}},
-                                   {"metrics", {{"rmse", 1.0 / 3}, {"relmse", nullptr}}}};
-    EXPECT_EQ(record_row(record,
-                         {"trial", "seed", "nearest", "alpha", "bound", "rmse", "relmse", "beams"}),
+    const nlohmann::json record = {
+        {"trial", "a, b"},
+        {"seed", 12345678901234},
+        {"counters", {{"nodes", 7}}},
+        {"method",
+         {{"parameters", {{"nearest", 50}}}, {"resolved", {{"flux_share_to_second_event", 0.25}}}}},
+        {"swept", {{"alpha", 0.1}, {"bound", "hybrid"}}},
+        {"metrics", {{"rmse", 1.0 / 3}, {"relmse", nullptr}}}};
+    EXPECT_EQ(record_row(record, {"trial", "seed", "nearest", "alpha", "bound", "rmse", "relmse",
+                                  "beams", "nodes", "flux_share_to_second_event"}),
               (std::vector<std::string>{"a, b", "12345678901234", "50", "0.1", "hybrid",
-                                        "0.3333333333333333", "", ""}));
+                                        "0.3333333333333333", "", "", "7", "0.25"}));
 }
 
 }  // namespace

@@ -37,6 +37,17 @@ def product(seeds=(1, 2, 3), photons=(1000, 10000), nearest=(25, 50), alpha=(0.1
             for p in photons for n in nearest for a in alpha for m in mesh for s in seeds]
 
 
+class Columns(unittest.TestCase):
+    def test_no_column_of_every_trial_is_taken_for_a_swept_parameter(self):
+        text = (TOOL.parents[1] / "experiments" / "record.cpp").read_text(encoding="utf-8")
+        names = re.findall(r'^    \{"(\w+)", "/', text, re.MULTILINE)
+        sys.path.insert(0, str(TOOL.parent))
+        import records
+        self.assertIn("code_version", names)
+        after = names[names.index("code_version") + 1:]
+        self.assertEqual([name for name in after if name not in records.NOT_SWEPT], [])
+
+
 class Plots(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

@@ -1,0 +1,85 @@
+#include "experiments/notes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <variant>
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double least_share_told = 0.01;
+
+std::optional<double> resolved(const BuildReport& report, const char* name) {
+    const auto found = report.resolved.find(name);
+    if (found == report.resolved.end()) return {};
+    return found->second;
+}
+
+bool has_area_light(const Scene& scene) {
+    return std::ranges::any_of(scene.lights(), [](const Light& light) {
+        return std::holds_alternative<AreaLight>(light);
+    });
+}
+
+bool has_exact_receiver(const Scene& scene) {
+    return std::ranges::any_of(scene.shapes(), [](const Shape& shape) {
+        return shape.primitive != Primitive::mesh && is_receiver(shape.bsdf);
+    });
+}
+
+/// Parameters of a method that differ from its defaults.
+class SetParameters {
+public:
+    explicit SetParameters(const Method& method)
+        : values_(describe(method)),
+          defaults_(describe(parse_method(method.name, parameters_node({})))) {}
+
+    /// "name=value", or nothing where the method has its default or no such parameter.
+    std::optional<std::string> find(const char* name) const {
+        const auto value = values_.find(name);
+        if (value == values_.end() || *value == defaults_.value(name, json())) return {};
+        return fmt::format("{}={}", name,
+                           value->is_string() ? value->get<std::string>() : value->dump());
+    }
+
+private:
+    json values_;
+    json defaults_;
+};
+
+}  // namespace
+
+std::vector<std::string> notes(const Scene& scene, const Method& method,
+                               const BuildReport& report) {
+    std::vector<std::string> all;
+    const double share = resolved(report, "flux_share_to_second_event").value_or(0);
+    if (share > least_share_told && describe(method).value("max_bounces", 0) > 1)
+        all.push_back(fmt::format(
+            "{} follows one specular event: {:.1f} % of the light that its beams carry goes on to "
+            "another specular surface and is missing here (photonmap follows it; max_bounces=1 "
+            "asks for the paths with one event alone)",
+            method.name, 100 * share));
+    if (!resolved(report, "flux_share_to_second_event")) return all;
+
+    const SetParameters parameters(method);
+    const auto add = [&](const char* name, bool useless, const char* why) {
+        if (const auto given = parameters.find(name); given && useless)
+            all.push_back(fmt::format("{} makes no difference in this scene: {}", *given, why));
+    };
+    add("polygons", resolved(report, "quads") == 0, "no caster is divided into a regular grid");
+    add("light_samples", !has_area_light(scene), "it has no area light");
+    add("mesh_resolution", resolved(report, "casters_tessellated") == 0,
+        "every caster is a mesh, which is taken as it is");
+    add("receiver_resolution", !has_exact_receiver(scene),
+        "every receiver is a mesh, which is taken as it is");
+    return all;
+}
+
+}  // namespace caustics
