@@ -6,24 +6,11 @@
 #include <numeric>
 #include <tuple>
 
+#include "beamtree/solid_angle.h"
+#include "core/vertex_normals.h"
+
 namespace caustics {
 namespace {
-
-// One number for all vertices at one position.
-std::vector<std::uint32_t> places_of(const std::vector<Vec3>& positions) {
-    const auto key = [&](std::uint32_t i) {
-        return std::tuple(positions[i].x(), positions[i].y(), positions[i].z());
-    };
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    std::vector<std::uint32_t> places(positions.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        places[order[i]] =
-            i > 0 && key(order[i]) == key(order[i - 1]) ? places[order[i - 1]] : order[i];
-    return places;
-}
 
 /// A triangle's side from one place to another.
 struct Edge {
@@ -35,7 +22,7 @@ struct Edge {
 };
 
 std::vector<Edge> edges_of(const TriangleMesh& mesh, const std::vector<bool>& left_out) {
-    const std::vector<std::uint32_t> places = places_of(mesh.positions);
+    const std::vector<std::uint32_t> places = number_positions(mesh.positions);
     std::vector<Edge> edges;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         if (left_out[i]) continue;
@@ -73,16 +60,6 @@ std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle, c
     for (std::size_t i = 0; i < 3; ++i)
         seen[i] = mesh.positions[mesh.triangles[triangle][i]].cast<double>() - from.cast<double>();
     return seen;
-}
-
-// Signed: positive where the point sees the back [Van Oosterom and Strackee 1983].
-double solid_angle(const std::array<Vec3d, 3>& triangle) {
-    const auto& [u, v, w] = triangle;
-    const double lu = u.norm();
-    const double lv = v.norm();
-    const double lw = w.norm();
-    return 2 * std::atan2(u.dot(v.cross(w)),
-                          lu * lv * lw + u.dot(v) * lw + u.dot(w) * lv + v.dot(w) * lu);
 }
 
 }  // namespace
@@ -130,8 +107,10 @@ ClosedParts::Hidden ClosedParts::hidden_from(const TriangleMesh& mesh,
     std::vector<double> seen(outward_.size());
     if (light.kind != LightSample::Kind::directional)
         for (std::uint32_t i = 0; i < part_of_.size(); ++i)
-            if (part_of_[i] != open)
-                seen[part_of_[i]] += solid_angle(corners(mesh, i, light.position));
+            if (part_of_[i] != open) {
+                const auto [u, v, w] = corners(mesh, i, light.position);
+                seen[part_of_[i]] += solid_angle(u, v, w);
+            }
     // All round a light inside, nothing altogether for one outside.
     for (std::size_t part = 0; part < seen.size(); ++part)
         hidden.front_.push_back((std::abs(seen[part]) > 2 * pi_d) == outward_[part]);

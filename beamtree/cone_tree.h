@@ -37,7 +37,6 @@ public:
               SearchCounts& counts) const;
 
     std::uint32_t set_index() const { return set_index_; }
-    const std::optional<Vec3>& fixed_normal() const { return fixed_normal_; }
     std::uint64_t node_count() const { return nodes_.size(); }
     std::uint64_t height() const { return height_; }
     std::uint64_t bytes() const;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "beamtree/lamp_sampler.h"
+#include "beamtree/solid_angle.h"
 #include "core/rng.h"
 
 namespace caustics {
@@ -12,19 +14,19 @@ float fraction(float x) { return std::min(x - std::floor(x), 0x1.fffffep-1F); }
 
 void sample_area_light(const Scene& scene, const AreaLight& light, LightSample sample, int count,
                        Rng rng, std::vector<LightSample>& samples) {
-    const Shape& shape = scene.shapes()[light.shape];
+    const LampSampler lamp(scene, light);
     const float shift_u = rng.next();
     const float shift_v = rng.next();
     constexpr float golden = 0.618033988F;
     sample.kind = LightSample::Kind::area;
     sample.offset = scene.offset(light.shape);
-    sample.strength =
+    const Spectrum even =
         light.radiance * static_cast<float>(light.sampler.area() / static_cast<double>(count));
     for (int i = 0; i < count; ++i) {
         const auto at = static_cast<float>(i);
-        const auto point =
-            light.sampler.sample(shape, fraction((at + shift_u) / static_cast<float>(count)),
-                                 fraction(at * golden + shift_v));
+        const LampSampler::Sample point = lamp.sample(
+            fraction((at + shift_u) / static_cast<float>(count)), fraction(at * golden + shift_v));
+        sample.strength = even * point.weight;
         sample.position = point.position;
         sample.normal = point.normal;
         samples.push_back(sample);
@@ -84,16 +86,7 @@ double measure(const LightSample& light, const Vec3& a, const Vec3& b, const Vec
         return std::abs(cross.dot(light.travel.cast<double>())) / 2;
     }
     const Vec3d from = light.position.cast<double>();
-    const Vec3d u = p - from;
-    const Vec3d v = q - from;
-    const Vec3d w = r - from;
-    const double lu = u.norm();
-    const double lv = v.norm();
-    const double lw = w.norm();
-    // The determinant from edges: cancels less for a small triangle far away.
-    const double determinant = std::abs(u.dot((q - p).cross(r - p)));
-    const double denominator = lu * lv * lw + u.dot(v) * lw + u.dot(w) * lv + v.dot(w) * lu;
-    return 2 * std::atan2(determinant, denominator);
+    return std::abs(solid_angle(p - from, q - from, r - from));
 }
 
 bool sees(const Scene& scene, const SegmentEnd& point, const LightSample& light) {

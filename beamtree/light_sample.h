@@ -22,7 +22,7 @@ struct LightSample {
 };
 
 /// One sample a point or directional light, `per_area_light` samples an area light: a rank-1 lattice
-/// over its area, shifted at random by the seed.
+/// over the part of it that can shine on casters (LampSampler), shifted at random by the seed.
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
 
 /// Unit direction from a point to the light.

@@ -8,7 +8,7 @@
 namespace caustics {
 namespace {
 
-constexpr float least_steepness = 0.25F;
+constexpr float least_sine = 0.25F;
 
 float least_along(const BeamSet& set, const Beam& beam, const Vec3& axis) {
     float least = 1;
@@ -29,7 +29,7 @@ std::size_t main_axis(const BeamSet& set, const Beam& beam) {
         best_least = least;
         best = i;
     }
-    return best_least >= least_steepness ? best : 6;
+    return best_least >= least_sine ? best : 6;
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ std::vector<PlaneGroup> fixed_planes(const BeamSet& set) {
     std::vector<Vec3d> directions;
     for (const VertexRay& ray : set.rays) directions.emplace_back(ray.direction.cast<double>());
     const Cap cap = smallest_cap(directions);
-    if (cap.cosine > static_cast<double>(least_steepness) + 1e-6) {
+    if (cap.cosine > static_cast<double>(least_sine) + 1e-6) {
         std::vector<PlaneGroup> one = receiver_planes(set);
         one[0].normal = Vec3d(-cap.axis).cast<float>();
         return one;

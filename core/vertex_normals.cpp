@@ -8,25 +8,6 @@
 namespace caustics {
 namespace {
 
-// For each vertex the number of its position; equal positions have equal numbers.
-std::vector<std::uint32_t> number_positions(const std::vector<Vec3>& positions) {
-    const auto key = [&](std::uint32_t vertex) {
-        const Vec3& p = positions[vertex];
-        return std::tuple(p.x(), p.y(), p.z());
-    };
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    std::vector<std::uint32_t> numbers(positions.size());
-    std::uint32_t number = 0;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i > 0 && key(order[i - 1]) != key(order[i])) ++number;
-        numbers[order[i]] = number;
-    }
-    return numbers;
-}
-
 struct NormalSum {
     Vec3d weighted = Vec3d::Zero();
     Vec3d first = Vec3d::Zero();  // of the first triangle that is not degenerate
@@ -53,6 +34,24 @@ Vec3 direction(const NormalSum& sum) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> number_positions(const std::vector<Vec3>& positions) {
+    const auto key = [&](std::uint32_t vertex) {
+        const Vec3& p = positions[vertex];
+        return std::tuple(p.x(), p.y(), p.z());
+    };
+    std::vector<std::uint32_t> order(positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    std::vector<std::uint32_t> numbers(positions.size());
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i > 0 && key(order[i - 1]) != key(order[i])) ++number;
+        numbers[order[i]] = number;
+    }
+    return numbers;
+}
 
 void complete_normals(TriangleMesh& mesh) {
     mesh.normals.resize(mesh.positions.size(), Vec3::Zero());

@@ -120,17 +120,25 @@ TEST(BeamTree, SaysWhereOneEventIsNotEnough) {
 }
 
 TEST(BeamTree, EveryBoundAndHierarchyGivesTheSameBits) {
+    using Merging = ConeTreeSettings::Merging;
     const Scene scene(pool_desc(12));
-    const std::vector<Estimate> first = on_floor(scene, 1);
-    for (const Bound bound : {Bound::single, Bound::double_cone, Bound::sphere_swept})
-        for (const auto tree : {BeamTreeParams::Tree::quadtree, BeamTreeParams::Tree::binned}) {
-            BeamTreeParams params;
-            params.bound = bound;
-            params.hierarchy = tree;
-            const std::vector<Estimate> other = on_floor(scene, 1, params);
-            for (std::size_t i = 0; i < first.size(); ++i)
-                EXPECT_TRUE((first[i].value == other[i].value).all());
-        }
+    for (const auto leaf : {BeamTreeParams::Leaf::n, BeamTreeParams::Leaf::k}) {
+        BeamTreeParams params;
+        params.leaf = leaf;
+        const std::vector<Estimate> first = on_floor(scene, 1, params);
+        EXPECT_GT(mean(first), 0);
+        for (const Bound bound :
+             {Bound::single, Bound::double_cone, Bound::hybrid, Bound::sphere_swept})
+            for (const auto tree : {BeamTreeParams::Tree::quadtree, BeamTreeParams::Tree::binned})
+                for (const Merging merging : {Merging::rays, Merging::cones}) {
+                    params.bound = bound;
+                    params.hierarchy = tree;
+                    params.merging = merging;
+                    const std::vector<Estimate> other = on_floor(scene, 1, params);
+                    for (std::size_t i = 0; i < first.size(); ++i)
+                        EXPECT_TRUE((first[i].value == other[i].value).all());
+                }
+    }
 }
 
 // A quad needs the two triangles of a cell: without them its triangles go by themselves.

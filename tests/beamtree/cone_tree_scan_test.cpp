@@ -23,8 +23,8 @@ struct Query {
 
 Vec3 random_direction(Rng& rng) { return uniform_cap(2, rng.next(), rng.next()).normalized(); }
 
-// Half of the points anywhere round the scene, half inside a beam at any distance; planes of any
-// tilt that face some beam.
+// A quarter of the points anywhere round the scene, the others inside a beam at any distance; planes
+// of any tilt that face some beam.
 std::vector<Query> random_queries(const BeamScene& scene, const BeamSet& set, int count) {
     std::vector<Query> queries;
     Rng rng(7, Stage::test, 0);
