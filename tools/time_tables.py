@@ -17,7 +17,7 @@ import records
 from estimate_cells import Estimate
 from report_files import report, write
 
-TIMES = (0.3, 1.0, 3.0, 10.0)  # seconds
+TIMES = (0.5, 0.7, 1.0, 1.5, 2.0, 3.0)  # seconds
 PASSES_OF = 20000  # photons
 
 
