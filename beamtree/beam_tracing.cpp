@@ -13,8 +13,9 @@ namespace {
 
 // How often a triangle is quartered whose corners do not tell what it does.
 constexpr int most_splits = 5;
-// The rays of a beam part by less than 60 degrees.
+// The rays of a polygon's beam part by less than 60 degrees, those of a quartered one's by less than 30.
 constexpr float widest_cosine = 0.5F;
+constexpr float widest_cosine_of_parts = 0.866F;
 
 /// How a triangle of the mesh stands to the light.
 struct Facing {
@@ -42,10 +43,11 @@ bool sends_on(const MeshPoint& point, const Origin& origin) {
            !is_black(bent.weight[origin.event]);
 }
 
-bool part_widely(std::span<const MeshPoint> corners, Event event) {
+bool part_widely(std::span<const MeshPoint> corners, Event event, bool whole) {
+    const float widest = whole ? widest_cosine : widest_cosine_of_parts;
     for (const MeshPoint& a : corners)
         for (const MeshPoint& b : corners)
-            if (a.bent.direction[event].dot(b.bent.direction[event]) < widest_cosine) return true;
+            if (a.bent.direction[event].dot(b.bent.direction[event]) < widest) return true;
     return false;
 }
 
@@ -120,7 +122,7 @@ private:
         for (const Event event : events) {
             const Origin whole{quad.triangle, 2, sides[0], event};
             const Origin second{quad.triangle + 1, 1, sides[1], event};
-            bool is_whole = alike && !part_widely(corners, event);
+            bool is_whole = alike && !part_widely(corners, event, true);
             for (const std::size_t i : {0, 1, 2})
                 is_whole = is_whole && sends_on(corners[i], whole);
             for (const std::size_t i : {0, 2, 3})
@@ -136,7 +138,8 @@ private:
 
     void trace_piece(const MeshPiece& piece, const Origin& origin, int splits) {
         const std::vector<MeshPoint> lit = lit_part(piece, origin);
-        if (splits > 0 && (part_widely(lit, origin.event) || deceives(piece, origin))) {
+        if (splits > 0 &&
+            (part_widely(lit, origin.event, splits == most_splits) || deceives(piece, origin))) {
             const auto& [a, b, c] = piece;
             const MeshPoint ab = bender_.between(a, b, 0.5F);
             const MeshPoint bc = bender_.between(b, c, 0.5F);
