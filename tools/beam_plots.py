@@ -4,7 +4,7 @@ import matplotlib
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
 
-from beam_report import AXES, BOUNDS, by_resolution, sweep_time, thresholds
+from beam_report import AXES, BOUNDS, by_resolution, resolved, sweep_time, thresholds
 from beam_trials import microseconds, select
 from plot_panels import COLOURS, LINES, MARKERS
 from record_plots import GREY, PAGE, STYLE, few_ticks, svg
@@ -12,7 +12,7 @@ from record_plots import GREY, PAGE, STYLE, few_ticks, svg
 
 def panels(count):
     figure, axes = plt.subplots(1, count, figsize=(PAGE, 2.6), squeeze=False)
-    figure.subplots_adjust(left=0.08, right=0.985, bottom=0.17, top=0.90, wspace=0.3)
+    figure.subplots_adjust(left=0.075, right=0.985, bottom=0.17, top=0.90, wspace=0.3 + 0.05 * count)
     return figure, list(axes[0])
 
 
@@ -53,7 +53,7 @@ def heights(cells):
     with matplotlib.rc_context(STYLE):
         figure, axes = panels(2)
         for bound, colour, marker in zip(("hybrid", "sphere_swept"), COLOURS, MARKERS):
-            group = by_resolution(select(cells, bound=bound))
+            group = resolved(by_resolution(select(cells, bound=bound)))
             eye = [select(cells, method="none", resolution=cell.value("resolution"))[0] for cell in group]
             x = [cell.counters["height"] for cell in group]
             axes[0].plot(x, [cell.per_point("cone_point_tests") for cell in group], marker=marker, color=colour, label=bound)

@@ -1,5 +1,6 @@
 """Tables (Markdown) and plots (SVG) of results/beamtree, from what beam_trials reads."""
 import dataclasses
+import statistics
 from beam_trials import exponent, microseconds, select
 
 # Chuang and Cheng 1995, sec. 3.3: cone-point tests, beam-point tests and successes at 100 x 100 pixels.
@@ -75,7 +76,7 @@ def heights(cells):
                         + point_costs(cell, eye_pass))
         fits.append(height_fits(bound, cells, resolved(group)))
     return (table(["bound", "polygons", "height"] + COST_HEADING, rows) + "\n\n"
-            + table(["bound", "cone-point tests ~ height^p", "~ polygons^p", "µs a point ~ polygons^p"], fits))
+            + table(["bound", "cone-point tests a point", "~ height^p", "~ polygons^p", "µs a point ~ polygons^p"], fits))
 
 
 def by_resolution(cells):
@@ -83,8 +84,14 @@ def by_resolution(cells):
 
 
 def resolved(cells):
-    """Meshes that resolve the waves: below, every beam is as wide as the pool."""
-    return [cell for cell in cells if int(cell.value("resolution")) >= 16]
+    """Meshes of which no polygon is quartered: coarser ones send as many beams, from trees as high."""
+    return [cell for cell in cells if int(cell.value("resolution")) >= 32]
+
+
+def per_level(cells, tests):
+    """Tests that one more level costs, and the level at which that line starts."""
+    step, start = statistics.linear_regression([cell.counters["height"] for cell in cells], tests)
+    return f"{step:.1f} (height - {-start / step:.1f})"
 
 
 def height_fits(bound, cells, group):
@@ -92,7 +99,7 @@ def height_fits(bound, cells, group):
     times = [microseconds(cell, select(cells, method="none", resolution=cell.value("resolution"))[0])
              for cell in group]
     polygons = [cell.counters["polygons"] for cell in group]
-    return [bound, f"{exponent([cell.counters['height'] for cell in group], tests):.2f}",
+    return [bound, per_level(group, tests), f"{exponent([cell.counters['height'] for cell in group], tests):.2f}",
             f"{exponent(polygons, tests):.2f}", f"{exponent(polygons, times):.2f}"]
 
 
@@ -105,11 +112,11 @@ class WattAxis:
 
     def of(self, cell):
         if self.symbol == "n_s":
-            return cell.counters["polygons"]
+            return cell.counters["beams"]  # polygons are quartered where they are too coarse
         return cell.counters["receiver_polygons"] if self.symbol == "n_d" else int(cell.value(self.parameter))
 
 
-AXES = (WattAxis("n_s", "specular polygons", "resolution"), WattAxis("n_d", "diffuse polygons", "receiver_resolution"),
+AXES = (WattAxis("n_s", "specular polygons, by their beams", "resolution"), WattAxis("n_d", "diffuse polygons", "receiver_resolution"),
         WattAxis("n_l", "light samples", "light_samples"))
 
 
