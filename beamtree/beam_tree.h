@@ -24,8 +24,8 @@ struct BeamTreeParams : BeamParams {
     Bound bound = Bound::hybrid;
     double spread_threshold = 10;  ///< of `hybrid` [degrees]
     ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
-    Tree hierarchy = Tree::quadtree;
-    Leaf leaf = Leaf::n;
+    Tree hierarchy = Tree::quadtree;  ///< where the bound is two_slice and nothing is said: binned
+    Leaf leaf = Leaf::n;              ///< with two_slice always k
 };
 
 /// Throws InputError for what cannot be used or is not built yet.

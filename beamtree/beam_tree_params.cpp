@@ -6,38 +6,51 @@ namespace {
 
 void read_bound(const JsonNode& node, BeamTreeParams& params) {
     constexpr Bound bounds[] = {Bound::single, Bound::double_cone, Bound::hybrid,
-                                Bound::sphere_swept};
-    if (const auto bound = node.find("bound")) {
-        const std::size_t choice =
-            bound->as_choice({"single", "double", "hybrid", "sphere_swept", "two_slice"});
-        if (choice == 4)
-            bound->fail(
-                "\"two_slice\" is not built yet (built: \"single\", \"double\", \"hybrid\", "
-                "\"sphere_swept\")");
-        params.bound = bounds[choice];
-    }
+                                Bound::sphere_swept, Bound::two_slice};
+    if (const auto bound = node.find("bound"))
+        params.bound =
+            bounds[bound->as_choice({"single", "double", "hybrid", "sphere_swept", "two_slice"})];
     if (const auto threshold = node.find("spread_threshold")) {
         params.spread_threshold = threshold->as_number_in(0, 90);
         if (params.bound != Bound::hybrid)
             threshold->fail("only the bound \"hybrid\" has a spread threshold");
     }
-    if (const auto merging = node.find("merging"))
+    if (const auto merging = node.find("merging")) {
         params.merging = merging->as_choice({"rays", "cones"}) == 0
                              ? ConeTreeSettings::Merging::rays
                              : ConeTreeSettings::Merging::cones;
+        if (params.bound == Bound::two_slice && params.merging == ConeTreeSettings::Merging::cones)
+            merging->fail("the bound \"two_slice\" has no cones to merge (take \"rays\")");
+    }
+}
+
+// What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, and do best with
+// the hierarchy that is split by them.
+void read_tree(const JsonNode& node, BeamTreeParams& params) {
+    if (params.bound == Bound::two_slice) {
+        params.hierarchy = BeamTreeParams::Tree::binned;
+        params.leaf = BeamTreeParams::Leaf::k;
+    }
+    if (const auto hierarchy = node.find("hierarchy"))
+        params.hierarchy = hierarchy->as_choice({"quadtree", "binned"}) == 0
+                               ? BeamTreeParams::Tree::quadtree
+                               : BeamTreeParams::Tree::binned;
+    if (const auto leaf = node.find("leaf")) {
+        params.leaf =
+            leaf->as_choice({"n", "k"}) == 0 ? BeamTreeParams::Leaf::n : BeamTreeParams::Leaf::k;
+        if (params.bound == Bound::two_slice && params.leaf == BeamTreeParams::Leaf::n)
+            leaf->fail(
+                "the bound \"two_slice\" would lose light with \"n\": it holds beams only on "
+                "planes "
+                "across a fixed normal (take \"k\", or another bound)");
+    }
 }
 
 }  // namespace
 
 void read(const JsonNode& node, BeamTreeParams& params) {
     read_bound(node, params);
-    if (const auto hierarchy = node.find("hierarchy"))
-        params.hierarchy = hierarchy->as_choice({"quadtree", "binned"}) == 0
-                               ? BeamTreeParams::Tree::quadtree
-                               : BeamTreeParams::Tree::binned;
-    if (const auto leaf = node.find("leaf"))
-        params.leaf =
-            leaf->as_choice({"n", "k"}) == 0 ? BeamTreeParams::Leaf::n : BeamTreeParams::Leaf::k;
+    read_tree(node, params);
     if (const auto intensity = node.find("intensity"))
         if (intensity->as_choice({"area", "refined"}) == 1)
             intensity->fail("\"refined\" is not built yet (built: \"area\")");

@@ -11,16 +11,17 @@
 
 namespace caustics {
 
-/// The bounds of a group of beams that [CC95] and its corrections know. Each holds every point that
-/// test_beam can accept for a beam of the group, on a plane of any tilt.
+/// The bounds of a group of beams that [CC95] and its corrections know. Each cone holds every point
+/// that test_beam can accept for a beam of the group, on a plane of any tilt.
 ///
-/// All of them rest on one fact: an accepted point is X + V with X in the polygon and V a positive
+/// They rest on one fact: an accepted point is X + V with X in the polygon and V a positive
 /// combination of its vertex rays' directions, so any convex set that holds the vertex rays will do.
 enum class Bound {
     single,  ///< a cap of ray directions against the cap of directions to the point (figs. 3, 13)
-    double_cone,  ///< two overlaid cones (figs. 6-8), as r + |x| tan(spread)
-    hybrid,       ///< single below the spread threshold, double from there on
-    sphere_swept  ///< the single cone made exact and cheap: a ball swept along a cone
+    double_cone,   ///< two overlaid cones (figs. 6-8), as r + |x| tan(spread)
+    hybrid,        ///< single below the spread threshold, double from there on
+    sphere_swept,  ///< the single cone made exact and cheap: a ball swept along a cone
+    two_slice      ///< no cone: boxes on two planes (slice_tree.h); never of a cone tree
 };
 
 /// The vertices and rays of a node's beams.

@@ -60,7 +60,7 @@ json describe_params(const PhotonMapParams& p) {
 const char* name(PolygonKind kind) { return kind == PolygonKind::quad ? "quads" : "triangles"; }
 
 json describe_params(const BeamTreeParams& p) {
-    constexpr const char* bounds[] = {"single", "double", "hybrid", "sphere_swept"};
+    constexpr const char* bounds[] = {"single", "double", "hybrid", "sphere_swept", "two_slice"};
     const bool rays = p.merging == ConeTreeSettings::Merging::rays;
     json all = {
         {"bound", bounds[static_cast<std::size_t>(p.bound)]},

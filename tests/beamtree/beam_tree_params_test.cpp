@@ -45,9 +45,23 @@ TEST(BeamTreeParams, AreRead) {
     EXPECT_EQ(params(R"({"spread_threshold": 4.5})").spread_threshold, 4.5);
 }
 
+TEST(BeamTreeParams, TwoSliceBringsWhatFitsIt) {
+    const BeamTreeParams p = params(R"({"bound": "two_slice"})");
+    EXPECT_EQ(p.bound, Bound::two_slice);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::k);
+    EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::binned);
+    EXPECT_EQ(params(R"({"bound": "two_slice", "hierarchy": "quadtree", "leaf": "k"})").hierarchy,
+              BeamTreeParams::Tree::quadtree);
+    EXPECT_NE(error(R"({"bound": "two_slice", "leaf": "n"})").find("would lose light"),
+              std::string::npos);
+    EXPECT_NE(error(R"({"bound": "two_slice", "merging": "cones"})").find("no cones"),
+              std::string::npos);
+    EXPECT_NE(error(R"({"bound": "two_slice", "spread_threshold": 5})").find("hybrid"),
+              std::string::npos);
+}
+
 TEST(BeamTreeParams, NameTheAlternatives) {
     EXPECT_NE(error(R"({"bound": "tripple"})").find("sphere_swept"), std::string::npos);
-    EXPECT_NE(error(R"({"bound": "two_slice"})").find("not built yet"), std::string::npos);
     EXPECT_NE(error(R"({"intensity": "refined"})").find("not built yet"), std::string::npos);
     EXPECT_NE(error(R"({"bound": "single", "spread_threshold": 5})").find("hybrid"),
               std::string::npos);

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <tuple>
 
 #include "beamtree/cone_tree.h"
 #include "beamtree/plane_groups.h"
+#include "beamtree/slice_tree.h"
 #include "core/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
 #include "tests/support/sanitizers.h"
@@ -23,16 +26,16 @@ struct Query {
 
 Vec3 random_direction(Rng& rng) { return uniform_cap(2, rng.next(), rng.next()).normalized(); }
 
-// A quarter of the points anywhere round the scene, the others inside a beam at any distance; planes
-// of any tilt that face some beam.
+// A quarter of the points anywhere round the scene, the others in a beam at any distance, some of them on
+// its edges and corners; planes of any tilt that face some beam.
 std::vector<Query> random_queries(const BeamScene& scene, const BeamSet& set, int count) {
     std::vector<Query> queries;
     Rng rng(7, Stage::test, 0);
     for (int i = 0; i < count; ++i) {
         const Beam& beam = set.beams[rng.next_word() % set.beams.size()];
         const auto rays = set.triangle(beam, 0);
-        const float u = std::sqrt(rng.next());
-        const float v = rng.next();
+        const float u = i % 16 == 1 ? 1 : std::sqrt(rng.next());
+        const float v = i % 8 == 1 ? 0 : rng.next();
         const Vec3 weights(1 - u, u * (1 - v), u * v);
         Vec3 from = Vec3::Zero();
         Vec3 along = Vec3::Zero();
@@ -181,14 +184,15 @@ std::vector<Bounds> all_bounds() {
     return all;
 }
 
-Found search(const BeamSet& set, const ConeTree& tree, const std::vector<Query>& queries) {
+/// Appends the hits of one query.
+using Find = std::function<void(const Query&, std::vector<BeamHit>&, SearchCounts&)>;
+
+Found search(const Find& find, const std::vector<Query>& queries, SearchCounts& counts) {
     Found found;
-    std::vector<std::uint32_t> stack;
     std::vector<BeamHit> hits;
-    SearchCounts counts;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         hits.clear();
-        tree.find(set, queries[i].point, queries[i].normal, stack, hits, counts);
+        find(queries[i], hits, counts);
         add(i, hits, found);
     }
     EXPECT_LE(counts.beam_point_hits, counts.beam_point_tests);
@@ -203,6 +207,47 @@ std::size_t missing(const Found& some, const Found& others) {
     std::set_difference(some.begin(), some.end(), others.begin(), others.end(),
                         std::back_inserter(rest));
     return rest.size();
+}
+
+void expect_same(const Found& found, const Found& truth, const std::string& where) {
+    EXPECT_EQ(missing(truth, found), 0U) << where;
+    EXPECT_EQ(missing(found, truth), 0U) << where;
+}
+
+SlicedBeams sliced(const BeamScene& scene, std::uint32_t set, const PlaneGroup& group,
+                   const std::vector<std::uint32_t>& beams, const std::vector<Query>& queries) {
+    SlicedBeams all{scene.sets, {}, *group.normal, {}};
+    for (const std::uint32_t beam : beams) all.beams.push_back({set, beam});
+    for (const Query& query : queries) all.receivers.extend(query.point);
+    return all;
+}
+
+// Trees of slices over both hierarchies, at any height of the slab, on every instruction set: the same
+// hits after the same tests.
+void expect_slices_as_scan(const BeamScene& scene, std::uint32_t set, const PlaneGroup& group,
+                           const std::vector<Query>& queries, const Found& truth) {
+    const auto& patches = scene.casters[0].mesh.patches;
+    for (const bool regular : {false, true}) {
+        if (regular && patches.empty()) continue;
+        std::optional<std::uint64_t> tests;
+        for (const Isa isa : supported_isas()) {
+            const Hierarchy hierarchy =
+                regular ? quadtree(scene.sets[set], group.beams, patches) : Hierarchy();
+            const SliceTree tree =
+                regular
+                    ? SliceTree(sliced(scene, set, group, hierarchy.order, queries), hierarchy, isa)
+                    : SliceTree(sliced(scene, set, group, group.beams, queries), isa);
+            std::vector<std::uint32_t> stack;
+            SearchCounts counts;
+            const Find find = [&](const Query& query, std::vector<BeamHit>& hits, SearchCounts& c) {
+                tree.find(scene.sets, query.point, stack, hits, c);
+            };
+            expect_same(search(find, queries, counts), truth,
+                        scene.name + ", two_slice, " + name(isa) + ", set " + std::to_string(set));
+            EXPECT_EQ(tests.value_or(counts.cone_point_tests), counts.cone_point_tests);
+            tests = counts.cone_point_tests;
+        }
+    }
 }
 
 // Every bound with both leaf tests, over one hierarchy and the other by turns: what a scan over all
@@ -225,12 +270,17 @@ void expect_as_scan(const BeamScene& scene, int count) {
             for (const Bounds& bounds : all_bounds()) {
                 const Hierarchy& hierarchy = hierarchies[turn++ % hierarchies.size()];
                 const ConeTree tree(set, s, hierarchy, bounds.settings, group.normal);
-                const Found found = search(set, tree, queries);
-                EXPECT_EQ(missing(truth, found), 0U)
-                    << scene.name << ", " << bounds.name << ", set " << s
-                    << (group.normal ? ", k" : ", n");
-                EXPECT_EQ(missing(found, truth), 0U);
+                std::vector<std::uint32_t> stack;
+                SearchCounts counts;
+                const Find find = [&](const Query& query, std::vector<BeamHit>& hits,
+                                      SearchCounts& c) {
+                    tree.find(set, query.point, query.normal, stack, hits, c);
+                };
+                expect_same(search(find, queries, counts), truth,
+                            scene.name + ", " + bounds.name + ", set " + std::to_string(s) +
+                                (group.normal ? ", k" : ", n"));
             }
+            if (group.normal) expect_slices_as_scan(scene, s, group, queries, truth);
         }
     }
 }

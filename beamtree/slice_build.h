@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "beamtree/hierarchy.h"
+#include "beamtree/slice_box.h"
+#include "beamtree/slice_nodes.h"
+
+namespace caustics {
+
+/// A triangle of a beam as a leaf holds it.
+struct SlicedTriangle {
+    std::array<RaySlices, 3> corners;
+    float whole_from = 0;    ///< share of the way down from which all its rays have begun
+    std::uint32_t beam = 0;  ///< as the tree numbers them
+};
+
+/// The nodes of a tree of slices.
+struct SliceNodes {
+    std::vector<SliceNode> nodes;
+    std::vector<SliceLeaf> leaves;
+    std::uint32_t root = 0;
+    std::uint32_t height = 0;  ///< nodes on the longest way down
+};
+
+/// Makes a hierarchy eight wide by opening the child with most triangles again and again. `triangles`
+/// are in the order of the hierarchy's beams; those of one beam side by side.
+SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles);
+
+}  // namespace caustics

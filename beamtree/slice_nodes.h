@@ -1,0 +1,68 @@
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace caustics {
+
+/// The memory of a tree of slices (slice_tree.h), eight things side by side: plain data, so that a
+/// source compiled for wide registers includes no inline code of Eigen or the standard library.
+///
+/// Everything stands at two planes across the tree's axis and moves linearly between them: at the
+/// share t of the way from the upper plane to the lower one a quantity is top + t * growth.
+constexpr size_t slice_width = 8;
+
+/// Which child: a node, or with this bit a leaf.
+constexpr uint32_t slice_leaf_bit = 1U << 31;
+
+/// Boxes that hold the children's beams at every height between the planes. Places that are not
+/// taken have boxes that hold nothing.
+struct alignas(64) SliceNode {
+    float low[2][slice_width];  ///< along both axes of the plane
+    float low_growth[2][slice_width];
+    float high[2][slice_width];
+    float high_growth[2][slice_width];
+    uint32_t child[slice_width];
+    uint32_t count;
+};
+
+/// Triangles of beams: where the rays of their corners meet the planes.
+struct alignas(64) SliceLeaf {
+    float corner[3][2][slice_width];  ///< at the upper plane
+    float growth[3][2][slice_width];
+    /// Twice an area: edges that pass the point on the wrong side by less may be rounding. Negative
+    /// in places that are not taken.
+    float slack[slice_width];
+    /// The share t from which on all three rays have begun. Above it the triangle is clipped, which
+    /// this test leaves to the exact one.
+    float whole_from[slice_width];
+    uint32_t beam[slice_width];  ///< as the tree numbers them
+    uint32_t count;
+};
+
+struct SliceView {
+    const SliceNode* nodes;
+    const SliceLeaf* leaves;
+};
+
+/// A walk through a tree, which pauses while `found` is full: it has ended when the stack is empty.
+struct SliceWalk {
+    float point[2];
+    float share;      ///< t of the point, in [0, 1]
+    uint32_t* stack;  ///< what is still to be visited; room for 7 entries a level and the root
+    size_t stacked;
+    uint32_t* found;    ///< beams whose triangle may hold the point, triangle by triangle
+    size_t found_room;  ///< at least slice_width
+    size_t found_count;
+    uint64_t tests;  ///< boxes and triangles that were tested
+};
+
+/// Goes on with a walk until it ends or `found` might not hold what the next leaf has. Every
+/// instruction set visits the same nodes, finds the same beams in the same order, to the bit.
+using WalkSlices = void (*)(const SliceView&, SliceWalk&);
+
+void walk_slices_plain(const SliceView&, SliceWalk&);
+void walk_slices_avx2(const SliceView&, SliceWalk&);
+void walk_slices_avx512(const SliceView&, SliceWalk&);
+
+}  // namespace caustics

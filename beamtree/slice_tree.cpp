@@ -1,0 +1,175 @@
+#include "beamtree/slice_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "beamtree/slice_build.h"
+#include "beamtree/slice_hierarchy.h"
+
+namespace caustics {
+namespace {
+
+WalkSlices walk_for([[maybe_unused]] Isa isa) {
+#ifdef CAUSTICS_X86_KERNELS
+    if (isa == Isa::avx512) return walk_slices_avx512;
+    if (isa == Isa::avx2) return walk_slices_avx2;
+#endif
+    return walk_slices_plain;
+}
+
+template <typename Do>
+void for_each_ray(const SlicedBeams& from, const BeamNumber& number, const Do& act) {
+    const BeamSet& set = from.sets[number.set];
+    for (const std::uint32_t corner : set.beams[number.beam].corners)
+        if (corner != Beam::none) act(corner);
+}
+
+// The slab from above all polygons to below all receivers, both a little beyond: heights are rounded.
+SliceFrame frame_of(const SlicedBeams& from) {
+    const Vec3d up = from.normal.cast<double>();
+    double top = -std::numeric_limits<double>::infinity();
+    for (const BeamNumber& number : from.beams)
+        for_each_ray(from, number, [&](std::uint32_t ray) {
+            const Vec3& p = from.sets[number.set].rays[ray].position;
+            top = std::max(top, up.dot(p.cast<double>()));
+        });
+    double bottom = top;
+    for (int i = 0; i < 8; ++i) {
+        const auto corner = static_cast<Box::CornerType>(i);
+        bottom = std::min(bottom, up.dot(from.receivers.corner(corner).cast<double>()));
+    }
+    const double beyond = 1e-3 * static_cast<double>(from.receivers.diagonal().norm());
+    const BeamNumber& first = from.beams.front();
+    const BeamSet& set = from.sets[first.set];
+    const Vec3& origin = set.rays[set.beams[first.beam].corners[0]].position;
+    return {from.normal, top + 1e-3 * beyond, bottom - beyond, origin};
+}
+
+/// The beams' rays on the planes.
+class Slicer {
+public:
+    Slicer(const SlicedBeams& from, const SliceFrame& frame)
+        : from_(from), frame_(frame), slices_(from.sets.size()) {
+        const float unknown = std::numeric_limits<float>::quiet_NaN();
+        for (const BeamNumber& number : from.beams) {
+            const std::vector<VertexRay>& rays = from.sets[number.set].rays;
+            std::vector<RaySlices>& of_set = slices_[number.set];
+            of_set.resize(rays.size(), {unknown});
+            for_each_ray(from, number, [&](std::uint32_t ray) {
+                if (std::isnan(of_set[ray][0])) of_set[ray] = frame.slices(rays[ray]);
+            });
+        }
+    }
+
+    SliceBox box(const BeamNumber& number) const {
+        SliceBox box;
+        for_each_ray(from_, number,
+                     [&](std::uint32_t ray) { box.extend(slices_[number.set][ray]); });
+        return box;
+    }
+
+    void add_triangles(const BeamNumber& number, std::uint32_t place,
+                       std::vector<SlicedTriangle>& triangles) const {
+        const BeamSet& set = from_.sets[number.set];
+        const Beam& beam = set.beams[number.beam];
+        for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
+            SlicedTriangle triangle;
+            const std::array<std::uint32_t, 3> corners = {beam.corners[0], beam.corners[1 + i],
+                                                          beam.corners[2 + i]};
+            double lowest = frame_.top();
+            for (std::size_t c = 0; c < 3; ++c) {
+                triangle.corners[c] = slices_[number.set][corners[c]];
+                lowest = std::min(lowest, frame_.height(set.rays[corners[c]].position));
+            }
+            triangle.whole_from = static_cast<float>(frame_.share(lowest)) + 1e-6F;
+            triangle.beam = place;
+            triangles.push_back(triangle);
+        }
+    }
+
+private:
+    const SlicedBeams& from_;
+    const SliceFrame& frame_;
+    std::vector<std::vector<RaySlices>> slices_;  ///< of the beams' rays
+};
+
+// Sorts the beams by the hierarchy.
+Hierarchy split(SlicedBeams& from, const Slicer& slicer) {
+    std::vector<BoxedBeam> boxed;
+    std::size_t most_triangles = 1;
+    for (std::uint32_t i = 0; i < from.beams.size(); ++i) {
+        const BeamNumber& number = from.beams[i];
+        boxed.push_back({slicer.box(number), i});
+        most_triangles =
+            std::max(most_triangles, from.sets[number.set].beams[number.beam].triangle_count());
+    }
+    Hierarchy tree = binned_slices(boxed, static_cast<std::uint32_t>(slice_width / most_triangles));
+    std::vector<BeamNumber> sorted;
+    for (const std::uint32_t place : tree.order) sorted.push_back(from.beams[place]);
+    from.beams = std::move(sorted);
+    return tree;
+}
+
+}  // namespace
+
+SliceTree::SliceTree(SlicedBeams beams, Isa isa) : SliceTree(std::move(beams), nullptr, isa) {}
+
+SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa)
+    : SliceTree(std::move(beams), &hierarchy, isa) {}
+
+SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa)
+    : frame_(frame_of(beams)), walk_(walk_for(isa)) {
+    const Slicer slicer(beams, frame_);
+    const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer);
+    std::vector<SlicedTriangle> triangles;
+    for (std::uint32_t place = 0; place < beams.beams.size(); ++place)
+        slicer.add_triangles(beams.beams[place], place, triangles);
+    SliceNodes made = widen(hierarchy, triangles);
+    nodes_ = std::move(made.nodes);
+    leaves_ = std::move(made.leaves);
+    root_ = made.root;
+    height_ = made.height;
+    beams_ = std::move(beams.beams);
+}
+
+void SliceTree::find(std::span<const BeamSet> sets, const Vec3& point,
+                     std::vector<std::uint32_t>& stack, std::vector<BeamHit>& hits,
+                     SearchCounts& counts) const {
+    const double height = frame_.height(point);
+    if (height > frame_.top()) return;
+    if (height < frame_.bottom()) throw std::out_of_range("a receiver point below the slab");
+    const Vec2d across = frame_.across(point.cast<double>());
+    std::array<std::uint32_t, 64> found;
+    stack.resize(std::max<std::size_t>(stack.size(), 7 * height_ + 8));
+    SliceWalk walk{};
+    walk.point[0] = static_cast<float>(across.x());
+    walk.point[1] = static_cast<float>(across.y());
+    walk.share = static_cast<float>(frame_.share(height));
+    walk.stack = stack.data();
+    walk.stack[walk.stacked++] = root_;
+    walk.found = found.data();
+    walk.found_room = found.size();
+    const TestPlane plane(point, frame_.normal());
+    while (walk.stacked > 0) {
+        walk.found_count = 0;
+        walk_({nodes_.data(), leaves_.data()}, walk);
+        std::uint32_t last = Beam::none;
+        for (std::size_t i = 0; i < walk.found_count; ++i) {
+            if (found[i] == last) continue;  // the other triangle of four corners
+            last = found[i];
+            const BeamNumber& number = beams_[last];
+            find_in_beam(sets[number.set], number, plane, hits, counts);
+        }
+    }
+    counts.cone_point_tests += walk.tests;
+}
+
+std::uint64_t SliceTree::bytes() const {
+    return beams_.size() * sizeof(BeamNumber) + nodes_.size() * sizeof(SliceNode) +
+           leaves_.size() * sizeof(SliceLeaf);
+}
+
+}  // namespace caustics

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "beamtree/beam_point.h"
+#include "beamtree/hierarchy.h"
+#include "beamtree/slice_frame.h"
+#include "beamtree/slice_nodes.h"
+#include "core/isa.h"
+
+namespace caustics {
+
+/// Beams of any sets that are tested on planes across one normal, and the slab in which they can be
+/// asked for.
+struct SlicedBeams {
+    std::span<const BeamSet> sets;
+    std::vector<BeamNumber> beams;  ///< at least one; all of their rays come down to the planes
+    Vec3 normal;                    ///< of the planes, against the light
+    Box receivers;                  ///< where receiver points can be
+};
+
+/// A tree of beams, each node bounded by its rays' boxes on two planes across the normal: above all
+/// polygons and below all receivers. Between the planes a box whose sides move linearly holds all
+/// rays, however they converge and part again, and so all that test_beam can accept on planes across
+/// that normal: such points are means of ray points of their own height, or of points of the
+/// polygon's edges, and those move linearly as well. It is a tree of moving boxes, with depth in
+/// place of time. Eight children a node, eight triangles a leaf, tested at once; the beams that
+/// remain are tested exactly.
+class SliceTree {
+public:
+    /// Splits the beams by binned_slices.
+    SliceTree(SlicedBeams beams, Isa isa);
+    /// With a hierarchy, in the order of which the beams are given.
+    SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa);
+
+    /// Appends the hits at a point. `sets` are those that the tree was made of; `stack` is scratch.
+    /// Counts the boxes and triangles that the point is tested against as cone-point tests, and exact
+    /// tests as beam-point tests. Throws std::out_of_range for a point below all receivers.
+    void find(std::span<const BeamSet> sets, const Vec3& point, std::vector<std::uint32_t>& stack,
+              std::vector<BeamHit>& hits, SearchCounts& counts) const;
+
+    const SliceFrame& frame() const { return frame_; }
+    std::uint64_t node_count() const { return nodes_.size() + leaves_.size(); }
+    std::uint64_t height() const { return height_; }
+    std::uint64_t bytes() const;
+
+private:
+    SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa);
+
+    std::vector<BeamNumber> beams_;  ///< in the order of the leaves
+    SliceFrame frame_;
+    WalkSlices walk_;
+    std::vector<SliceNode> nodes_;
+    std::vector<SliceLeaf> leaves_;
+    std::uint32_t root_ = 0;
+    std::uint32_t height_ = 0;
+};
+
+}  // namespace caustics

@@ -1,0 +1,253 @@
+#include "beamtree/slice_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+#include "beamtree/beam_tree.h"
+#include "beamtree/plane_groups.h"
+#include "beamtree/slice_box.h"
+#include "core/sampling.h"
+#include "tests/beamtree/beam_scenes.h"
+
+namespace caustics {
+namespace {
+
+Box box_of(const Vec3& low, const Vec3& high) { return {low, high}; }
+
+// Everything of one set, across +z.
+SlicedBeams all_of(const std::vector<BeamSet>& sets, const Box& receivers) {
+    SlicedBeams all{sets, {}, Vec3::UnitZ(), receivers};
+    for (std::uint32_t i = 0; i < sets[0].beams.size(); ++i) all.beams.push_back({0, i});
+    return all;
+}
+
+std::vector<std::uint32_t> found_in(const SliceTree& tree, const std::vector<BeamSet>& sets,
+                                    const Vec3& point) {
+    std::vector<std::uint32_t> stack;
+    std::vector<BeamHit> hits;
+    SearchCounts counts;
+    tree.find(sets, point, stack, hits, counts);
+    std::vector<std::uint32_t> beams;
+    for (const BeamHit& hit : hits) beams.push_back(hit.beam);
+    std::sort(beams.begin(), beams.end());
+    return beams;
+}
+
+std::vector<std::uint32_t> scanned(const BeamSet& set, const Vec3& point) {
+    std::vector<std::uint32_t> beams;
+    std::array<BeamHit, 2> hits;
+    const TestPlane plane(point, Vec3::UnitZ());
+    for (std::uint32_t i = 0; i < set.beams.size(); ++i)
+        for (int n = test_beam(set, set.beams[i], plane, hits); n > 0; --n) beams.push_back(i);
+    return beams;
+}
+
+/// Does the box hold what the beam holds? Hits and losses over planes of a tilt [rad].
+struct Loss {
+    int hits = 0;
+    int lost = 0;
+};
+
+Loss loss_at(const BeamSet& set, const SliceFrame& frame, float tilt) {
+    Loss loss;
+    Rng rng(3, Stage::test, 0);
+    for (const Beam& beam : set.beams) {
+        SliceBox box;
+        for (const VertexRay* ray : set.triangle(beam, 0)) box.extend(frame.slices(*ray));
+        for (int i = 0; i < 300; ++i) {
+            const auto height =
+                frame.top() + static_cast<double>(rng.next()) * (frame.bottom() - frame.top());
+            const float turn = 2 * pi * rng.next();
+            const Vec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
+                              std::cos(tilt));
+            const auto& ray = *set.triangle(beam, 0)[rng.next_word() % 3];
+            const double down = (static_cast<double>(ray.position.z()) - height) /
+                                -static_cast<double>(ray.direction.z());
+            const Vec3 point = ray.position + static_cast<float>(down) * ray.direction +
+                               0.04F * Vec3(rng.next() - 0.5F, rng.next() - 0.5F, 0);
+            std::array<BeamHit, 2> hits;
+            if (test_beam(set, beam, {point, normal}, hits) == 0) continue;
+            ++loss.hits;
+            const Vec2d at = frame.across(point.cast<double>());
+            const auto t = static_cast<float>(frame.share(frame.height(point)));
+            for (int axis = 0; axis < 2; ++axis) {
+                const auto x = static_cast<float>(at[axis]);
+                const float low = (1 - t) * box.low(axis, 0) + t * box.low(axis, 1);
+                const float high = (1 - t) * box.high(axis, 0) + t * box.high(axis, 1);
+                if (x >= low - 1e-6F && x <= high + 1e-6F) continue;
+                ++loss.lost;
+                break;
+            }
+        }
+    }
+    return loss;
+}
+
+// Why `leaf: n` is refused: boxes on two planes close to each other hold nothing on steep planes, whose
+// caustic polygons reach out of the slab.
+TEST(SliceBox, LosesHitsOfTiltedPlanesInAThinSlab) {
+    const BeamScene pool("pool", pool_desc(16));
+    const BeamSet& set = pool.sets[pool.sets[0].refracted ? 0 : 1];
+    ASSERT_TRUE(set.refracted);
+    const SliceFrame thin(Vec3::UnitZ(), -0.9, -1.1, Vec3::Zero());
+    const Loss level = loss_at(set, thin, 0);
+    EXPECT_GT(level.hits, 10'000);
+    EXPECT_EQ(level.lost, 0);
+    const Loss steep = loss_at(set, thin, 80 * pi / 180);
+    EXPECT_GT(steep.hits, 10'000);
+    EXPECT_GT(steep.lost, steep.hits / 1000);
+    EXPECT_EQ(loss_at(set, {Vec3::UnitZ(), 0.1, -1.1, Vec3::Zero()}, 0).lost, 0);
+}
+
+BeamTreeParams params_of(Bound bound) {
+    BeamTreeParams params;
+    params.bound = bound;
+    params.max_bounces = 1;
+    if (bound != Bound::two_slice) return params;
+    params.leaf = BeamTreeParams::Leaf::k;
+    params.hierarchy = BeamTreeParams::Tree::binned;
+    return params;
+}
+
+struct Answer {
+    std::vector<float> irradiance;
+    Counters counters;
+};
+
+// On the floor at z, and on a wall there.
+Answer ask(const Scene& scene, const BeamTreeParams& params, const RunOptions& options, float z,
+           int count) {
+    const auto estimator = build(scene, params, options);
+    const auto context = estimator->make_context();
+    Rng rng(2, Stage::test, 0);
+    Answer answer;
+    for (int i = 0; i < count; ++i) {
+        ReceiverPoint point{};
+        point.position = Vec3(2 * rng.next() - 1, 2 * rng.next() - 1, z);
+        point.geometric_normal = point.shading_normal = Vec3::UnitZ();
+        Estimate estimate;
+        estimator->irradiance(std::span(&point, 1), std::span(&estimate, 1), *context);
+        answer.irradiance.push_back(estimate.value[1]);
+    }
+    context->add_to(answer.counters);
+    return answer;
+}
+
+// Both leaf tests are one where the receiver lies across the fixed normal: the paper's tree and this
+// one give the same light to the bit, on every instruction set.
+TEST(SliceTree, GivesThePapersLightWhereTheNormalsAreOne) {
+    SceneDesc desc = pool_desc(24);
+    desc.point_lights.push_back(support::point_light({-0.7, 0.2, 1.9}, 6));
+    const Scene scene(std::move(desc));
+    const Answer paper = ask(scene, params_of(Bound::hybrid), {}, -1, 4000);
+    std::optional<Answer> first;
+    for (const Isa isa : supported_isas()) {
+        RunOptions options;
+        options.isa = isa;
+        const Answer slices = ask(scene, params_of(Bound::two_slice), options, -1, 4000);
+        EXPECT_EQ(slices.irradiance, paper.irradiance);
+        EXPECT_EQ(slices.counters.at("beam_point_hits"), paper.counters.at("beam_point_hits"));
+        if (first) {
+            EXPECT_EQ(slices.counters, first->counters);
+        }
+        first = slices;
+    }
+    EXPECT_GT(std::accumulate(paper.irradiance.begin(), paper.irradiance.end(), 0.0F), 100);
+    EXPECT_LT(first->counters.at("cone_point_tests"), paper.counters.at("cone_point_tests"));
+    EXPECT_LT(2 * first->counters.at("beam_point_tests"), paper.counters.at("beam_point_tests"));
+}
+
+// Lights share a tree, unless it follows the quadtree of the mesh.
+TEST(SliceTree, HoldsTheBeamsOfAllLights) {
+    SceneDesc desc = pool_desc(8);
+    desc.point_lights.clear();
+    for (const double x : {-0.3, -0.1, 0.2, 0.3})
+        desc.point_lights.push_back(support::point_light({x, 0.2, 6}, 60));
+    const Scene scene(std::move(desc));
+    BeamTreeParams params = params_of(Bound::two_slice);
+    const auto trees = [&] {
+        return build(scene, params, {})->build_report().counters.at("trees");
+    };
+    EXPECT_EQ(trees(), 2U);  // down into the water, and reflected
+    const Answer binned = ask(scene, params, {}, -0.6F, 500);
+    params.hierarchy = BeamTreeParams::Tree::quadtree;
+    EXPECT_EQ(trees(), 8U);
+    const Answer regular = ask(scene, params, {}, -0.6F, 500);
+    EXPECT_EQ(binned.irradiance, regular.irradiance);
+}
+
+// Rays of a grid of triangles that all meet in one point, and part again.
+BeamSet lens(int cells, const Vec3& focus, const Vec3& shift) {
+    BeamSet set;
+    const auto n = static_cast<std::uint32_t>(cells);
+    for (std::uint32_t i = 0; i <= n; ++i)
+        for (std::uint32_t j = 0; j <= n; ++j) {
+            const Vec3 from = shift + Vec3(static_cast<float>(i), static_cast<float>(j), 0) /
+                                          static_cast<float>(cells);
+            set.rays.push_back({from, (focus + shift - from).normalized()});
+        }
+    for (std::uint32_t i = 0; i < n; ++i)
+        for (std::uint32_t j = 0; j < n; ++j) {
+            const std::uint32_t a = i * (n + 1) + j;
+            Beam beam;
+            beam.corners = {a, a + 1, a + n + 2, Beam::none};
+            set.beams.push_back(beam);
+            beam.corners = {a, a + n + 2, a + n + 1, Beam::none};
+            set.beams.push_back(beam);
+        }
+    return set;
+}
+
+void expect_as_scan(const std::vector<BeamSet>& sets, const Box& where, int count) {
+    Rng rng(9, Stage::test, 0);
+    const SliceTree tree(all_of(sets, where), widest_isa());
+    std::size_t hits = 0;
+    for (int i = 0; i < count; ++i) {
+        const Vec3 share(rng.next(), rng.next(), rng.next());
+        const Vec3 point = where.min() + share.cwiseProduct(where.diagonal());
+        const auto truth = scanned(sets[0], point);
+        EXPECT_EQ(found_in(tree, sets, point), truth);
+        hits += truth.size();
+    }
+    EXPECT_GT(hits, 0U);
+}
+
+TEST(SliceTree, FollowsBeamsThroughAFocus) {
+    const Vec3 focus(0.5F, 0.5F, -1);
+    for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(4000, -9000, 700)}) {
+        const std::vector<BeamSet> sets = {lens(9, focus, shift)};
+        const Box where = box_of(shift + Vec3(0, 0, -2), shift + Vec3(1, 1, 0));
+        expect_as_scan(sets, where, 3000);
+        // All beams meet here.
+        const SliceTree tree(all_of(sets, where), widest_isa());
+        const Vec3 at = shift + focus + Vec3(1e-3F, 2e-3F, 0);
+        EXPECT_EQ(found_in(tree, sets, at), scanned(sets[0], at));
+    }
+}
+
+TEST(SliceTree, TakesBeamsThatCannotBeParted) {
+    for (const int count : {1, 2, 7, 8, 9, 100}) {
+        std::vector<BeamSet> sets = {lens(1, {0.5F, 0.5F, -1}, Vec3::Zero())};
+        sets[0].beams.resize(1);
+        sets[0].beams.resize(static_cast<std::size_t>(count), sets[0].beams[0]);
+        const SliceTree tree(all_of(sets, box_of({0, 0, -3}, {1, 1, 0})), widest_isa());
+        EXPECT_EQ(found_in(tree, sets, {0.3F, 0.6F, -0.5F}).size(),
+                  static_cast<std::size_t>(count));
+        EXPECT_TRUE(found_in(tree, sets, {2, 2, -0.5F}).empty());
+    }
+}
+
+TEST(SliceTree, RefusesPointsBelowItsSlab) {
+    const std::vector<BeamSet> sets = {lens(3, {0.5F, 0.5F, -1}, Vec3::Zero())};
+    const SliceTree tree(all_of(sets, box_of({0, 0, -2}, {1, 1, 0})), widest_isa());
+    EXPECT_TRUE(found_in(tree, sets, {0.5F, 0.5F, 0.1F}).empty());  // above all polygons
+    EXPECT_THROW(found_in(tree, sets, {0.5F, 0.5F, -2.1F}), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace caustics
