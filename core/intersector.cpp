@@ -10,6 +10,7 @@
 #include <emmintrin.h>
 #endif
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -80,10 +81,13 @@ void exact_bounds(const RTCBoundsFunctionArguments* args) {
     *args->bounds_o = {low.x(), low.y(), low.z(), 0, high.x(), high.y(), high.z(), 0};
 }
 
-std::optional<ExactHit> exact_hit(const void* user, const RTCRay& ray) {
-    return static_cast<const ExactGeometry*>(user)->intersect(Vec3(ray.org_x, ray.org_y, ray.org_z),
-                                                              Vec3(ray.dir_x, ray.dir_y, ray.dir_z),
-                                                              ray.tnear, ray.tfar);
+std::optional<ExactHit> exact_hit(const void* user, RTCRayN* rays, unsigned n, unsigned i) {
+    const Vec3 origin(RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i),
+                      RTCRayN_org_z(rays, n, i));
+    const Vec3 direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i),
+                         RTCRayN_dir_z(rays, n, i));
+    return static_cast<const ExactGeometry*>(user)->intersect(
+        origin, direction, RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i));
 }
 
 // What Embree hands on to the functions of exact shapes; versions 3 and 4 differ here and below.
@@ -94,26 +98,30 @@ using EmbreeContext = RTCIntersectContext;
 #endif
 struct Query {
     EmbreeContext context;  // first, so that a pointer to it is one to the query
-    ExactHit exact;         // of the exact shape hit last
+    std::array<ExactHit, Scene::most_together> exact;  // of the exact shape hit last, by ray's id
 };
 
 void exact_intersect(const RTCIntersectFunctionNArguments* args) {
-    if (args->valid[0] == 0) return;
-    auto* rayhit = reinterpret_cast<RTCRayHit*>(args->rayhit);
-    const std::optional<ExactHit> hit = exact_hit(args->geometryUserPtr, rayhit->ray);
-    if (!hit) return;
-    rayhit->ray.tfar = static_cast<float>(hit->distance);
-    rayhit->hit.geomID = args->geomID;
-    rayhit->hit.primID = args->primID;
-    // Embree keeps the rounded distance only. Each hit is nearer than all before it, so that the
-    // last one stays.
-    reinterpret_cast<Query*>(args->context)->exact = *hit;
+    const unsigned n = args->N;
+    RTCRayN* const rays = RTCRayHitN_RayN(args->rayhit, n);
+    RTCHitN* const hits = RTCRayHitN_HitN(args->rayhit, n);
+    for (unsigned i = 0; i < n; ++i) {
+        if (args->valid[i] == 0) continue;
+        const std::optional<ExactHit> hit = exact_hit(args->geometryUserPtr, rays, n, i);
+        if (!hit) continue;
+        RTCRayN_tfar(rays, n, i) = static_cast<float>(hit->distance);
+        RTCHitN_geomID(hits, n, i) = args->geomID;
+        RTCHitN_primID(hits, n, i) = args->primID;
+        // Embree keeps the rounded distance only. Each hit is nearer than all before it, so that
+        // the last one stays.
+        reinterpret_cast<Query*>(args->context)->exact[RTCRayN_id(rays, n, i)] = *hit;
+    }
 }
 
 void exact_occluded(const RTCOccludedFunctionNArguments* args) {
-    if (args->valid[0] == 0) return;
-    auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-    if (exact_hit(args->geometryUserPtr, *ray)) ray->tfar = -std::numeric_limits<float>::infinity();
+    for (unsigned i = 0; i < args->N; ++i)
+        if (args->valid[i] != 0 && exact_hit(args->geometryUserPtr, args->ray, args->N, i))
+            RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
 }
 
 RTCGeometry mesh_geometry(RTCDevice device, const Mesh& mesh) {
@@ -166,6 +174,41 @@ void intersect_scene(RTCScene scene, RTCRayHit& rayhit, Query& query) {
     rtcInitIntersectContext(&query.context);
     rtcIntersect1(scene, &query.context, &rayhit);
 #endif
+}
+
+using Packet = RTCRayHit16;
+static_assert(Scene::most_together == 16);
+
+void intersect_packet(RTCScene scene, const int* valid, Packet& packet, Query& query) {
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&query.context);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.context;
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &packet, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &query.context, &packet);
+#endif
+}
+
+void write_ray(const Ray& ray, unsigned i, Packet& packet) {
+    packet.ray.org_x[i] = ray.origin.x();
+    packet.ray.org_y[i] = ray.origin.y();
+    packet.ray.org_z[i] = ray.origin.z();
+    packet.ray.tnear[i] = 0;
+    packet.ray.dir_x[i] = ray.direction.x();
+    packet.ray.dir_y[i] = ray.direction.y();
+    packet.ray.dir_z[i] = ray.direction.z();
+    packet.ray.time[i] = 0;
+    packet.ray.tfar[i] = ray.max_distance;
+    packet.ray.mask[i] = ~0U;
+    packet.ray.id[i] = i;
+    packet.ray.flags[i] = 0;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
 }
 
 void occlude_scene(RTCScene scene, RTCRay& ray) {
@@ -254,6 +297,26 @@ Intersector::Intersector(const std::vector<Shape>& shapes, const std::vector<flo
 
 Intersector::~Intersector() = default;
 
+// What Embree says of a ray's end.
+struct Intersector::Arrival {
+    unsigned geometry;
+    unsigned primitive;
+    float u, v;
+    float distance;
+    const ExactHit& exact;
+};
+
+void Intersector::fill(const Arrival& arrival, SurfacePoint& point) const {
+    point.shape = arrival.geometry;
+    point.distance = arrival.distance;
+    point.offset = offsets_[arrival.geometry];
+    const auto& geometry = embree_->geometries[arrival.geometry];
+    if (const auto* mesh = std::get_if<Mesh>(&geometry))
+        fill_mesh_point(*mesh, arrival.primitive, arrival.u, arrival.v, point);
+    else
+        fill_exact_point(std::get<ExactGeometry>(geometry), arrival.exact.local, point);
+}
+
 std::optional<SurfacePoint> Intersector::intersect(const Ray& ray) const {
     RTCRayHit rayhit;
     write_ray(ray, rayhit.ray);
@@ -261,20 +324,30 @@ std::optional<SurfacePoint> Intersector::intersect(const Ray& ray) const {
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     Query query;
     intersect_scene(embree_->scene, rayhit, query);
-    const unsigned index = rayhit.hit.geomID;
-    if (index == RTC_INVALID_GEOMETRY_ID) return {};
-
+    const RTCHit& hit = rayhit.hit;
+    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     std::optional<SurfacePoint> found(std::in_place);
-    SurfacePoint& point = *found;
-    point.shape = index;
-    point.distance = rayhit.ray.tfar;
-    point.offset = offsets_[index];
-    if (const auto* mesh = std::get_if<Mesh>(&embree_->geometries[index]))
-        fill_mesh_point(*mesh, rayhit.hit.primID, rayhit.hit.u, rayhit.hit.v, point);
-    else
-        fill_exact_point(std::get<ExactGeometry>(embree_->geometries[index]), query.exact.local,
-                         point);
+    fill({hit.geomID, hit.primID, hit.u, hit.v, rayhit.ray.tfar, query.exact[0]}, *found);
     return found;
+}
+
+void Intersector::intersect_together(std::span<const Ray> rays,
+                                     std::span<std::optional<SurfacePoint>> hits) const {
+    Packet packet;
+    alignas(64) std::array<int, Scene::most_together> valid{};
+    for (unsigned i = 0; i < rays.size(); ++i) {
+        valid[i] = -1;
+        write_ray(rays[i], i, packet);
+    }
+    Query query;
+    intersect_packet(embree_->scene, valid.data(), packet, query);
+    const RTCHit16& hit = packet.hit;
+    for (unsigned i = 0; i < rays.size(); ++i) {
+        hits[i].reset();
+        if (hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        fill({hit.geomID[i], hit.primID[i], hit.u[i], hit.v[i], packet.ray.tfar[i], query.exact[i]},
+             hits[i].emplace());
+    }
 }
 
 bool Intersector::occluded(const Ray& ray) const {

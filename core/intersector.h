@@ -2,13 +2,14 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/scene.h"
 
 namespace caustics {
 
-/// Embree behind three calls: triangle meshes as they are, exact shapes as user geometry solved
+/// Embree behind four calls: triangle meshes as they are, exact shapes as user geometry solved
 /// in double. Robust mode; the tree is built by one thread, so that hits are the same everywhere.
 class Intersector {
 public:
@@ -19,10 +20,16 @@ public:
     Intersector& operator=(const Intersector&) = delete;
 
     std::optional<SurfacePoint> intersect(const Ray& ray) const;
+    /// As Scene::intersect_together.
+    void intersect_together(std::span<const Ray> rays,
+                            std::span<std::optional<SurfacePoint>> hits) const;
     bool occluded(const Ray& ray) const;
 
 private:
     struct Embree;
+    struct Arrival;
+    void fill(const Arrival& arrival, SurfacePoint& point) const;
+
     const std::vector<float>& offsets_;
     std::unique_ptr<Embree> embree_;
 };

@@ -1,5 +1,8 @@
 #include "core/light_path.h"
 
+#include <algorithm>
+#include <array>
+
 #include "core/optics.h"
 
 namespace caustics {
@@ -80,37 +83,51 @@ void add_deposit(const Scene& scene, const SurfacePoint& hit, const Vec3& wi, co
     deposit.front = front;
 }
 
-// Moves a flight to its next caster. Empty when it has ended before, perhaps with a deposit.
-std::optional<SurfacePoint> reach_caster(const Scene& scene, const LightPathSettings& settings,
-                                         Flight& flight, LightPathCounts& counts,
-                                         std::optional<Deposit>& deposit) {
-    if (settings.traced != nullptr) settings.traced->push_back(flight.ray);
-    std::optional<SurfacePoint> hit = scene.intersect(flight.ray);
+// Whether a flight has come to a caster that it goes on from. Otherwise it has ended, perhaps with a
+// deposit.
+bool reaches_caster(const Scene& scene, const LightPathSettings& settings,
+                    const std::optional<SurfacePoint>& hit, Flight& flight, LightPathCounts& counts,
+                    std::optional<Deposit>& deposit) {
     if (!hit) {
         ++(flight.bounces == 0 ? counts.missed : counts.escaped);
-        return hit;
+        return false;
     }
     const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
     const bool arrived = is_receiver(bsdf);
     if (flight.bounces == 0 && arrived) {
         ++counts.missed;
-        hit.reset();
-        return hit;
+        return false;
     }
     const Vec3 w = -flight.ray.direction;
     flight.flux *= segment_transmittance(
         flight.start_medium, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
     if (arrived && is_black(flight.flux)) {
         ++counts.absorbed;
-        hit.reset();
-    } else if (arrived) {
+        return false;
+    }
+    if (arrived) {
         add_deposit(scene, *hit, w, flight.flux, flight.bounces, deposit);
         ++(deposit ? counts.stored : counts.on_black_side);
-        hit.reset();
-    } else if (flight.bounces == settings.max_bounces) {
-        ++counts.depth_limited;
-        hit.reset();
+        return false;
     }
+    if (flight.bounces == settings.max_bounces) {
+        ++counts.depth_limited;
+        return false;
+    }
+    return true;
+}
+
+void record(const LightPathSettings& settings, const Ray& ray) {
+    if (settings.traced != nullptr) settings.traced->push_back(ray);
+}
+
+// Moves a flight to its next caster. Empty when it has ended before, perhaps with a deposit.
+std::optional<SurfacePoint> reach_caster(const Scene& scene, const LightPathSettings& settings,
+                                         Flight& flight, LightPathCounts& counts,
+                                         std::optional<Deposit>& deposit) {
+    record(settings, flight.ray);
+    std::optional<SurfacePoint> hit = scene.intersect(flight.ray);
+    if (!reaches_caster(scene, settings, hit, flight, counts, deposit)) hit.reset();
     return hit;
 }
 
@@ -148,6 +165,20 @@ const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux) {
     return nullptr;
 }
 
+// The event at a caster; false when it ends the flight.
+bool goes_on_from(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng,
+                  LightPathCounts& counts) {
+    const SpecularSplit split = split_at(scene, hit, flight);
+    const Vec3* const direction = roulette(split, rng, flight.flux);
+    if (direction == nullptr) {
+        ++counts.absorbed;
+        return false;
+    }
+    ++(direction == &split.reflected ? counts.reflected : counts.refracted);
+    leave(scene, hit, *direction, flight);
+    return true;
+}
+
 }  // namespace
 
 std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle& particle,
@@ -155,17 +186,61 @@ std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle&
                                         LightPathCounts& counts) {
     Flight flight{particle.ray, particle.flux};
     std::optional<Deposit> deposit;
-    while (const auto hit = reach_caster(scene, settings, flight, counts, deposit)) {
-        const SpecularSplit split = split_at(scene, *hit, flight);
-        const Vec3* const direction = roulette(split, rng, flight.flux);
-        if (direction == nullptr) {
-            ++counts.absorbed;
-            return deposit;
-        }
-        ++(direction == &split.reflected ? counts.reflected : counts.refracted);
-        leave(scene, *hit, *direction, flight);
-    }
+    while (const auto hit = reach_caster(scene, settings, flight, counts, deposit))
+        if (!goes_on_from(scene, *hit, flight, rng, counts)) break;
     return deposit;
+}
+
+namespace {
+
+// A flight of many.
+struct OneOfMany : Flight {
+    std::size_t number;  // of its start
+};
+
+// Moves up to Scene::most_together flights along one segment; those that go on are kept in front.
+std::size_t advance(const Scene& scene, std::span<OneOfMany> flights,
+                    std::span<LightPathStart> starts, const LightPathSettings& settings,
+                    LightPathCounts& counts, std::span<std::optional<Deposit>> deposits) {
+    std::array<Ray, Scene::most_together> rays;
+    std::array<std::optional<SurfacePoint>, Scene::most_together> hits;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        rays[i] = flights[i].ray;
+        record(settings, rays[i]);
+    }
+    scene.intersect_together(std::span(rays).first(flights.size()), hits);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        OneOfMany& flight = flights[i];
+        if (reaches_caster(scene, settings, hits[i], flight, counts, deposits[flight.number]) &&
+            goes_on_from(scene, *hits[i], flight, starts[flight.number].rng, counts))
+            flights[kept++] = flight;
+    }
+    return kept;
+}
+
+}  // namespace
+
+void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
+                       const LightPathSettings& settings, LightPathCounts& counts,
+                       std::span<std::optional<Deposit>> deposits) {
+    std::vector<OneOfMany> flights;
+    flights.reserve(starts.size());
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        deposits[i].reset();
+        flights.push_back({{starts[i].particle.ray, starts[i].particle.flux}, i});
+    }
+    while (!flights.empty()) {
+        std::size_t kept = 0;
+        for (std::size_t first = 0; first < flights.size(); first += Scene::most_together) {
+            const auto some = std::span(flights).subspan(
+                first, std::min(Scene::most_together, flights.size() - first));
+            const std::size_t left = advance(scene, some, starts, settings, counts, deposits);
+            std::copy_n(some.begin(), left, flights.begin() + static_cast<std::ptrdiff_t>(kept));
+            kept += left;
+        }
+        flights.resize(kept);
+    }
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/caustic_estimator.h"
@@ -77,6 +78,19 @@ struct LightPathSettings {
 std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle& particle,
                                         const LightPathSettings& settings, Rng& rng,
                                         LightPathCounts& counts);
+
+/// A particle on its start, with the random numbers of its path.
+struct LightPathStart {
+    LightParticle particle;
+    Rng rng;
+};
+
+/// trace_light_path for many particles side by side, one segment of all of them after the other.
+/// Made for particles that leave near each other: their rays share the way through the scene
+/// (Scene::intersect_together). `deposits` gets one, or none, for each start.
+void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
+                       const LightPathSettings& settings, LightPathCounts& counts,
+                       std::span<std::optional<Deposit>> deposits);
 
 /// Follows a particle and all its branches; appends their deposits, in a fixed order.
 void trace_split_path(const Scene& scene, const LightParticle& particle,

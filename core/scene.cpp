@@ -34,6 +34,11 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
     return intersector_->intersect(ray);
 }
 
+void Scene::intersect_together(std::span<const Ray> rays,
+                               std::span<std::optional<SurfacePoint>> hits) const {
+    intersector_->intersect_together(rays, hits);
+}
+
 bool Scene::occluded(const SegmentEnd& from, const SegmentEnd& to) const {
     const Vec3 towards = to.position - from.position;
     Ray ray;

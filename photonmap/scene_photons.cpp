@@ -42,40 +42,63 @@ public:
 
     void trace(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const override {
         chunk.counts.emitted += last - first;
-        std::vector<Start> starts;
-        starts.reserve(paths_at_once);
+        Batch batch;
         while (first < last) {
             const std::uint64_t end = std::min(last, first + paths_at_once);
-            starts.clear();
+            batch.clear();
             for (std::uint64_t path = first; path < end; ++path) {
                 Rng rng(settings_.seed, settings_.stage, path);
                 const std::optional<LightParticle> particle = emission_.emit(point(path, rng), rng);
-                if (particle) starts.push_back({*particle, path, rng});
+                if (particle) batch.add({*particle, rng}, path);
             }
-            chunk.counts.aimed += starts.size();
-            for (Start& start : starts) follow(start, chunk);
+            chunk.counts.aimed += batch.starts.size();
+            follow(batch, chunk);
             first = end;
         }
     }
 
 private:
-    /// Emission depends on no ray: done for some paths at a time, their arithmetic overlaps.
-    static constexpr std::uint64_t paths_at_once = 64;
-    struct Start {
-        LightParticle particle;
-        std::uint64_t path;
-        Rng rng;
+    static constexpr std::uint64_t paths_at_once = 256;
+    /// Paths on their start.
+    struct Batch {
+        std::vector<LightPathStart> starts;
+        std::vector<std::uint64_t> paths;  ///< their numbers
+        std::vector<std::optional<Deposit>> deposits;
+
+        void clear() {
+            starts.clear();
+            paths.clear();
+        }
+        void add(const LightPathStart& start, std::uint64_t path) {
+            starts.push_back(start);
+            paths.push_back(path);
+        }
     };
 
-    void follow(Start& start, PhotonChunk& chunk) const {
+    void follow(Batch& batch, PhotonChunk& chunk) const {
         if (settings_.path.interaction == Interaction::split) {
+            follow_branches(batch, chunk);
+            return;
+        }
+        batch.deposits.resize(batch.starts.size());
+        if (settings_.strata)  // neighbours in the square start side by side
+            trace_light_paths(scene_, batch.starts, settings_.path, chunk.counts, batch.deposits);
+        else
+            for (std::size_t i = 0; i < batch.starts.size(); ++i)
+                batch.deposits[i] =
+                    trace_light_path(scene_, batch.starts[i].particle, settings_.path,
+                                     batch.starts[i].rng, chunk.counts);
+        for (std::size_t i = 0; i < batch.starts.size(); ++i)
+            if (batch.deposits[i]) chunk.add(batch.paths[i], *batch.deposits[i]);
+    }
+
+    void follow_branches(Batch& batch, PhotonChunk& chunk) const {
+        for (std::size_t i = 0; i < batch.starts.size(); ++i) {
+            LightPathStart& start = batch.starts[i];
             chunk.deposits.clear();
             trace_split_path(scene_, start.particle, settings_.path, start.rng, chunk.counts,
                              chunk.deposits);
-            for (const Deposit& deposit : chunk.deposits) chunk.add(start.path, deposit);
-        } else if (const auto deposit = trace_light_path(scene_, start.particle, settings_.path,
-                                                         start.rng, chunk.counts)) {
-            chunk.add(start.path, *deposit);
+            for (const Deposit& deposit : chunk.deposits) chunk.add(batch.paths[i], deposit);
         }
     }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/exact_shape.h"
@@ -105,6 +106,49 @@ TEST(Intersector, AnExactHeightfieldIsTheLimitOfItsMeshes) {
         EXPECT_GT(near->shading_normal.dot(hit->shading_normal), 0.9999F);
     }
     EXPECT_GT(compared, 500);
+}
+
+// Bundles of rays from one place towards meshes and exact shapes that overlap, more or less parallel,
+// of every size a packet may have.
+TEST(Intersector, RaysThatGoTogetherHitWhatTheyHitAlone) {
+    const Scene scene = scene_of(
+        {water(turned()), exact(Primitive::sphere, Eigen::Translation3d(0, 0, 1) * turned()),
+         support::mesh("torus", tessellate_heightfield(water(turned()).field, 64),
+                       Eigen::Translation3d(0.2, 0.1, 0.2) * turned(), {}),
+         exact(Primitive::rectangle, Eigen::Translation3d(0, 0, -1) * Eigen::Scaling(5.0))});
+    Rng rng(9, Stage::test, 0);
+    std::array<Ray, Scene::most_together> rays;
+    std::array<std::optional<SurfacePoint>, Scene::most_together> together;
+    std::array<int, 4> hits{};
+    int misses = 0, elsewhere = 0;
+    for (int bundle = 0; bundle < 3000; ++bundle) {
+        const std::size_t count = 1 + static_cast<std::size_t>(bundle) % rays.size();
+        const Vec3 o = random_point(rng, 3);
+        const Vec3 towards = (random_point(rng, 1) - o).normalized();
+        const float spread = rng.next() < 0.2F ? 2 : 0.05F;
+        for (std::size_t i = 0; i < count; ++i)
+            rays[i] = {o, (towards + random_point(rng, spread)).normalized(),
+                       rng.next() < 0.1F ? 2.5F : Ray().max_distance};
+        scene.intersect_together(std::span(rays).first(count), together);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto alone = scene.intersect(rays[i]);
+            if (!alone || !together[i] || alone->shape != together[i]->shape) {
+                ++(alone || together[i] ? elsewhere : misses);
+                continue;
+            }
+            ++hits[alone->shape];
+            EXPECT_LT((alone->position - together[i]->position).norm(), 1e-5F);
+            EXPECT_NEAR(alone->distance, together[i]->distance, 1e-5F);
+            EXPECT_EQ(alone->offset, together[i]->offset);
+            if (scene.shape_at(*alone).primitive == Primitive::mesh) continue;
+            EXPECT_EQ(alone->position, together[i]->position);
+            EXPECT_EQ(alone->geometric_normal, together[i]->geometric_normal);
+            EXPECT_EQ(alone->uv, together[i]->uv);
+        }
+    }
+    for (const int of_shape : hits) EXPECT_GT(of_shape, 1000);
+    EXPECT_GT(misses, 1000);
+    EXPECT_LE(elsewhere, 2);  // rounding at an edge
 }
 
 struct Placement {

@@ -243,6 +243,47 @@ TEST(LightPath, EveryPathHasOneEnd) {
     }
 }
 
+// Absorbing glass round a ball, mirrors, water as a mesh: paths side by side against one by one.
+TEST(LightPath, PathsThatGoTogetherArriveWhereTheyArriveAlone) {
+    SceneDesc desc = ball_lit_from_a_point(1, 4);
+    desc.shapes.push_back(support::sphere("inner", {0.2, 0, 0}, 0.5,
+                                          support::glass(1.2F, 1.5F, Spectrum(0.1F, 0.5F, 1))));
+    desc.shapes.push_back(support::horizontal("floor", -1.5, 2, true, support::diffuse(0.5F)));
+    desc.shapes.push_back(
+        support::rectangle("mirror", {2, 0, 0}, {0, 1, 0}, {0, 0, 1}, support::mirror(0.5F)));
+    const Scene scene(std::move(desc));
+    const AimedEmission emission(scene);
+    for (const int max_bounces : {1, 3, 16}) {
+        const LightPathSettings settings{max_bounces};
+        std::vector<LightPathStart> starts;
+        for (std::uint64_t path = 0; starts.size() < 5000; ++path) {
+            Rng rng(3, Stage::test, path);
+            if (const auto particle = emission.emit(rng)) starts.push_back({*particle, rng});
+        }
+        std::vector<LightPathStart> side_by_side = starts;
+        std::vector<std::optional<Deposit>> deposits(starts.size());
+        LightPathCounts together, alone;
+        trace_light_paths(scene, side_by_side, settings, together, deposits);
+        for (std::size_t i = 0; i < starts.size(); ++i) {
+            const auto expected =
+                trace_light_path(scene, starts[i].particle, settings, starts[i].rng, alone);
+            ASSERT_EQ(deposits[i].has_value(), expected.has_value()) << i;
+            if (!expected) continue;
+            EXPECT_EQ(deposits[i]->shape, expected->shape);
+            EXPECT_EQ(deposits[i]->bounces, expected->bounces);
+            EXPECT_LT((deposits[i]->position - expected->position).norm(), 1e-4F);
+            EXPECT_LT((deposits[i]->wi - expected->wi).norm(), 1e-4F);
+            EXPECT_LT((deposits[i]->flux - expected->flux).matrix().norm(),
+                      1e-4F * expected->flux.matrix().norm());
+        }
+        EXPECT_EQ(together.stored, alone.stored);
+        EXPECT_EQ(together.reflected, alone.reflected);
+        EXPECT_EQ(together.refracted, alone.refracted);
+        EXPECT_EQ(together.depth_limited, alone.depth_limited);
+        EXPECT_GT(together.stored, 100U);
+    }
+}
+
 TEST(LightPath, RouletteKeepsTheMeanOfEveryChannel) {
     SceneDesc desc;
     desc.shapes.push_back(support::horizontal("mirror", 0, 1, true, support::mirror()));
