@@ -16,6 +16,21 @@ struct VertexRay {
     Vec3 direction;  ///< unit, the way the light goes
 };
 
+/// How the light round a ray spreads: at the distance s [m] it makes 1 / |constant + linear s +
+/// quadratic s^2| [W m^-2, mean of channels] on a surface across the ray. The sign changes where the
+/// light passes through a caustic. All 0: not known.
+struct RaySpread {
+    float constant = 0;   ///< [m^2 W^-1]; 0 or more
+    float linear = 0;     ///< [m W^-1]
+    float quadratic = 0;  ///< [W^-1]
+
+    bool is_known() const { return constant > 0; }
+    double at(double s) const {
+        return static_cast<double>(constant) +
+               s * (static_cast<double>(linear) + s * static_cast<double>(quadratic));
+    }
+};
+
 /// The light that one specular polygon sends on [CC95 sec. 3.1]: rays through its three or four
 /// corners (a triangle, what is left of one, or a cell of a grid), and the flux they enclose. Four
 /// corners are two triangles, (0, 1, 2) and (0, 2, 3).
@@ -39,6 +54,10 @@ struct BeamSet {
     std::array<Spectrum, 2> absorption = {black(), black()};  ///< outside, inside [1/m]
     std::vector<VertexRay> rays;  ///< neighbouring beams share them, bit for bit
     std::vector<Beam> beams;      ///< in the order of the mesh's triangles
+    /// One a ray where the intensity is `refined`, else none.
+    std::vector<RaySpread> spreads;
+    /// One a beam with `spreads`: the other beam of its pair of triangles, or Beam::none.
+    std::vector<std::uint32_t> partners;
 
     /// Rays of one of a beam's triangles.
     std::array<const VertexRay*, 3> triangle(const Beam& beam, std::size_t which) const {
@@ -46,7 +65,8 @@ struct BeamSet {
                 &rays[beam.corners[2 + which]]};
     }
     std::uint64_t bytes() const {
-        return rays.size() * sizeof(VertexRay) + beams.size() * sizeof(Beam);
+        return rays.size() * sizeof(VertexRay) + beams.size() * sizeof(Beam) +
+               spreads.size() * sizeof(RaySpread) + partners.size() * sizeof(std::uint32_t);
     }
 };
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "beamtree/caster_mesh.h"
+#include "beamtree/refined_density.h"
 #include "core/optics.h"
 
 namespace caustics {
@@ -62,7 +63,8 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
         const Spectrum factor = weight(Vec3(-ray.direction));
         if (is_black(factor)) continue;
         if (scene_.occluded(receiver, ray.start) || !sees(scene_, ray.start, set.light)) continue;
-        double density = hit.flux_share / std::max(hit.area, least_area);
+        double density = refined_density(set, hit, point.position)
+                             .value_or(hit.flux_share / std::max(hit.area, least_area));
         // The caustic polygon lies on the test's plane; the receiver's is turned against it.
         density *= std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction) /
                                                 hit.plane_normal.dot(ray.direction)));

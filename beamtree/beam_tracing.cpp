@@ -5,6 +5,7 @@
 #include <span>
 
 #include "beamtree/bent_light.h"
+#include "beamtree/ray_spread.h"
 #include "core/optics.h"
 #include "core/parallel.h"
 
@@ -72,7 +73,8 @@ public:
         }
     }
 
-    std::array<BeamSet, 2> run() {
+    /// With `neighbours` the sets are refined by them.
+    std::array<BeamSet, 2> run(const MeshNeighbours* neighbours) {
         for (std::uint32_t i = 0; i < mesh_.positions.size(); ++i) {
             vertices_.push_back(bender_.at(mesh_.positions[i], mesh_.normals[i]));
             vertices_.back().vertex = i;
@@ -87,6 +89,8 @@ public:
                 for (const Event event : events) trace_triangle({i, 1, facing, event});
             }
         }
+        if (neighbours != nullptr)
+            for (const Event event : events) refine(sets_[event], origins_[event], *neighbours);
         return std::move(sets_);
     }
 
@@ -226,6 +230,8 @@ private:
         if (shared && ray_of_vertex_[event][point.vertex] != Beam::none)
             return ray_of_vertex_[event][point.vertex];
         rays.push_back({point.position, point.bent.direction[event]});
+        origins_[event].push_back(
+            {point.position, point.normal, point.bent.weight[event], point.vertex});
         const auto ray = static_cast<std::uint32_t>(rays.size() - 1);
         if (shared) ray_of_vertex_[event][point.vertex] = ray;
         return ray;
@@ -257,21 +263,27 @@ private:
     std::vector<MeshPoint> vertices_;
     std::array<std::vector<std::uint32_t>, 2> ray_of_vertex_;
     std::array<BeamSet, 2> sets_;
+    std::array<std::vector<RayOrigin>, 2> origins_;  ///< one a ray
 };
 
 }  // namespace
 
 std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light) {
-    return BeamTracer(scene, caster, light).run();
+    return BeamTracer(scene, caster, light).run(nullptr);
 }
 
 std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
                                      const std::vector<LightSample>& lights,
-                                     const RunOptions& options) {
+                                     const RunOptions& options, Intensity intensity) {
+    std::vector<MeshNeighbours> neighbours;
+    if (intensity == Intensity::refined)
+        for (const CasterMesh& caster : casters) neighbours.emplace_back(caster);
     std::vector<std::array<BeamSet, 2>> pairs(lights.size() * casters.size());
     parallel_for(options.threads, pairs.size(), [&](std::size_t i, std::size_t) {
-        pairs[i] = trace_beams(scene, casters[i % casters.size()], lights[i / casters.size()]);
+        const std::size_t caster = i % casters.size();
+        pairs[i] = BeamTracer(scene, casters[caster], lights[i / casters.size()])
+                       .run(neighbours.empty() ? nullptr : &neighbours[caster]);
     });
     std::vector<BeamSet> sets;
     for (std::array<BeamSet, 2>& pair : pairs)

@@ -19,9 +19,17 @@ namespace caustics {
 std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light);
 
-/// All of them that hold a beam: lights outermost, then casters, reflection before refraction.
+/// How a beam's light is told at a point (row B8, and beyond the paper row B13).
+enum class Intensity {
+    area,    ///< flux / area of the caustic polygon [CC95 eq. 11]: right to first order at a point
+    refined  ///< by the rays' spreads: right to second order where the light is smooth
+};
+
+/// All of them that hold a beam: lights outermost, then casters, reflection before refraction. With
+/// `refined` they have spreads.
 std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
                                      const std::vector<LightSample>& lights,
-                                     const RunOptions& options);
+                                     const RunOptions& options,
+                                     Intensity intensity = Intensity::area);
 
 }  // namespace caustics

@@ -42,7 +42,7 @@ private:
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
-    TracedScene traced = trace_scene(scene, "beamtree", params, options);
+    TracedScene traced = trace_scene(scene, "beamtree", params, options, params.intensity);
     options.phase("tree");
     Forest forest(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "beamtree/beam_params.h"
+#include "beamtree/beam_tracing.h"
 #include "beamtree/cone_tree.h"
 #include "core/caustic_estimator.h"
 #include "core/json_reader.h"
@@ -26,6 +27,7 @@ struct BeamTreeParams : BeamParams {
     ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
     Tree hierarchy = Tree::quadtree;  ///< where the bound is two_slice and nothing is said: binned
     Leaf leaf = Leaf::n;              ///< with two_slice always k
+    Intensity intensity = Intensity::area;
 };
 
 /// Throws InputError for what cannot be used or is not built yet.

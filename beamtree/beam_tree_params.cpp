@@ -52,8 +52,8 @@ void read(const JsonNode& node, BeamTreeParams& params) {
     read_bound(node, params);
     read_tree(node, params);
     if (const auto intensity = node.find("intensity"))
-        if (intensity->as_choice({"area", "refined"}) == 1)
-            intensity->fail("\"refined\" is not built yet (built: \"area\")");
+        params.intensity =
+            intensity->as_choice({"area", "refined"}) == 0 ? Intensity::area : Intensity::refined;
     read_beam_params(node, params);
     node.finish();
 }

@@ -57,13 +57,13 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 }
 
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
-                        const RunOptions& options) {
+                        const RunOptions& options, Intensity intensity) {
     options.phase("beams");
     TracedScene traced;
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);
     const std::vector<LightSample> lights =
         sample_lights(scene, params.light_samples, options.seed);
-    traced.sets = trace_all_beams(scene, traced.casters, lights, options);
+    traced.sets = trace_all_beams(scene, traced.casters, lights, options, intensity);
     traced.balance = flux_balance(scene, traced.sets, options);
     refuse_several_events(method, params, traced.balance);
     return traced;

@@ -24,6 +24,6 @@ struct TracedScene {
 /// Phase "beams". Throws UnsupportedScene, in the name of `method`, where more than half of the flux
 /// goes on to another specular surface, unless max_bounces is 1.
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
-                        const RunOptions& options);
+                        const RunOptions& options, Intensity intensity = Intensity::area);
 
 }  // namespace caustics

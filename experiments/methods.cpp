@@ -67,7 +67,7 @@ json describe_params(const BeamTreeParams& p) {
         {"merging", rays ? "rays" : "cones"},
         {"hierarchy", p.hierarchy == BeamTreeParams::Tree::quadtree ? "quadtree" : "binned"},
         {"leaf", p.leaf == BeamTreeParams::Leaf::n ? "n" : "k"},
-        {"intensity", "area"},
+        {"intensity", p.intensity == Intensity::refined ? "refined" : "area"},
         {"polygons", name(p.polygons)},
         {"light_samples", p.light_samples},
         {"mesh_resolution", p.mesh_resolution},

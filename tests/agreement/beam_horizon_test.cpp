@@ -77,5 +77,22 @@ TEST(BeamHorizon, AStandingMirrorOfAnyResolutionLightsTheFloor) {
     EXPECT_LT(last, 0.03);
 }
 
+// Where the light comes down unevenly the refined intensity is told across the light: second order.
+TEST(BeamHorizon, RefinedIntensityIsOfSecondOrder) {
+    BeamTreeParams params;
+    params.intensity = Intensity::refined;
+    double last = 0;
+    for (const int resolution : {16, 32, 64}) {
+        const Scene scene = standing_mirror(resolution);
+        const Agreement found = on_the_floor(scene, *build(scene, params, {}));
+        EXPECT_NEAR(found.mean_ratio, 1, 1e-3);
+        if (resolution > 16) {
+            EXPECT_GT(std::log2(last / found.relative_error), 1.9);
+        }
+        last = found.relative_error;
+    }
+    EXPECT_LT(last, 1e-3);
+}
+
 }  // namespace
 }  // namespace caustics

@@ -42,6 +42,8 @@ TEST(BeamTreeParams, AreRead) {
     EXPECT_EQ(p.max_bounces, 1);
     EXPECT_EQ(p.merging, ConeTreeSettings::Merging::cones);
     EXPECT_EQ(p.polygons, PolygonKind::quad);
+    EXPECT_EQ(p.intensity, Intensity::area);
+    EXPECT_EQ(params(R"({"intensity": "refined"})").intensity, Intensity::refined);
     EXPECT_EQ(params(R"({"spread_threshold": 4.5})").spread_threshold, 4.5);
 }
 
@@ -62,7 +64,7 @@ TEST(BeamTreeParams, TwoSliceBringsWhatFitsIt) {
 
 TEST(BeamTreeParams, NameTheAlternatives) {
     EXPECT_NE(error(R"({"bound": "tripple"})").find("sphere_swept"), std::string::npos);
-    EXPECT_NE(error(R"({"intensity": "refined"})").find("not built yet"), std::string::npos);
+    EXPECT_NE(error(R"({"intensity": "fine"})").find("refined"), std::string::npos);
     EXPECT_NE(error(R"({"bound": "single", "spread_threshold": 5})").find("hybrid"),
               std::string::npos);
     EXPECT_NE(error(R"({"spread_threshold": -1})"), "no error");
