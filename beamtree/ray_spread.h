@@ -20,9 +20,9 @@ struct RayOrigin {
 };
 
 /// Gives the set its spreads and partners (`intensity: refined`). A vertex ray's spread comes from
-/// the derivatives of first surface, place and direction, of a quadratic surface fitted to the rays of
-/// the vertices round it; their errors are of second order on any mesh. Rays that start at no vertex, or have
-/// too few neighbours that went the same way, have no spread.
+/// the derivatives of first surface, place and direction, of a quadratic surface fitted to the rays
+/// of the vertices round it; their errors are of second order on any mesh. Rays that start at no
+/// vertex, or have too few neighbours that went the same way, have no spread.
 void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours);
 
 }  // namespace caustics
