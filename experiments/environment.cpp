@@ -2,14 +2,18 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <CLI/CLI.hpp>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "build_info.h"
+#include "core/isa.h"
 #include "core/parallel.h"
 
 namespace caustics {
@@ -43,14 +47,6 @@ std::uint64_t status_bytes(const std::string& key) {
     return kibibytes.empty() ? 0 : 1024 * std::stoull(kibibytes);
 }
 
-std::string utc_now() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1,
-                       utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
 json libraries() {
     const int fmt_version = FMT_VERSION;
     return {{"embree", build_info::embree_version},
@@ -71,14 +67,34 @@ std::string code_version() {
                        build_info::git_dirty ? "-dirty" : "");
 }
 
+std::string host_name() {
+    char name[256] = {};
+    gethostname(name, sizeof name - 1);
+    return name;
+}
+
+std::string cpu_name() { return field("/proc/cpuinfo", "model name"); }
+
+std::string utc_now() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1,
+                       utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
 json environment() {
+    std::vector<std::string> instruction_sets;
+    for (const Isa isa : supported_isas()) instruction_sets.emplace_back(name(isa));
     return {{"version", std::string(build_info::project_version)},
             {"commit", std::string(build_info::git_commit)},
             {"dirty", build_info::git_dirty},
             {"compiler", fmt::format("{} {}", build_info::compiler, build_info::compiler_version)},
             {"flags", std::string(build_info::flags)},
             {"build_type", std::string(build_info::build_type)},
-            {"cpu", field("/proc/cpuinfo", "model name")},
+            {"host", host_name()},
+            {"cpu", cpu_name()},
+            {"instruction_sets", instruction_sets},
             {"threads_available", available_threads()},
             {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
             {"load", first_line("/proc/loadavg")},

@@ -9,8 +9,14 @@ namespace caustics {
 /// "1.2.3 (0123abc)", with "-dirty" after the commit of a changed tree.
 std::string code_version();
 
-/// Where the program runs and how it was built: commit and dirty flag, compiler and flags, CPU,
-/// governor, load, library versions, date (UTC).
+std::string host_name();
+/// Model of the processor; empty where the system does not tell.
+std::string cpu_name();
+/// "2026-11-21T17:04:32Z".
+std::string utc_now();
+
+/// Where the program runs and how it was built: commit and dirty flag, compiler and flags, host,
+/// CPU, governor, load, library versions, date (UTC).
 nlohmann::json environment();
 
 /// Bytes of the process in memory now.

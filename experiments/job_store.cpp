@@ -1,10 +1,12 @@
 #include "experiments/job_store.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
-#include <charconv>
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
 
 #include "core/error.h"
 #include "experiments/files.h"
@@ -15,36 +17,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view temporary_prefix = ".tmp-";
+constexpr std::string_view new_prefix = ".tmp-";
+constexpr std::string_view old_prefix = ".old-";
 
-fs::path temporary_name(const fs::path& folder, const std::string& id, const char* what) {
-    return folder / fmt::format("{}{}{}-{}", temporary_prefix, what, id, getpid());
+[[noreturn]] void cannot_be_written(const fs::path& place, const std::error_code& error) {
+    throw InputError(fmt::format("{}: cannot be written ({})", place.string(), error.message()));
 }
 
-/// Whether the process that a temporary name ends with still runs and is not this one.
-bool belongs_to_other_process(const std::string& name) {
-    const std::string digits = name.substr(name.rfind('-') + 1);
-    pid_t process = 0;
-    const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), process);
-    if (result.ec != std::errc() || process <= 0 || process == getpid()) return false;
-    return kill(process, 0) == 0 || errno == EPERM;
+/// Waits until the file or folder is on the disk: a rename may get there before the data does.
+void bring_to_disk(const fs::path& place) {
+    const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool failed = descriptor < 0 || fsync(descriptor) != 0;
+    const int error = errno;
+    if (descriptor >= 0) close(descriptor);
+    if (failed) cannot_be_written(place, {error, std::generic_category()});
 }
 
 }  // namespace
 
-JobStore::JobStore(const fs::path& folder) : trials_(folder / "trials") {
-    std::error_code error;
-    fs::create_directories(trials_, error);
-    if (error)
-        throw InputError(fmt::format("{}: cannot be made ({})", trials_.string(), error.message()));
-    remove_leftovers();
-}
-
-void JobStore::remove_leftovers() const {
-    for (const fs::directory_entry& entry : fs::directory_iterator(trials_)) {
-        const std::string name = entry.path().filename().string();
-        const bool temporary = name.compare(0, temporary_prefix.size(), temporary_prefix) == 0;
-        if (temporary && !belongs_to_other_process(name)) fs::remove_all(entry.path());
+void JobStore::prepare() const {
+    try {
+        fs::create_directories(trials_);
+        for (const fs::directory_entry& entry : fs::directory_iterator(trials_)) {
+            const std::string name = entry.path().filename().string();
+            const fs::path replaced =
+                trials_ / name.substr(std::min(name.size(), old_prefix.size()));
+            if (name.starts_with(old_prefix) && !fs::exists(replaced))
+                fs::rename(entry.path(), replaced);
+            else if (name.starts_with(old_prefix) || name.starts_with(new_prefix))
+                fs::remove_all(entry.path());
+        }
+    } catch (const fs::filesystem_error& error) {
+        cannot_be_written(trials_, error.code());
     }
 }
 
@@ -58,25 +62,46 @@ std::optional<nlohmann::json> JobStore::record(const std::string& id) const {
     return record;
 }
 
-fs::path JobStore::image_of(const std::string& id) const { return trials_ / id / "image.exr"; }
+fs::path JobStore::temporary_of(const std::string& id) const {
+    return trials_ / fmt::format("{}{}", new_prefix, id);
+}
 
-void JobStore::add(const std::string& id, const TrialOutcome& outcome) const {
-    const fs::path temporary = temporary_name(trials_, id, "");
-    const fs::path old = temporary_name(trials_, id, "old-");
-    const fs::path final_place = trials_ / id;
+fs::path JobStore::begin(const std::string& id) const {
+    fs::path folder = temporary_of(id);
+    std::error_code error;
+    fs::remove_all(folder, error);
+    if (!error) fs::create_directory(folder, error);
+    if (error) cannot_be_written(folder, error);
+    return folder;
+}
+
+void JobStore::commit(const std::string& id, const nlohmann::json& record) const {
+    const fs::path folder = temporary_of(id);
+    const fs::path old = trials_ / fmt::format("{}{}", old_prefix, id);
+    const fs::path place = folder_of(id);
+    write_whole_file(folder / "record.json",
+                     record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     try {
-        fs::remove_all(temporary);
-        fs::create_directory(temporary);
-        if (outcome.film) write_exr(*outcome.film, temporary / "image.exr");
-        write_whole_file(temporary / "log.txt", outcome.log);
-        write_whole_file(temporary / "record.json", outcome.record.dump(2) + "\n");
-        if (fs::exists(final_place)) fs::rename(final_place, old);
-        fs::rename(temporary, final_place);
+        for (const fs::directory_entry& file : fs::directory_iterator(folder))
+            bring_to_disk(file.path());
+        bring_to_disk(folder);
+        if (fs::exists(place)) fs::rename(place, old);
+        fs::rename(folder, place);
         fs::remove_all(old);
     } catch (const fs::filesystem_error& error) {
-        throw InputError(fmt::format("{}: cannot be written ({})", final_place.string(),
-                                     error.code().message()));
+        cannot_be_written(place, error.code());
     }
+}
+
+void JobStore::drop(const std::string& id) const {
+    std::error_code ignored;
+    fs::remove_all(temporary_of(id), ignored);
+}
+
+void JobStore::remove(const std::string& id) const {
+    std::error_code error;
+    fs::remove_all(folder_of(id), error);
+    if (error) cannot_be_written(folder_of(id), error);
 }
 
 }  // namespace caustics

@@ -5,27 +5,37 @@
 #include <optional>
 #include <string>
 
-#include "experiments/trial.h"
-
 namespace caustics {
 
 /// The folder of finished trials, DIR/trials/ID/{record.json, image.exr, log.txt}. A trial's folder
-/// is whole or absent: it is written under a temporary name and renamed.
+/// is whole or absent: it is filled under a temporary name, brought to the disk and renamed.
+/// Whoever writes holds the FolderLock of DIR.
 class JobStore {
 public:
-    /// Makes the folders; removes what killed processes left half-written. Throws InputError when
-    /// it cannot be written.
-    explicit JobStore(const std::filesystem::path& folder);
+    explicit JobStore(const std::filesystem::path& folder) : trials_(folder / "trials") {}
+
+    /// Makes the folder ready for writing: removes what killed processes left half-written, and
+    /// brings back what they were about to replace. Throws InputError when it cannot be written.
+    void prepare() const;
 
     /// The record of a finished trial. Throws InputError when it is there but broken.
     std::optional<nlohmann::json> record(const std::string& id) const;
-    std::filesystem::path image_of(const std::string& id) const;
-    /// Adds a finished trial, replacing an earlier one of that id.
-    void add(const std::string& id, const TrialOutcome& outcome) const;
+    std::filesystem::path folder_of(const std::string& id) const { return trials_ / id; }
+    std::filesystem::path image_of(const std::string& id) const {
+        return trials_ / id / "image.exr";
+    }
+
+    /// An empty folder to write a trial's files into, temporary_of(id).
+    std::filesystem::path begin(const std::string& id) const;
+    /// Adds the record and makes that folder the trial's, in place of an earlier one.
+    void commit(const std::string& id, const nlohmann::json& record) const;
+    /// Forgets that folder.
+    void drop(const std::string& id) const;
+    std::filesystem::path temporary_of(const std::string& id) const;
+    /// Removes a trial.
+    void remove(const std::string& id) const;
 
 private:
-    void remove_leftovers() const;
-
     std::filesystem::path trials_;
 };
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "experiments/interrupt.h"
-
 namespace caustics {
 
 namespace {
@@ -15,8 +13,8 @@ namespace {
 constexpr std::chrono::milliseconds terminal_interval{200};
 constexpr std::chrono::seconds plain_interval{15};
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+std::string eta(std::optional<double> remaining) {
+    return remaining ? clock_text(*remaining) : "-";
 }
 
 }  // namespace
@@ -28,12 +26,11 @@ std::string clock_text(double seconds) {
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-Progress::Progress(std::size_t steps)
+Progress::Progress(std::size_t steps, std::size_t done)
     : steps_(steps),
+      finished_(done),
       terminal_(isatty(fileno(stderr)) == 1),
-      start_(Clock::now()),
-      step_start_(start_),
-      last_drawn_(start_) {}
+      last_shown_(terminal_ ? Clock::time_point() : Clock::now()) {}
 
 Progress::~Progress() { clear(); }
 
@@ -41,45 +38,32 @@ void Progress::clear() {
     if (terminal_) fmt::print(stderr, "\r\033[K");
 }
 
-std::string Progress::eta(double done) const {
-    const double share = (static_cast<double>(finished_) + done) / static_cast<double>(steps_);
-    if (share <= 0) return "-";
-    return clock_text(seconds_since(start_) * (1 - share) / share);
+bool Progress::is_due() const {
+    return Clock::now() - last_shown_ >=
+           (terminal_ ? Clock::duration(terminal_interval) : Clock::duration(plain_interval));
 }
 
-void Progress::draw(double done) {
-    const std::string line = fmt::format("[{}/{}] {} {:.0f} %, ETA {}", finished_ + 1, steps_,
-                                         what_, 100 * done, eta(done));
+void Progress::show(const std::string& what, double share, std::optional<double> remaining) {
+    const std::string line = fmt::format("[{}/{}] ETA {}, {} {:.0f} %", finished_, steps_,
+                                         eta(remaining), what, 100 * share);
+    clear();
     if (terminal_)
-        fmt::print(stderr, "\r\033[K{}", line.substr(0, 150));
+        fmt::print(stderr, "{}", line.substr(0, 150));
     else
         fmt::print(stderr, "{}\n", line);
     std::fflush(stderr);
-    last_drawn_ = Clock::now();
+    last_shown_ = Clock::now();
 }
 
-void Progress::begin(const std::string& what) {
-    const std::scoped_lock lock(mutex_);
-    what_ = what;
-    step_start_ = last_drawn_ = Clock::now();
-    if (terminal_) draw(0);
-}
-
-void Progress::share(double done) {
-    throw_if_interrupted();
-    const std::scoped_lock lock(mutex_);
-    const auto since = Clock::now() - last_drawn_;
-    if (since < (terminal_ ? Clock::duration(terminal_interval) : Clock::duration(plain_interval)))
-        return;
-    draw(done);
-}
-
-void Progress::end(const std::string& result) {
-    const std::scoped_lock lock(mutex_);
+void Progress::end(const std::string& result, bool notable, std::optional<double> remaining) {
     ++finished_;
+    if (!terminal_ || notable)
+        note(fmt::format("[{}/{}] {}, ETA {}", finished_, steps_, result, eta(remaining)));
+}
+
+void Progress::note(const std::string& line) {
     clear();
-    fmt::print(stderr, "[{}/{}] {}: {}, {:.2f} s, ETA {}\n", finished_, steps_, what_, result,
-               seconds_since(step_start_), eta(0));
+    fmt::print(stderr, "{}\n", line);
 }
 
 }  // namespace caustics

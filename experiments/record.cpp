@@ -83,14 +83,26 @@ constexpr Column columns_of_all[] = {
     {"empty_gathers", "/counters/empty_gathers"},
     {"receiver_points", "/counters/receiver_points"},
     {"lit_points", "/counters/lit_points"},
+    {"picture_hash", "/picture_hash"},
+    {"elapsed_s", "/elapsed_s"},
+    {"finished", "/finished"},
+    {"host", "/machine/host"},
+    {"cpu", "/machine/cpu"},
+    {"load_average", "/load/average"},
+    {"other_cores", "/load/other_cores"},
+    {"jobs", "/limits/jobs"},
+    {"timeout_s", "/limits/timeout_s"},
+    {"memory_limit_bytes", "/limits/memory_bytes"},
     {"why_empty", "/why_empty"},
     {"message", "/message"},
 };
 
-std::string cell(const json& record, const std::string& pointer) {
+json value_at(const json& record, const std::string& pointer) {
     const json::json_pointer place(pointer);
-    if (!record.contains(place)) return {};
-    const json& value = record.at(place);
+    return record.contains(place) ? record.at(place) : json();
+}
+
+std::string cell(const json& value) {
     if (value.is_null()) return {};
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return shortest(value.get<double>());
@@ -128,15 +140,27 @@ std::vector<std::string> record_columns(const std::vector<std::string>& swept) {
     return names;
 }
 
-std::vector<std::string> record_row(const json& record, const std::vector<std::string>& columns) {
-    std::vector<std::string> row;
+std::vector<json> record_row(const json& record, const std::vector<std::string>& columns) {
+    std::vector<json> row;
     for (const std::string& name : columns) {
         const auto known = std::ranges::find_if(
             columns_of_all, [&](const Column& column) { return name == column.name; });
-        row.push_back(
-            cell(record, known == std::end(columns_of_all) ? "/swept/" + name : known->pointer));
+        row.push_back(value_at(
+            record, known == std::end(columns_of_all) ? "/swept/" + name : known->pointer));
     }
     return row;
+}
+
+std::string csv_line(const std::vector<json>& row) {
+    std::vector<std::string> cells;
+    for (const json& value : row) cells.push_back(cell(value));
+    return csv_line(cells);
+}
+
+std::string json_line(const std::vector<json>& row, const std::vector<std::string>& columns) {
+    nlohmann::ordered_json line;
+    for (std::size_t i = 0; i < row.size(); ++i) line[columns[i]] = row[i];
+    return line.dump() + "\n";
 }
 
 }  // namespace caustics

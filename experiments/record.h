@@ -22,8 +22,12 @@ bool is_swept_column(const std::string& name);
 /// The columns of records.csv: those of every trial, then the swept keys that are not among them.
 std::vector<std::string> record_columns(const std::vector<std::string>& swept);
 
-/// One row: the cells of a record under those columns. Empty = not applicable.
-std::vector<std::string> record_row(const nlohmann::json& record,
-                                    const std::vector<std::string>& columns);
+/// One row: the values of a record under those columns; null = not applicable.
+std::vector<nlohmann::json> record_row(const nlohmann::json& record,
+                                       const std::vector<std::string>& columns);
+/// The row as a line of records.csv (null = empty) and of records.jsonl (an object with all columns).
+std::string csv_line(const std::vector<nlohmann::json>& row);
+std::string json_line(const std::vector<nlohmann::json>& row,
+                      const std::vector<std::string>& columns);
 
 }  // namespace caustics

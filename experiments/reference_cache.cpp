@@ -52,11 +52,11 @@ std::filesystem::path ReferenceCache::file_of(const ReferenceRequest& request) c
 }
 
 bool ReferenceCache::must_render(const ReferenceRequest& request) const {
-    if (rebuild_ && !rebuilt_.contains(request.key)) return true;
+    if (rebuild_ && !rendered_.contains(request.key)) return true;
     return !std::filesystem::exists(file_of(request));
 }
 
-void ReferenceCache::make(const ReferenceRequest& request, const RunOptions& options) const {
+void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& options) const {
     const SceneFile file = load_scene(request.request.scene_file, request.request.overrides);
     if (reference_key(request.request, file) != request.key)
         throw InputError(
@@ -77,13 +77,7 @@ void ReferenceCache::make(const ReferenceRequest& request, const RunOptions& opt
     write_exr(film, target);
 }
 
-std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& request,
-                                                     const RunOptions& options) {
-    if (must_render(request)) {
-        make(request, options);
-        rebuilt_.insert(request.key);
-        last_.reset();
-    }
+std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& request) {
     if (last_ && last_->key == request.key) return last_;
     const std::filesystem::path file = file_of(request);
     auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), 0, {}});

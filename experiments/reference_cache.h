@@ -36,19 +36,21 @@ public:
     ReferenceCache(std::filesystem::path own_folder, bool rebuild)
         : own_folder_(std::move(own_folder)), rebuild_(rebuild) {}
 
-    /// Whether get() would have to render.
+    /// Whether it has to be rendered before get().
     bool must_render(const ReferenceRequest& request) const;
-    /// `options` brings threads and progress of a render. The last few stay in memory.
-    std::shared_ptr<const Reference> get(const ReferenceRequest& request,
-                                         const RunOptions& options);
+    /// Renders it and writes its file. `options` brings threads and progress.
+    void render(const ReferenceRequest& request, const RunOptions& options) const;
+    /// Takes note that it was rendered, for `rebuild`; here or in another process.
+    void note_rendered(const ReferenceRequest& request) { rendered_.insert(request.key); }
+    /// Reads it; the last one stays in memory. Throws InputError.
+    std::shared_ptr<const Reference> get(const ReferenceRequest& request);
 
 private:
     std::filesystem::path file_of(const ReferenceRequest& request) const;
-    void make(const ReferenceRequest& request, const RunOptions& options) const;
 
     std::filesystem::path own_folder_;
     bool rebuild_;
-    std::set<std::string> rebuilt_;
+    std::set<std::string> rendered_;
     std::shared_ptr<const Reference> last_;
 };
 

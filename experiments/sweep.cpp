@@ -2,18 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "experiments/environment.h"
+#include "experiments/figures.h"
 #include "experiments/files.h"
+#include "experiments/folder_lock.h"
 #include "experiments/interrupt.h"
-#include "experiments/job_store.h"
 #include "experiments/progress.h"
-#include "experiments/reference_cache.h"
+#include "experiments/record_table.h"
 #include "experiments/stopwatch.h"
-#include "experiments/sweep_outputs.h"
+#include "experiments/sweep_status.h"
+#include "experiments/sweep_summary.h"
 
 namespace caustics {
 
@@ -22,15 +26,17 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string status(const json& record) { return record.at("status").get<std::string>(); }
+std::string status_of(const json& record) { return record.at("status").get<std::string>(); }
 
-std::string result_line(const json& record) {
+bool is_failure(const std::string& status) { return status == "failed" || status == "timeout"; }
+
+std::string result_text(const json& record) {
     const json::json_pointer rmse("/metrics/rmse");
     if (record.contains("message"))
-        return status(record) + ": " + record.at("message").get<std::string>();
+        return status_of(record) + ": " + record.at("message").get<std::string>();
     if (record.contains(rmse) && record.at(rmse).is_number())
         return fmt::format("rmse {:.4g}", record.at(rmse).get<double>());
-    return status(record);
+    return status_of(record);
 }
 
 class Sweep {
@@ -38,133 +44,228 @@ public:
     Sweep(const SweepPlan& plan, const SweepOptions& options)
         : plan_(plan),
           options_(options),
+          lock_(options.folder),
           store_(options.folder),
-          references_(options.folder / "references", options.rebuild_references) {}
+          references_(options.folder / "references", options.rebuild_references) {
+        store_.prepare();
+        status_ = sweep_status(plan, options, store_);
+        progress_.emplace(status_.share.size(), status_.share.size() - status_.todo.size());
+    }
 
     int run() {
-        std::vector<const Trial*> todo;
-        for (const Trial& trial : plan_.trials) {
-            std::optional<json> record = store_.record(trial.id);
-            if (record && status(*record) != "failed" && !options_.force)
-                records_.push_back(std::move(*record));
-            else
-                todo.push_back(&trial);
-        }
-        if (!todo.empty())
+        warn();
+        write_plan(plan_file(plan_), options_.folder);
+        if (!status_.todo.empty())
             write_whole_file(options_.folder / "environment.json", environment().dump(2) + "\n");
         try {
-            run_all(todo);
-            remake_unused_references();
+            render_references();
+            run_trials();
         } catch (...) {
-            write_table();
+            save_table_of_the_stopped();
             throw;
         }
-        write_table();
+        progress_.reset();
+        SweepSummary summary;
+        write_table(&summary);
         const fs::path figures = options_.folder / "report" / "figures";
         fs::create_directories(figures);
-        write_figures(plan_, store_, records_, fresh_, references_, reference_options(nullptr),
-                      figures);
-        fmt::print("records    {}\nfigures    {}\n{}", table_file().string(), figures.string(),
-                   summary(records_, plan_.trials.size(), fresh_.size(), watch_.total().wall));
-        return failed_ == 0 ? 0 : 1;
+        write_figures(
+            plan_, store_, [&](const Trial& trial) { return known_status(trial) == "done"; },
+            references_, figures);
+        fmt::print("records    {}\nfigures    {}\n{}", (options_.folder / "records.csv").string(),
+                   figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall));
+        return summary.count("failed") + summary.count("timeout") == 0 ? 0 : 1;
     }
 
 private:
-    fs::path table_file() const { return options_.folder / "records.csv"; }
-    void write_table() const { write_records_csv(plan_, store_, records_, table_file()); }
-
-    /// References use every thread there is: their time is no measurement.
-    static RunOptions reference_options(Progress* progress) {
-        RunOptions options;
-        options.threads = available_threads();
-        options.adaptive = false;
-        options.progress = [progress](double share) {
-            throw_if_interrupted();
-            if (progress != nullptr) progress->share(share);
-        };
-        return options;
+    std::string known_status(const Trial& trial) const {
+        const auto found = status_.statuses.find(trial.id);
+        return found == status_.statuses.end() ? std::string() : found->second;
     }
 
-    void run_all(const std::vector<const Trial*>& todo) {
-        Progress progress(std::max<std::size_t>(todo.size(), 1));
-        for (const Trial* trial : todo) {
-            throw_if_interrupted();
-            try {
-                const TrialOutcome outcome = run_one(*trial, progress);
-                store_.add(trial->id, outcome);
-                fresh_.insert(trial->id);
-                records_.push_back(outcome.record);
-            } catch (const Interrupted&) {
-                records_.push_back(trial_record(*trial, "interrupted"));
-                throw;
-            }
-            const json& record = records_.back();
-            progress.end(result_line(record));
-            if (status(record) != "failed") continue;
-            ++failed_;
-            if (options_.fail_fast) return;
+    void warn() {
+        for (const std::string& id : status_.broken) {
+            progress_->note(fmt::format("note: {}: broken record: the trial is run again", id));
+            store_.remove(id);
+        }
+        const std::string code = status_.code_warning();
+        if (!code.empty() && !options_.force) progress_->note("warning: " + code);
+        if (plan_.duplicates > 0)
+            progress_->note(
+                fmt::format("note: the sweep names {} trials more than once; each is "
+                            "run once",
+                            plan_.duplicates));
+        const std::size_t failed = status_.count("failed") + status_.count("timeout");
+        if (failed > 0 && !options_.rerun_failed && !options_.force)
+            progress_->note(fmt::format(
+                "note: {} trials failed or took too long before (--rerun failed runs them again)",
+                failed));
+        const std::size_t processors = own_processors().size();
+        for (const Trial* trial : status_.todo) {
+            const int wanted = options_.trials.jobs * options_.trials.threads_of(*trial);
+            if (options_.trials.jobs == 1 || static_cast<std::size_t>(wanted) <= processors)
+                continue;
+            progress_->note(fmt::format(
+                "warning: {} trials at a time share {} processors: their times are no measurement",
+                options_.trials.jobs, processors));
+            return;
         }
     }
 
-    TrialOutcome run_one(const Trial& trial, Progress& progress) {
-        std::shared_ptr<const Reference> reference;
-        if (trial.reference) {
-            if (references_.must_render(*trial.reference))
-                progress.begin(fmt::format("reference {} {} for {}",
-                                           trial.reference->request.method.name,
-                                           trial.reference->key, trial.scene_name));
+    /// References use every thread there is: their time is no measurement.
+    void render_references() {
+        std::vector<const ReferenceRequest*> missing = status_.references(references_);
+        // With everything done, `--references rebuild` still remakes what the trials stand on.
+        if (options_.rebuild_references && status_.todo.empty()) {
+            SweepStatus all = status_;
+            all.todo = all.share;
+            missing = all.references(references_);
+        }
+        for (const ReferenceRequest* request : missing) {
             try {
-                reference = references_.get(*trial.reference, reference_options(&progress));
+                render_reference(*request);
+                references_.note_rendered(*request);
             } catch (const Interrupted&) {
                 throw;
             } catch (const std::exception& error) {
-                TrialOutcome outcome{trial_record(trial, "failed"), {}, {}};
-                outcome.record["message"] = fmt::format("reference: {}", error.what());
-                outcome.log = fmt::format("failed: reference: {}\n", error.what());
-                return outcome;
+                broken_references_[request->key] = error.what();
+                progress_->note(
+                    fmt::format("failed: reference {}: {}", request->key, error.what()));
             }
         }
-        progress.begin(trial.id);
-        RunOptions options;
-        options.threads = options_.threads > 0 ? options_.threads : trial.threads;
-        options.isa = options_.isa;
-        options.progress = [&](double share) { progress.share(share); };
-        return run_trial(trial, reference.get(), options);
     }
 
-    /// With everything done, `--references rebuild` still remakes what the trials stand on.
-    void remake_unused_references() {
-        if (!options_.rebuild_references) return;
-        for (const Trial& trial : plan_.trials)
-            if (trial.reference && references_.must_render(*trial.reference))
-                references_.get(*trial.reference, reference_options(nullptr));
+    void render_reference(const ReferenceRequest& request) {
+        const std::string what =
+            fmt::format("reference {} {} for {}", request.request.method.name, request.key,
+                        request.request.scene_file.stem().string());
+        progress_->show(what, 0, remaining());
+        const auto render = [&](const ChildProcess::Tell& tell) {
+            RunOptions options;
+            options.threads = available_threads();
+            options.adaptive = false;
+            options.progress = tell;
+            references_.render(request, options);
+            return std::string();
+        };
+        run_in_child(render, [&](double share) {
+            if (progress_->is_due()) progress_->show(what, share, remaining());
+        });
+    }
+
+    void run_trials() {
+        TrialRunner runner(store_, references_, options_.trials);
+        runner_ = &runner;
+        next_ = 0;
+        bool stop = false;
+        while (!runner.running().empty() || (!stop && next_ < status_.todo.size())) {
+            while (!stop && next_ < status_.todo.size() && runner.has_room())
+                stop = !start(*status_.todo[next_++]) && options_.fail_fast;
+            for (const TrialRunner::Finished& each : runner.wait())
+                if (!finish(*each.trial, each.record) && options_.fail_fast) stop = true;
+            show();
+            if (interrupt_requested()) {
+                for (const TrialRunner::Running& each : runner.running())
+                    unfinished_[each.trial->id] = runner.unfinished_record(*each.trial);
+                throw Interrupted();
+            }
+        }
+        runner_ = nullptr;
+    }
+
+    /// False when the trial failed at once.
+    bool start(const Trial& trial) {
+        const auto broken = trial.reference ? broken_references_.find(trial.reference->key)
+                                            : broken_references_.end();
+        if (broken == broken_references_.end()) {
+            runner_->start(trial);
+            return true;
+        }
+        return finish(trial, runner_->refuse(trial, "reference: " + broken->second));
+    }
+
+    /// False when it failed.
+    bool finish(const Trial& trial, const json& record) {
+        const std::string status = status_of(record);
+        status_.statuses[trial.id] = status;
+        ++ran_;
+        if (status == "done") status_.costs.add(trial, {record.at("elapsed_s").get<double>(), 0});
+        std::string line = fmt::format("{}: {}, {:.2f} s", trial.id, result_text(record),
+                                       record.at("elapsed_s").get<double>());
+        if (is_failure(status))
+            line += fmt::format(" (log: {})", (store_.folder_of(trial.id) / "log.txt").string());
+        progress_->end(line, status != "done", remaining());
+        return !is_failure(status);
+    }
+
+    void show() {
+        if (!progress_->is_due()) return;
+        const std::vector<TrialRunner::Running> running = runner_->running();
+        if (running.empty()) return;
+        const std::string more =
+            running.size() > 1 ? fmt::format(" and {} more", running.size() - 1) : "";
+        progress_->show(running[0].trial->id + more, running[0].share, remaining());
+    }
+
+    /// Seconds that the trials will still take; empty before anything tells.
+    std::optional<double> remaining() {
+        const auto now = std::chrono::steady_clock::now();
+        const double age = std::chrono::duration<double>(now - estimated_).count();
+        constexpr double oldest = 1;
+        if (waiting_ && age < oldest) return std::max(0.0, *waiting_ - age);
+        estimated_ = now;
+        waiting_.reset();
+        double sum = 0;
+        for (std::size_t i = next_; i < status_.todo.size(); ++i) {
+            const std::optional<Cost> cost = status_.costs.of(*status_.todo[i]);
+            if (!cost) return {};
+            sum += cost->seconds;
+        }
+        if (runner_ != nullptr)
+            for (const TrialRunner::Running& each : runner_->running())
+                if (const std::optional<Cost> cost = status_.costs.of(*each.trial))
+                    sum += std::max(0.0, cost->seconds - each.seconds);
+        waiting_ = sum / options_.trials.jobs;
+        return waiting_;
+    }
+
+    void write_table(SweepSummary* summary) const {
+        write_records(options_.folder, store_, plan_file(plan_), unfinished_,
+                      [&](const json& record) {
+                          if (summary != nullptr) summary->add(record);
+                      });
+    }
+
+    /// What stopped the sweep is what the user must hear of, not that the table could not be
+    /// written because of it.
+    void save_table_of_the_stopped() {
+        progress_.reset();
+        try {
+            write_table(nullptr);
+        } catch (const std::exception&) {}
     }
 
     const SweepPlan& plan_;
     const SweepOptions& options_;
+    FolderLock lock_;
     JobStore store_;
     ReferenceCache references_;
+    SweepStatus status_;
+    std::optional<Progress> progress_;
+    TrialRunner* runner_ = nullptr;
+    std::size_t next_ = 0;  ///< of status_.todo
+    std::map<std::string, json> unfinished_;
+    std::map<std::string, std::string> broken_references_;
+    std::size_t ran_ = 0;
+    std::optional<double> waiting_;
+    std::chrono::steady_clock::time_point estimated_;
     Stopwatch watch_;
-    std::vector<json> records_;
-    std::set<std::string> fresh_;
-    std::size_t failed_ = 0;
 };
 
 }  // namespace
 
 int run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     return Sweep(plan, options).run();
-}
-
-std::string list_plan(const SweepPlan& plan, const fs::path& folder) {
-    std::string text;
-    std::optional<JobStore> store;
-    if (fs::is_directory(folder / "trials")) store.emplace(folder);
-    for (const Trial& trial : plan.trials) {
-        const std::optional<json> record = store ? store->record(trial.id) : std::nullopt;
-        text += fmt::format("{:<12} {}\n", record ? status(*record) : "todo", trial.id);
-    }
-    return text;
 }
 
 }  // namespace caustics

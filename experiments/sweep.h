@@ -2,28 +2,29 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "experiments/sweep_plan.h"
+#include "experiments/sweep_selection.h"
+#include "experiments/trial_runner.h"
 
 namespace caustics {
 
 struct SweepOptions {
     std::filesystem::path folder;
+    Shard shard;                      ///< the part of the plan to run
     bool force = false;               ///< run trials again that are done
+    bool rerun_failed = false;        ///< run trials again that failed or took too long
     bool fail_fast = false;           ///< stop at the first failure
     bool rebuild_references = false;  ///< render references anew
-    int threads = 0;                  ///< of a trial; 0: as the sweep file says
-    Isa isa = widest_isa();           ///< of the trials
+    TrialSettings trials;
 };
 
-/// Runs what is not done yet (failed trials count as not done), one trial after the other, and
-/// writes DIR/trials, DIR/records.csv, DIR/environment.json, DIR/references and DIR/report/figures.
-/// Prints progress and, at the end, a summary. Returns the exit code: 0, or 1 when trials failed.
-/// Throws Interrupted when asked to stop; what is done is kept.
+/// Runs what is not there yet, in run_order(), and writes DIR/trials, DIR/records.csv and .jsonl,
+/// DIR/plan.json, DIR/environment.json, DIR/references and DIR/report/figures. References come
+/// first, one by one on all processors. Prints progress and, at the end, a summary. Returns the exit
+/// code: 0, or 1 when there are trials that failed or took too long. Throws Interrupted when asked
+/// to stop; what is done is kept. This process starts no thread: everything that may is done in
+/// children.
 int run_sweep(const SweepPlan& plan, const SweepOptions& options);
-
-/// One line a trial: its status (done, failed, unsupported, or todo) and id.
-std::string list_plan(const SweepPlan& plan, const std::filesystem::path& folder);
 
 }  // namespace caustics

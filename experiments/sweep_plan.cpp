@@ -46,27 +46,74 @@ std::vector<SceneVariant> variants(const SweepFile& sweep) {
     return all;
 }
 
-/// Loads the variant as trials will, so that whatever is wrong shows before anything runs.
-void resolve(const SweepFile& sweep, SceneVariant& variant) {
-    const SceneFile file = load_scene(variant.file, variant.overrides);
-    variant.hash = file.hash;
+/// "sweep.json: /set/alpha: 7: " for the value that the scene cannot be loaded with, or
+/// "sweep.json: /scenes: " when it cannot be loaded anyway.
+std::string place_of_mistake(const SweepFile& sweep, const SceneVariant& variant) {
+    const std::string file = sweep.file.string();
+    Overrides so_far;
+    for (const auto& next : variant.overrides) {
+        try {
+            load_scene(variant.file, so_far);
+        } catch (const InputError&) {
+            break;
+        }
+        so_far.push_back(next);
+    }
+    if (so_far.empty()) return fmt::format("{}: /scenes: ", file);
+    const auto& [name, value] = variant.swept[so_far.size() - 1];
+    return fmt::format("{}: /set/{}: {}: ", file, name, value);
+}
+
+SceneFile load(const SweepFile& sweep, const SceneVariant& variant) {
+    try {
+        return load_scene(variant.file, variant.overrides);
+    } catch (const InputError& error) {
+        throw InputError(place_of_mistake(sweep, variant) + error.what());
+    }
+}
+
+/// What loading the variant tells: {"hash", "reference_key"}. Loads it as trials will, so that
+/// whatever is wrong shows before anything runs.
+json examine(const SweepFile& sweep, const SceneVariant& variant) {
+    const SceneFile file = load(sweep, variant);
     samples_per_pixel(file.desc.sampling, sweep.spp);
-    if (!sweep.reference) return;
+    json facts = {{"hash", file.hash}};
+    if (!variant.reference) return facts;
+    const RunRequest& request = variant.reference->request;
     PixelSampling fixed_rate = file.desc.sampling;
     fixed_rate.max_sample_count = 0;
-    samples_per_pixel(fixed_rate, sweep.reference->spp);
+    samples_per_pixel(fixed_rate, request.samples_per_pixel);
     const Scene scene(file.desc);
-    if (const auto reason = why_unsupported(scene, sweep.reference->method))
+    if (const auto reason = why_unsupported(scene, request.method))
         throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),
                                            variant.file.string(), *reason));
+    facts["reference_key"] = reference_key(request, file);
+    return facts;
+}
+
+void ask_for_reference(const SweepFile& sweep, SceneVariant& variant) {
+    if (!sweep.reference) return;
     ReferenceRequest reference;
     reference.request = {variant.file, variant.overrides, sweep.reference->method,
                          sweep.reference->seed, sweep.reference->spp};
-    reference.key = reference_key(reference.request, file);
     reference.kept_folder =
         (std::filesystem::absolute(sweep.file).parent_path().parent_path() / "references")
             .lexically_normal();
     variant.reference = reference;
+}
+
+void resolve(const SweepFile& sweep, std::vector<SceneVariant>& all, const Isolation& isolation) {
+    for (SceneVariant& variant : all) ask_for_reference(sweep, variant);
+    const json facts = json::parse(isolation([&] {
+        json found = json::array();
+        for (const SceneVariant& variant : all) found.push_back(examine(sweep, variant));
+        return found.dump();
+    }));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        all[i].hash = facts[i].at("hash").get<std::string>();
+        if (all[i].reference)
+            all[i].reference->key = facts[i].at("reference_key").get<std::string>();
+    }
 }
 
 std::string slug_word(const std::string& text) {
@@ -116,9 +163,10 @@ Trial make_trial(const SweepFile& sweep, const SceneVariant& variant,
     return trial;
 }
 
-void add_trials(const SweepFile& sweep, SweepPlan& plan, std::set<std::string>& known) {
+void add_trials(const SweepFile& sweep, SweepPlan& plan, std::set<std::string>& known,
+                const Isolation& isolation) {
     std::vector<SceneVariant> scenes = variants(sweep);
-    for (SceneVariant& variant : scenes) resolve(sweep, variant);
+    resolve(sweep, scenes, isolation);
     for (const SceneVariant& variant : scenes)
         for (const SweepFile::MethodCase& method : sweep.methods)
             for (const std::uint64_t seed : sweep.seeds)
@@ -142,10 +190,12 @@ void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {
 
 }  // namespace
 
-SweepPlan read_plan(const std::vector<std::filesystem::path>& files) {
+SweepPlan read_plan(const std::vector<std::filesystem::path>& files, const Isolation& isolation) {
     SweepPlan plan;
+    plan.files = files;
     std::set<std::string> known;
-    for (const std::filesystem::path& file : files) add_trials(read_sweep_file(file), plan, known);
+    for (const std::filesystem::path& file : files)
+        add_trials(read_sweep_file(file), plan, known, isolation);
     add_columns(plan, plan.swept);
     return plan;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -38,14 +39,22 @@ struct Trial {
 
 /// All trials of some sweep files, each once, in the order of the files.
 struct SweepPlan {
+    std::vector<std::filesystem::path> files;
+    std::vector<std::string> filters;  ///< "key=value" that the trials were chosen by
     std::vector<Trial> trials;
     std::vector<std::string> swept;  ///< the swept keys of all files
     std::size_t duplicates = 0;      ///< trials named more than once
 };
 
+/// Does some work and returns what it answered: at once, or in a process of its own.
+using Isolation = std::function<std::string(const std::function<std::string()>& work)>;
+
 /// Reads sweep files and everything they name: scenes under every combination of values, methods
 /// with their parameters, references. Throws InputError for what does not fit, and
-/// UnsupportedScene for a reference that cannot serve a scene, before anything runs.
-SweepPlan read_plan(const std::vector<std::filesystem::path>& files);
+/// UnsupportedScene for a reference that cannot serve a scene, before anything runs. Scenes are
+/// loaded through `isolation`, because loading them may start threads.
+SweepPlan read_plan(
+    const std::vector<std::filesystem::path>& files,
+    const Isolation& isolation = [](const auto& work) { return work(); });
 
 }  // namespace caustics

@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "experiments/child_process.h"
 #include "experiments/cli_options.h"
+#include "experiments/dry_run.h"
 #include "experiments/files.h"
 #include "experiments/sweep.h"
 #include "experiments/verbs.h"
@@ -19,21 +21,41 @@ struct SweepFlags {
     bool force = false;
     bool fail_fast = false;
     bool list = false;
+    bool dry_run = false;
+    std::string rerun;
+    std::string shard;
+    std::vector<std::string> filters;
+    double timeout = 0;
+    int memory = 0;  ///< MiB
+    int jobs = 1;
 };
 
-int sweep(const SweepFlags& flags) {
-    const SweepPlan plan = read_plan({flags.files.begin(), flags.files.end()});
-    if (flags.list) {
-        write_stdout(list_plan(plan, flags.folder));
-        return 0;
-    }
+SweepOptions options_of(const SweepFlags& flags) {
     SweepOptions options;
     options.folder = flags.folder;
+    if (!flags.shard.empty()) options.shard = parse_shard(flags.shard);
     options.force = flags.force;
+    options.rerun_failed = !flags.rerun.empty();
     options.fail_fast = flags.fail_fast;
     options.rebuild_references = flags.references == "rebuild";
-    options.threads = flags.machine.threads;
-    options.isa = flags.machine.isa;
+    options.trials.jobs = flags.jobs;
+    options.trials.threads = flags.machine.threads;
+    options.trials.isa = flags.machine.isa;
+    options.trials.timeout = flags.timeout;
+    options.trials.memory_bytes = static_cast<std::uint64_t>(flags.memory) << 20;
+    return options;
+}
+
+int sweep(const SweepFlags& flags) {
+    const SweepOptions options = options_of(flags);
+    SweepPlan plan = read_plan({flags.files.begin(), flags.files.end()}, [](const auto& work) {
+        return run_in_child([&](const ChildProcess::Tell&) { return work(); });
+    });
+    keep_filtered(plan, flags.filters);
+    if (flags.list || flags.dry_run) {
+        write_stdout(flags.list ? list_plan(plan, options) : dry_run(plan, options));
+        return 0;
+    }
     return run_sweep(plan, options);
 }
 
@@ -48,20 +70,42 @@ Verb add_sweep(CLI::App& app) {
     verb->add_option("-o,--output", flags->folder, "Folder of the results")
         ->required()
         ->type_name("DIR");
-    verb->add_flag("--list", flags->list, "Only list the trials and whether they are done");
-    verb->add_flag("--force", flags->force, "Run trials again that are done");
+    CLI::Option* const list =
+        verb->add_flag("--list", flags->list, "Only list the trials and whether they are done");
+    verb->add_flag("--dry-run", flags->dry_run,
+                   "Only tell how many trials are to run, how long it will take, and disk")
+        ->excludes(list);
+    add_repeatable(*verb, "--filter", flags->filters,
+                   "Only trials with key=value: trial, scene, method, seed, repeat or a swept key. "
+                   "Repeatable: the same key means or, different keys mean and")
+        ->type_name("KEY=VALUE");
+    verb->add_option("--shard", flags->shard,
+                     "Only part i of n of the trials, from 1; auto: the task of a Slurm job array")
+        ->type_name("I/N");
+    CLI::Option* const force =
+        verb->add_flag("--force", flags->force, "Run trials again that are done");
+    verb->add_option("--rerun", flags->rerun, "failed: run trials again that failed or timed out")
+        ->check(CLI::IsMember({"failed"}))
+        ->excludes(force);
     verb->add_flag("--fail-fast", flags->fail_fast, "Stop at the first trial that fails");
+    verb->add_option("--timeout", flags->timeout, "Seconds after which a trial is given up")
+        ->check(CLI::Range(0.001, 1e9));
+    verb->add_option("--memory", flags->memory, "MiB that a trial may allocate")
+        ->check(CLI::Range(1, 1 << 30));
+    verb->add_option("--jobs", flags->jobs, "Trials at a time (default 1, so that times hold)")
+        ->check(CLI::Range(1, 4096));
     verb->add_option("--references", flags->references,
                      "keep: use the references that are there; rebuild: render them anew")
         ->check(CLI::IsMember({"keep", "rebuild"}));
     flags->machine.add_to(*verb, "as the sweep file says, or 1");
     verb->footer(
-        "Trials that are done are skipped, those that failed run again. Writes DIR/records.csv "
-        "(one "
-        "row a trial),\nDIR/trials/ID/{record.json,image.exr,log.txt}, DIR/report/figures/ID.png "
-        "(reference | picture | signed error),\nDIR/environment.json. parse_s, precompute_s, "
-        "balance_s and render_s follow each other and add up to total_s.\n"
-        "Example:\n  causticbench sweep experiments/sweeps/tiny.json -o out");
+        "Each trial runs in a process of its own; what it leaves behind is whole or absent. Trials "
+        "with a record are\nskipped, so that the same command goes on where it was stopped. Writes "
+        "DIR/records.csv and .jsonl (one row a\ntrial; results/records.md tells the columns), "
+        "DIR/trials/ID/{record.json,image.exr,log.txt},\nDIR/report/figures/ID.png (reference | "
+        "picture | signed error), DIR/plan.json, DIR/environment.json.\n"
+        "Example:\n  causticbench sweep experiments/sweeps/tiny.json -o out --timeout 600 --memory "
+        "4000");
     return {verb, [flags] { return sweep(*flags); }};
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "experiments/environment.h"
+#include "experiments/machine_load.h"
 #include "experiments/metrics.h"
 #include "experiments/record.h"
 
@@ -75,16 +77,29 @@ void record_errors(json& record, const Film& film, const Reference& reference) {
     if (empty != reference.film.metadata.end()) record["reference"]["why_empty"] = empty->second;
 }
 
+/// Of all planes of a picture, names included: the same picture has the same hash.
+std::string picture_hash(const Film& film) {
+    std::uint64_t hash = fnv1a(fmt::format("{} {}", film.width(), film.height()));
+    for (const Plane& plane : film.planes()) {
+        hash = fnv1a(plane.channel, hash);
+        hash = fnv1a({reinterpret_cast<const char*>(plane.values.data()),
+                      plane.values.size() * sizeof(float)},
+                     hash);
+    }
+    return hex(hash);
+}
+
 /// The trial itself; what it knows when it throws is in the record and the log.
 void execute(const Trial& trial, const Reference* reference, RunOptions options,
-             TrialOutcome& outcome) {
+             const TrialLog& write, TrialOutcome& outcome) {
     json& record = outcome.record;
     Stopwatch stopwatch;
     const auto log = [&](std::string_view what) {
-        outcome.log += fmt::format("{:10.3f} s  {}\n", stopwatch.total().wall, what);
+        write(fmt::format("{:10.3f} s  {}", stopwatch.total().wall, what));
     };
     options.begin_phase = [&](std::string_view phase) { log(phase); };
 
+    const MachineLoad load;
     reset_peak_resident_bytes();
     record["memory"]["rss_start_bytes"] = resident_bytes();
     log("parse");
@@ -100,6 +115,7 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     log("precompute and render");
     RunResult result = run(scene, trial.request, options, stopwatch);
     record["memory"]["peak_rss_bytes"] = peak_resident_bytes();
+    record["load"] = load.record();
     record_seconds(record, stopwatch);
     record_report(record, result);
     if (result.why_empty) log("the caustic is empty: " + *result.why_empty);
@@ -109,6 +125,7 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
     if (reference != nullptr) record_errors(record, result.film, *reference);
     result.film.metadata = picture_metadata(trial.request, file, result.report);
+    record["picture_hash"] = picture_hash(result.film);
     outcome.film = std::move(result.film);
     record["status"] = "done";
     log("done");
@@ -116,16 +133,18 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
 
 }  // namespace
 
-json trial_record(const Trial& trial, const std::string& status) {
+json trial_record(const Trial& trial, const std::string& status, const RunOptions& options) {
     json record = {{"version", record_version},
                    {"trial", trial.id},
                    {"status", status},
                    {"seed", trial.request.seed},
                    {"repeat", trial.repeat},
-                   {"threads", trial.threads},
+                   {"threads", options.threads},
+                   {"isa", name(options.isa)},
                    {"spp", trial.request.samples_per_pixel},
                    {"config_hash", trial.config_hash},
-                   {"code_version", code_version()}};
+                   {"code_version", code_version()},
+                   {"machine", {{"host", host_name()}, {"cpu", cpu_name()}}}};
     record["scene"] = {{"name", trial.scene_name},
                        {"file", trial.request.scene_file.string()},
                        {"hash", trial.scene_hash}};
@@ -147,19 +166,23 @@ json trial_record(const Trial& trial, const std::string& status) {
     return record;
 }
 
-TrialOutcome run_trial(const Trial& trial, const Reference* reference, const RunOptions& options) {
-    TrialOutcome outcome{trial_record(trial, "failed"), {}, {}};
-    outcome.record["threads"] = options.threads;
-    outcome.record["isa"] = name(options.isa);
-    const auto end_with = [&](const char* status, const char* message) {
+TrialOutcome run_trial(const Trial& trial, ReferenceCache& references, const RunOptions& options,
+                       const TrialLog& log) {
+    TrialOutcome outcome{trial_record(trial, "failed", options), {}};
+    const auto end_with = [&](const char* status, const std::string& message) {
         outcome.record["status"] = status;
         outcome.record["message"] = message;
-        outcome.log += fmt::format("{}: {}\n", status, message);
+        log(fmt::format("{}: {}", status, message));
     };
+    std::shared_ptr<const Reference> reference;
     try {
-        execute(trial, reference, options, outcome);
-    } catch (const Interrupted&) {
-        throw;
+        if (trial.reference) reference = references.get(*trial.reference);
+    } catch (const std::exception& error) {
+        end_with("failed", fmt::format("reference: {}", error.what()));
+        return outcome;
+    }
+    try {
+        execute(trial, reference.get(), options, log, outcome);
     } catch (const UnsupportedScene& error) {
         end_with("unsupported", error.what());
     } catch (const std::bad_alloc&) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,16 +14,21 @@ namespace caustics {
 struct TrialOutcome {
     nlohmann::json record;
     std::optional<Film> film;  ///< of a trial that is done
-    std::string log;
 };
 
-/// The record of a trial before it ran: its whole configuration, with that status.
-nlohmann::json trial_record(const Trial& trial, const std::string& status);
+/// Takes a line of a trial's log.
+using TrialLog = std::function<void(const std::string& line)>;
 
-/// Runs one trial and measures it: times per stage (wall and CPU), memory, counters, errors against
-/// the reference (may be null). A failure becomes a record of status failed, a scene the method
-/// cannot serve one of status unsupported; only Interrupted is thrown. `threads` and progress come
-/// from the options.
-TrialOutcome run_trial(const Trial& trial, const Reference* reference, const RunOptions& options);
+/// The record of a trial before it ran: its whole configuration, with that status. Threads and
+/// instruction set come from the options.
+nlohmann::json trial_record(const Trial& trial, const std::string& status,
+                            const RunOptions& options);
+
+/// Runs one trial and measures it: times per stage (wall and CPU), memory, how busy the machine was,
+/// counters, errors against its reference. Never throws: a failure (that of reading the reference,
+/// too) becomes a record of status failed, a scene the method cannot serve one of status
+/// unsupported. `threads`, instruction set and progress come from the options.
+TrialOutcome run_trial(const Trial& trial, ReferenceCache& references, const RunOptions& options,
+                       const TrialLog& log);
 
 }  // namespace caustics

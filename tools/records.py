@@ -23,7 +23,9 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "gathered_photons", "used_photons", "camera_rays", "trees", "trees_binned", "nodes", "height",
             "casters_with_face_normals", "flux_share_to_second_event", "photons_aimed", "photons_reflected",
             "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points")
-NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + ("message", "why_empty")
+RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "other_cores", "jobs", "timeout_s",
+       "memory_limit_bytes", "message", "why_empty")  # of one run of a trial
+NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN
 NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads") + MEASURES
 LABELS = ("isa", "code_version")  # never numbers, whatever they look like
 NOT_NEGATIVE = ("photons_stored", "total_s", "rmse", "relmse", "reference_stderr")

@@ -8,6 +8,7 @@
 
 #include "experiments/files.h"
 #include "experiments/sweep_plan.h"
+#include "experiments/sweep_selection.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -156,8 +157,7 @@ TEST_F(Sweeps, SkipWhatIsDone) {
 
     // A trial that is gone, and one that a killed process had not finished, are run again.
     const std::string gone = before.begin()->first;
-    fs::rename(fs::path(out_) / "trials" / gone,
-               fs::path(out_) / "trials" / (".tmp-" + gone + "-999999999"));
+    fs::rename(fs::path(out_) / "trials" / gone, fs::path(out_) / "trials" / (".tmp-" + gone));
     EXPECT_EQ(sweep(file).exit_code, 0);
     auto after = records();
     EXPECT_EQ(after.size(), before.size());
@@ -200,8 +200,13 @@ TEST_F(Sweeps, GoOnAfterAFailureAndTryItAgain) {
     for (const Row& row : rows()) ++statuses[row.at("glass") + " " + row.at("status")];
     EXPECT_EQ(statuses, (std::map<std::string, int>{{"1.3 failed", 2}, {"1.5 done", 2}}));
 
+    // What failed is a result until it is asked for again.
     fs::remove(broken);
-    EXPECT_EQ(sweep(file).exit_code, 0);
+    const ProgramResult again = sweep(file);
+    EXPECT_EQ(again.exit_code, 1);
+    EXPECT_NE(again.err.find("2 trials failed or took too long before"), std::string::npos)
+        << again.err;
+    EXPECT_EQ(sweep(file, {"--rerun", "failed"}).exit_code, 0);
     for (const Row& row : rows()) EXPECT_EQ(row.at("status"), "done");
 }
 
@@ -209,7 +214,8 @@ TEST_F(Sweeps, StopWhenInterruptedAndGoOnLater) {
     const std::string file = write_sweep(
         R"([{"method": "photonmap", "param": {"photons": [500, 1000, 2000, 4000, 300000]}}])");
     const std::vector<std::string> arguments = {"sweep", file, "-o", out_};
-    const std::string first = read_plan({file}).trials[0].id;
+    const SweepPlan plan = read_plan({file});
+    const std::string first = run_order(plan)[0]->id;
     const ProgramResult stopped = support::interrupted_causticbench(
         arguments, fs::path(out_) / "trials" / first / "record.json");
     EXPECT_EQ(stopped.exit_code, 130) << stopped.err;

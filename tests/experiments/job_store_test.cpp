@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "core/error.h"
 #include "experiments/files.h"
 #include "tests/support/temporary_folder.h"
@@ -11,51 +13,73 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TrialOutcome outcome(const std::string& status) {
-    Film film(2, 2);
-    film.set_rgb("", 0, Spectrum::Ones());
-    return {{{"trial", "a-1"}, {"status", status}}, film, "log\n"};
+/// Writes a trial with a file of that content beside the record.
+void add(const JobStore& store, const std::string& id, const std::string& status) {
+    write_whole_file(store.begin(id) / "log.txt", status);
+    store.commit(id, {{"trial", id}, {"status", status}});
 }
 
-TEST(JobStore, KeepsWholeTrials) {
-    const support::TemporaryFolder folder;
-    const JobStore store(folder.path());
-    EXPECT_FALSE(store.record("a-1"));
-    store.add("a-1", outcome("failed"));
-    store.add("a-1", outcome("done"));
-    EXPECT_EQ(store.record("a-1")->at("status"), "done");
-    EXPECT_TRUE(fs::exists(store.image_of("a-1")));
-    std::size_t entries = 0;
-    for (const auto& entry : fs::directory_iterator(folder / "trials")) {
-        EXPECT_EQ(entry.path().filename(), "a-1");
-        ++entries;
+std::string log_of(const JobStore& store, const std::string& id) {
+    return read_whole_file(store.folder_of(id) / "log.txt");
+}
+
+class JobStores : public testing::Test {
+protected:
+    void SetUp() override { store_.prepare(); }
+    std::set<std::string> entries() const {
+        std::set<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_ / "trials"))
+            names.insert(entry.path().filename());
+        return names;
     }
-    EXPECT_EQ(entries, 1U);
+    support::TemporaryFolder folder_;
+    JobStore store_{folder_.path()};
+};
+
+TEST_F(JobStores, KeepWholeTrials) {
+    EXPECT_FALSE(store_.record("a-1"));
+    add(store_, "a-1", "failed");
+    add(store_, "a-1", "done");
+    EXPECT_EQ(store_.record("a-1")->at("status"), "done");
+    EXPECT_EQ(log_of(store_, "a-1"), "done");
+    EXPECT_EQ(entries(), std::set<std::string>{"a-1"});
+    store_.begin("b-2");
+    store_.drop("b-2");
+    store_.remove("a-1");
+    EXPECT_TRUE(entries().empty());
 }
 
-TEST(JobStore, RemovesWhatAKilledProcessLeft) {
-    const support::TemporaryFolder folder;
-    fs::create_directories(folder / "trials/.tmp-a-1-999999999");
-    write_whole_file(folder / "trials/.tmp-a-1-999999999/record.json", "{");
-    const JobStore store(folder.path());
-    EXPECT_FALSE(store.record("a-1"));
-    EXPECT_TRUE(fs::is_empty(folder / "trials"));
+TEST_F(JobStores, RemoveWhatAKilledProcessLeft) {
+    write_whole_file(store_.begin("a-1") / "record.json", "{");
+    EXPECT_FALSE(store_.record("a-1"));
+    store_.prepare();
+    EXPECT_TRUE(entries().empty());
 }
 
-TEST(JobStore, SaysSoWhenARecordIsBroken) {
-    const support::TemporaryFolder folder;
-    const JobStore store(folder.path());
-    fs::create_directories(folder / "trials/a-1");
-    for (const char* text : {"{", "[]", R"({"trial": "b-2", "status": "done"})"}) {
-        write_whole_file(folder / "trials/a-1/record.json", text);
-        EXPECT_THROW(store.record("a-1"), InputError) << text;
+TEST_F(JobStores, BringBackWhatAKilledProcessWasAboutToReplace) {
+    add(store_, "a-1", "done");
+    add(store_, "b-2", "done");
+    // Killed between the two renames, and between the second and the removal.
+    fs::rename(folder_ / "trials/a-1", folder_ / "trials/.old-a-1");
+    fs::copy(folder_ / "trials/b-2", folder_ / "trials/.old-b-2");
+    write_whole_file(folder_ / "trials/.old-b-2/log.txt", "older");
+    store_.prepare();
+    EXPECT_EQ(entries(), (std::set<std::string>{"a-1", "b-2"}));
+    EXPECT_EQ(log_of(store_, "a-1"), "done");
+    EXPECT_EQ(log_of(store_, "b-2"), "done");
+}
+
+TEST_F(JobStores, SaySoWhenARecordIsBroken) {
+    fs::create_directories(folder_ / "trials/a-1");
+    for (const char* text : {"", "{", "[]", R"({"trial": "b-2", "status": "done"})"}) {
+        write_whole_file(folder_ / "trials/a-1/record.json", text);
+        EXPECT_THROW(store_.record("a-1"), InputError) << text;
     }
 }
 
-TEST(JobStore, NeedsAFolderItCanWrite) {
-    const support::TemporaryFolder folder;
-    write_whole_file(folder / "file", "");
-    EXPECT_THROW(JobStore(folder / "file"), InputError);
+TEST_F(JobStores, NeedAFolderTheyCanWrite) {
+    write_whole_file(folder_ / "file", "");
+    EXPECT_THROW(JobStore(folder_ / "file").prepare(), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "experiments/job_store.h"
+#include "experiments/reference_cache.h"
+#include "experiments/sweep_plan.h"
+
+namespace caustics {
+
+/// Writes FOLDER/ID.png, the strip reference | picture | signed error of the caustic, for the first
+/// done trial of each cell, where it is missing or older than the trial; in a child process.
+void write_figures(const SweepPlan& plan, const JobStore& store,
+                   const std::function<bool(const Trial&)>& is_done, ReferenceCache& references,
+                   const std::filesystem::path& folder);
+
+}  // namespace caustics

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+namespace caustics {
+
+/// Keeps a folder of results for this process: a lock of the system on FOLDER/.lock, which ends with
+/// the process, however that ends, and is not passed on to children.
+class FolderLock {
+public:
+    /// Makes the folder where it is missing. Throws InputError when another process has it, naming
+    /// that process, or when the folder cannot be written.
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int file_ = -1;
+};
+
+}  // namespace caustics
