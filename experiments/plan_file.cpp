@@ -22,7 +22,7 @@ std::filesystem::path name_in(const std::filesystem::path& folder) { return fold
 PlanFile plan_file(const SweepPlan& plan) {
     PlanFile file;
     for (const Trial& trial : plan.trials)
-        file.trials.push_back({trial.id, trial.cell, trial.request.seed});
+        file.trials.push_back({trial.id, trial.cell, trial.request.seed, trial.chosen});
     file.swept = plan.swept;
     for (const std::filesystem::path& sweep : plan.files) file.sweeps.push_back(sweep.string());
     file.filters = plan.filters;
@@ -33,7 +33,10 @@ PlanFile plan_file(const SweepPlan& plan) {
 void write_plan(const PlanFile& plan, const std::filesystem::path& folder) {
     json trials = json::array();
     for (const PlanFile::Entry& trial : plan.trials)
-        trials.push_back({{"trial", trial.id}, {"cell", trial.cell}, {"seed", trial.seed}});
+        trials.push_back({{"trial", trial.id},
+                          {"cell", trial.cell},
+                          {"seed", trial.seed},
+                          {"chosen", trial.chosen}});
     const json file = {{"version", plan_version}, {"sweeps", plan.sweeps},
                        {"filters", plan.filters}, {"started_in", plan.started_in.string()},
                        {"swept", plan.swept},     {"trials", std::move(trials)}};
@@ -52,9 +55,9 @@ PlanFile read_plan_of(const std::filesystem::path& folder) {
                                          file.at("version").dump(), plan_version));
         PlanFile plan;
         for (const json& trial : file.at("trials"))
-            plan.trials.push_back({trial.at("trial").get<std::string>(),
-                                   trial.at("cell").get<std::string>(),
-                                   trial.at("seed").get<std::uint64_t>()});
+            plan.trials.push_back(
+                {trial.at("trial").get<std::string>(), trial.at("cell").get<std::string>(),
+                 trial.at("seed").get<std::uint64_t>(), trial.at("chosen").get<bool>()});
         file.at("swept").get_to(plan.swept);
         file.at("sweeps").get_to(plan.sweeps);
         file.at("filters").get_to(plan.filters);

@@ -16,9 +16,10 @@ struct PlanFile {
         std::string id;
         std::string cell;
         std::uint64_t seed = 1;
+        bool chosen = true;  ///< by the filters
         friend bool operator==(const Entry&, const Entry&) = default;
     };
-    std::vector<Entry> trials;         ///< after filters, in the order of the table
+    std::vector<Entry> trials;         ///< in the order of the table
     std::vector<std::string> swept;    ///< columns after those of every trial
     std::vector<std::string> sweeps;   ///< the sweep files
     std::vector<std::string> filters;  ///< "key=value"

@@ -13,15 +13,6 @@ namespace caustics {
 
 namespace {
 
-std::string shell_word(const std::string& text) {
-    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                               "_-./=:,+") == std::string::npos)
-        return text;
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
 /// Passes follow each other: counts add up, memory and parameters chosen are those of the largest.
 void add(BuildReport& report, const BuildReport& pass) {
     report.bytes = std::max(report.bytes, pass.bytes);
@@ -31,6 +22,15 @@ void add(BuildReport& report, const BuildReport& pass) {
 }
 
 }  // namespace
+
+std::string shell_word(const std::string& text) {
+    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                               "_-./=:,+") == std::string::npos)
+        return text;
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
 
 std::string command(const std::string& verb, const RunRequest& request) {
     std::string line = fmt::format("causticbench {} {} --method {}", verb,

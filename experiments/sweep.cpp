@@ -74,7 +74,7 @@ public:
             references_, figures);
         fmt::print("records    {}\nfigures    {}\n{}", (options_.folder / "records.csv").string(),
                    figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall));
-        return summary.count("failed") + summary.count("timeout") == 0 ? 0 : 1;
+        return status_.count("failed") + status_.count("timeout") == 0 ? 0 : 1;
     }
 
 private:

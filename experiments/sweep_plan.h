@@ -28,6 +28,7 @@ struct Trial {
     RunRequest request;
     int repeat = 1;
     int threads = 1;
+    bool chosen = true;  ///< by the filters
     std::string scene_name;
     std::string scene_hash;
     std::map<std::string, std::string> method_files;  ///< files_read() of the method
@@ -40,7 +41,7 @@ struct Trial {
 /// All trials of some sweep files, each once, in the order of the files.
 struct SweepPlan {
     std::vector<std::filesystem::path> files;
-    std::vector<std::string> filters;  ///< "key=value" that the trials were chosen by
+    std::vector<std::string> filters;  ///< "key=value" that trials were chosen by
     std::vector<Trial> trials;
     std::vector<std::string> swept;  ///< the swept keys of all files
     std::size_t duplicates = 0;      ///< trials named more than once

@@ -124,23 +124,26 @@ Shard parse_shard(const std::string& text) {
     throw InputError(fmt::format("--shard {}: expected i/n with 1 <= i <= n, or auto", text));
 }
 
-void keep_filtered(SweepPlan& plan, const std::vector<std::string>& texts) {
+void choose(SweepPlan& plan, const std::vector<std::string>& texts) {
     const Filters filters = parse_filters(texts);
     require_known(plan, filters);
-    std::erase_if(plan.trials, [&](const Trial& trial) {
+    plan.filters = texts;
+    for (Trial& trial : plan.trials) {
         const std::map<std::string, std::string> keys = keys_of(trial);
-        return !std::ranges::all_of(filters, [&](const auto& filter) {
+        trial.chosen = std::ranges::all_of(filters, [&](const auto& filter) {
             const auto found = keys.find(filter.first);
             return found != keys.end() && filter.second.contains(found->second);
         });
-    });
-    if (plan.trials.empty()) throw InputError("--filter: no trial fits all filters together");
+    }
+    if (std::ranges::none_of(plan.trials, &Trial::chosen))
+        throw InputError("--filter: no trial fits all filters together");
 }
 
 std::vector<const Trial*> run_order(const SweepPlan& plan) {
     std::vector<std::tuple<int, std::uint64_t, const Trial*>> keyed;
     for (const Trial& trial : plan.trials)
-        keyed.emplace_back(trial.repeat, fnv1a("order " + trial.config_hash), &trial);
+        if (trial.chosen)
+            keyed.emplace_back(trial.repeat, fnv1a("order " + trial.config_hash), &trial);
     std::ranges::sort(keyed);
     std::vector<const Trial*> trials;
     for (const auto& [repeat, key, trial] : keyed) trials.push_back(trial);

@@ -18,12 +18,12 @@ struct Shard {
 /// and _COUNT; arrays without gaps that begin at 0 or 1). Throws InputError.
 Shard parse_shard(const std::string& text);
 
-/// Keeps the trials that all filters "key=value" fit; several filters on the same key are
+/// Chooses the trials that all filters "key=value" fit; several filters on the same key are
 /// alternatives. Keys are trial, scene, method, seed, repeat and the swept ones; a trial that has no
 /// such key does not fit. Throws InputError for an unknown key and for a value that no trial has.
-void keep_filtered(SweepPlan& plan, const std::vector<std::string>& filters);
+void choose(SweepPlan& plan, const std::vector<std::string>& filters);
 
-/// The trials in the order to run them: first all of repeat 1, then repeat 2, and so on, within each
+/// The chosen trials in the order to run them: first all of repeat 1, then repeat 2, and so on, within each
 /// in an order that looks random but is the same every time, so that methods and seeds are
 /// interleaved and no drift of the machine favours one of them.
 std::vector<const Trial*> run_order(const SweepPlan& plan);

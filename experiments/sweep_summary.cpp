@@ -51,11 +51,6 @@ void SweepSummary::add(const json& record) {
     if (*rmse < best.rmse) best = {*rmse, words_of(record)};
 }
 
-std::size_t SweepSummary::count(const std::string& status) const {
-    const auto found = statuses_.find(status);
-    return found == statuses_.end() ? 0 : found->second;
-}
-
 std::string SweepSummary::Range::text() const {
     return low > high ? "-" : fmt::format("{:.4g} to {:.4g}", low, high);
 }

@@ -13,8 +13,6 @@ class SweepSummary {
 public:
     void add(const nlohmann::json& record);
 
-    /// How many records have that status.
-    std::size_t count(const std::string& status) const;
     /// The five lines; `ran` of the `planned` trials ran now, in so many seconds.
     std::string text(std::size_t planned, std::size_t ran, double seconds) const;
 

@@ -51,7 +51,7 @@ int sweep(const SweepFlags& flags) {
     SweepPlan plan = read_plan({flags.files.begin(), flags.files.end()}, [](const auto& work) {
         return run_in_child([&](const ChildProcess::Tell&) { return work(); });
     });
-    keep_filtered(plan, flags.filters);
+    choose(plan, flags.filters);
     if (flags.list || flags.dry_run) {
         write_stdout(flags.list ? list_plan(plan, options) : dry_run(plan, options));
         return 0;

@@ -18,5 +18,7 @@ Verb add_probe(CLI::App& app);
 Verb add_sweep(CLI::App& app);
 Verb add_compare(CLI::App& app);
 Verb add_info(CLI::App& app);
+Verb add_merge(CLI::App& app);
+Verb add_explain(CLI::App& app);
 
 }  // namespace caustics

@@ -42,27 +42,28 @@ std::string error_of(const std::function<void()>& work) {
     return "no error";
 }
 
-std::size_t kept(const std::vector<std::string>& filters) {
+std::size_t chosen(const std::vector<std::string>& filters) {
     SweepPlan plan = some_plan();
-    keep_filtered(plan, filters);
-    return plan.trials.size();
+    choose(plan, filters);
+    return run_order(plan).size();
 }
 
-TEST(Filters, KeepWhatFitsAllKeysAndOneOfAKeysValues) {
-    EXPECT_EQ(kept({}), 60U);
-    EXPECT_EQ(kept({"method=beamtree"}), 30U);
-    EXPECT_EQ(kept({"method=beamtree", "seed=1", "seed=2"}), 12U);
-    EXPECT_EQ(kept({"photons=1e5", "repeat=3"}), 10U) << "numbers by value";
-    EXPECT_EQ(kept({"mode=split"}), 60U);
-    EXPECT_EQ(kept({"trial=beamtree-10-1-1"}), 1U);
+TEST(Filters, ChooseWhatFitsAllKeysAndOneOfAKeysValues) {
+    EXPECT_EQ(chosen({}), 60U);
+    EXPECT_EQ(chosen({"method=beamtree"}), 30U);
+    EXPECT_EQ(chosen({"method=beamtree", "seed=1", "seed=2"}), 12U);
+    EXPECT_EQ(chosen({"photons=1e5", "repeat=3"}), 10U) << "numbers by value";
+    EXPECT_EQ(chosen({"mode=split"}), 60U);
+    EXPECT_EQ(chosen({"trial=beamtree-10-1-1"}), 1U);
 }
 
 TEST(Filters, RefuseWhatNoTrialHas) {
-    EXPECT_NE(error_of([] { kept({"methd=beamtree"}); }).find("known: method, mode, photons"),
+    EXPECT_NE(error_of([] { chosen({"methd=beamtree"}); }).find("known: method, mode, photons"),
               std::string::npos);
-    EXPECT_NE(error_of([] { kept({"photons=11"}); }).find("known: 10, 100000"), std::string::npos);
-    EXPECT_NE(error_of([] { kept({"beamtree"}); }).find("expected key=value"), std::string::npos);
-    EXPECT_NE(error_of([] { kept({"trial=beamtree-10-1-1", "seed=2"}); }).find("no trial fits"),
+    EXPECT_NE(error_of([] { chosen({"photons=11"}); }).find("known: 10, 100000"),
+              std::string::npos);
+    EXPECT_NE(error_of([] { chosen({"beamtree"}); }).find("expected key=value"), std::string::npos);
+    EXPECT_NE(error_of([] { chosen({"trial=beamtree-10-1-1", "seed=2"}); }).find("no trial fits"),
               std::string::npos);
 }
 
