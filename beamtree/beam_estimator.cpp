@@ -1,5 +1,7 @@
 #include "beamtree/beam_estimator.h"
 
+#include <algorithm>
+
 namespace caustics {
 
 void BeamSearch::add_to(Counters& counters) const {
@@ -27,10 +29,14 @@ void BeamEstimator::irradiance(std::span<const ReceiverPoint> points, std::span<
 void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                            QueryContext& context, Query query) const {
     auto& search = dynamic_cast<BeamSearch&>(context);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        search.hits.clear();
-        find(points[i], search);
-        out[i] = {(light_.*query)(points[i], search.hits), black()};
+    constexpr std::size_t together = 64;
+    search.hits.resize(together);
+    for (std::size_t first = 0; first < points.size(); first += together) {
+        const std::size_t count = std::min(together, points.size() - first);
+        for (std::vector<BeamHit>& hits : search.hits) hits.clear();
+        find(points.subspan(first, count), search);
+        for (std::size_t i = 0; i < count; ++i)
+            out[first + i] = {(light_.*query)(points[first + i], search.hits[i]), black()};
     }
 }
 

@@ -12,7 +12,7 @@ class BeamSearch : public QueryContext {
 public:
     void add_to(Counters& counters) const override;
 
-    std::vector<BeamHit> hits;
+    std::vector<std::vector<BeamHit>> hits;  ///< of each point that is asked about
     std::vector<std::uint32_t> stack;
     SearchCounts counts;
 };
@@ -36,9 +36,9 @@ protected:
     const std::vector<BeamSet>& sets() const { return sets_; }
 
 private:
-    /// Appends the beams that hold the point to `search.hits`; `search` is of the kind that the
-    /// method's make_context() makes.
-    virtual void find(const ReceiverPoint& point, BeamSearch& search) const = 0;
+    /// Appends the beams that hold each point to its list of `search.hits`; `search` is of the kind
+    /// that the method's make_context() makes.
+    virtual void find(std::span<const ReceiverPoint> points, BeamSearch& search) const = 0;
 
     using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,

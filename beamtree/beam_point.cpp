@@ -29,7 +29,7 @@ struct RayOnPlane {
     bool comes_down() const { return height > 0 && steepness > least_steepness; }
 };
 
-RayOnPlane on_plane(const VertexRay& ray, const TestPlane& plane) {
+inline RayOnPlane on_plane(const VertexRay& ray, const TestPlane& plane) {
     RayOnPlane found{&ray, plane.height(ray.position), plane.steepness(ray.direction),
                      Vec2d::Zero()};
     if (found.comes_down())
@@ -210,7 +210,9 @@ Projected project_polygon(const ClippedPolygon& polygon) {
     return found;
 }
 
-Projected project_clipped(const TestPlane& plane, const std::array<RayOnPlane, 3>& rays) {
+// Seldom needed: kept out of the way of the common case.
+[[gnu::noinline]] Projected project_clipped(const TestPlane& plane,
+                                            const std::array<RayOnPlane, 3>& rays) {
     const ClippedPolygon polygon = clipped(plane, rays);
     Projected found = project_polygon(polygon);
     if (found.winding != 0) found.weights = weights_at_origin(polygon);
@@ -219,7 +221,7 @@ Projected project_clipped(const TestPlane& plane, const std::array<RayOnPlane, 3
 
 using Corners = std::array<const VertexRay*, 3>;
 
-std::array<RayOnPlane, 3> on_plane(const Corners& corners, const TestPlane& plane) {
+inline std::array<RayOnPlane, 3> on_plane(const Corners& corners, const TestPlane& plane) {
     return {on_plane(*corners[0], plane), on_plane(*corners[1], plane),
             on_plane(*corners[2], plane)};
 }
@@ -227,15 +229,17 @@ std::array<RayOnPlane, 3> on_plane(const Corners& corners, const TestPlane& plan
 // Whether the light goes down to the plane much more steeply on one side of the triangle than on
 // another, or there along the plane or away from it.
 bool is_uneven(const std::array<RayOnPlane, 3>& rays) {
-    const auto [least, most] =
-        std::minmax({rays[0].steepness, rays[1].steepness, rays[2].steepness});
+    const double least =
+        std::min(std::min(rays[0].steepness, rays[1].steepness), rays[2].steepness);
+    const double most = std::max(std::max(rays[0].steepness, rays[1].steepness), rays[2].steepness);
     return !(most <= most_uneven * least);
 }
 
 // A caustic polygon that runs towards the horizon is not lit evenly: its area says nothing of the
 // density where the point is. On the plane across the light that arrives at the point it is; from
 // there come area, share and weights. The area is the one on the test's plane with that density.
-void measure_across(const Corners& corners, const TestPlane& plane, Projected& found) {
+[[gnu::noinline]] void measure_across(const Corners& corners, const TestPlane& plane,
+                                      Projected& found) {
     for (int round = 0; round < 2; ++round) {
         Vec3 light = Vec3::Zero();
         for (std::size_t i = 0; i < 3; ++i)
@@ -266,6 +270,44 @@ BeamHit hit_in(const Projected& found, std::size_t triangle, const TestPlane& pl
     return hit;
 }
 
+/// What became of a triangle's test.
+struct Tested {
+    Projected found;
+    bool apart;  ///< clipped, or not lit evenly
+
+    bool is_hit() const { return found.winding != 0 && found.area != 0; }
+};
+
+inline Tested test_triangle(const Corners& corners, const TestPlane& plane) {
+    const std::array<RayOnPlane, 3> rays = on_plane(corners, plane);
+    const bool whole = rays[0].comes_down() && rays[1].comes_down() && rays[2].comes_down();
+    const bool uneven = is_uneven(rays);
+    Tested tested{whole ? project_whole(rays) : project_clipped(plane, rays), !whole || uneven};
+    if (uneven && tested.found.winding != 0) measure_across(corners, plane, tested.found);
+    return tested;
+}
+
+// Four corners that keep their orientation and are lit evenly are one caustic polygon; otherwise each
+// triangle keeps its own flux.
+int test_quad(const BeamSet& set, const Beam& beam, const TestPlane& plane,
+              std::array<BeamHit, 2>& hits) {
+    const std::array<Tested, 2> parts = {test_triangle(set.triangle(beam, 0), plane),
+                                         test_triangle(set.triangle(beam, 1), plane)};
+    const bool together =
+        !parts[0].apart && !parts[1].apart && parts[0].found.area * parts[1].found.area > 0;
+    int written = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+        if (!parts[i].is_hit()) continue;
+        BeamHit hit = hit_in(parts[i].found, i, plane);
+        if (together)
+            hit.area = std::abs(parts[0].found.area + parts[1].found.area) * plane.area_scale();
+        else
+            hit.flux_share *= static_cast<double>(i == 0 ? beam.first_share : 1 - beam.first_share);
+        hits[static_cast<std::size_t>(written++)] = hit;
+    }
+    return written;
+}
+
 }  // namespace
 
 TestPlane::TestPlane(const Vec3& point, const Vec3& normal)
@@ -279,32 +321,11 @@ TestPlane::TestPlane(const Vec3& point, const Vec3& normal)
 
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits) {
-    std::array<Projected, 2> found;
-    bool apart = false;
-    const std::size_t count = beam.triangle_count();
-    for (std::size_t i = 0; i < count; ++i) {
-        const Corners corners = set.triangle(beam, i);
-        const std::array<RayOnPlane, 3> rays = on_plane(corners, plane);
-        const bool whole = rays[0].comes_down() && rays[1].comes_down() && rays[2].comes_down();
-        const bool uneven = is_uneven(rays);
-        apart = apart || !whole || uneven;
-        found[i] = whole ? project_whole(rays) : project_clipped(plane, rays);
-        if (uneven && found[i].winding != 0) measure_across(corners, plane, found[i]);
-    }
-    // Four corners that keep their orientation and are lit evenly are one caustic polygon; otherwise
-    // each triangle keeps its own flux.
-    const bool together = count == 2 && !apart && found[0].area * found[1].area > 0;
-    int written = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (found[i].winding == 0 || found[i].area == 0) continue;
-        BeamHit hit = hit_in(found[i], i, plane);
-        if (together)
-            hit.area = std::abs(found[0].area + found[1].area) * plane.area_scale();
-        else if (count == 2)
-            hit.flux_share *= static_cast<double>(i == 0 ? beam.first_share : 1 - beam.first_share);
-        hits[static_cast<std::size_t>(written++)] = hit;
-    }
-    return written;
+    if (beam.triangle_count() == 2) return test_quad(set, beam, plane, hits);
+    const Tested only = test_triangle(set.triangle(beam, 0), plane);
+    if (!only.is_hit()) return 0;
+    hits[0] = hit_in(only.found, 0, plane);
+    return 1;
 }
 
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,

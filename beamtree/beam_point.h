@@ -13,6 +13,8 @@ namespace caustics {
 class TestPlane {
 public:
     TestPlane(const Vec3& point, const Vec3& normal);
+    /// Moves the plane, without turning it, to another point.
+    void move_to(const Vec3& point) { point_ = point.cast<double>(); }
 
     const Vec3d& point() const { return point_; }
     const Vec3d& normal() const { return normal_; }
@@ -73,14 +75,14 @@ void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane&
                   std::vector<BeamHit>& hits, SearchCounts& counts);
 
 /// The signed crossing of the edge a -> b with the half axis y = 0, x > 0; summed round a polygon it
-/// is the winding round the origin.
+/// is the winding round the origin. Without branches, as nobody can foretell them.
 inline int edge_crossing(const Vec2d& a, const Vec2d& b) {
     const bool a_above = a.y() > 0;
     const bool b_above = b.y() > 0;
-    if (a_above == b_above) return 0;
     const double side = a.x() * b.y() - a.y() * b.x();
-    if (b_above) return side > 0 ? 1 : 0;
-    return side < 0 ? -1 : 0;
+    const bool up = !a_above & b_above & (side > 0);
+    const bool down = a_above & !b_above & (side < 0);
+    return static_cast<int>(up) - static_cast<int>(down);
 }
 
 }  // namespace caustics

@@ -31,8 +31,8 @@ public:
     }
 
 private:
-    void find(const ReceiverPoint& point, BeamSearch& search) const override {
-        forest_.find(sets(), point, search);
+    void find(std::span<const ReceiverPoint> points, BeamSearch& search) const override {
+        forest_.find(sets(), points, search);
     }
 
     Forest forest_;

@@ -100,9 +100,13 @@ public:
     }
 
 private:
-    // The caustic polygons that hold the point, on the plane of its diffuse polygon.
-    void find(const ReceiverPoint& point, BeamSearch& search) const override {
+    void find(std::span<const ReceiverPoint> points, BeamSearch& search) const override {
         if (receivers_.polygons().empty()) return;
+        for (std::size_t i = 0; i < points.size(); ++i) find(points[i], search, search.hits[i]);
+    }
+
+    // The caustic polygons that hold the point, on the plane of its diffuse polygon.
+    void find(const ReceiverPoint& point, BeamSearch& search, std::vector<BeamHit>& hits) const {
         const std::uint32_t index =
             receivers_.nearest(point.position, point.geometric_normal, search.stack);
         const ReceiverPolygon& polygon = receivers_.polygons()[index];
@@ -111,9 +115,9 @@ private:
         const float off = normal.dot(point.position - polygon.a);
         const TestPlane plane(point.position - off * normal, normal);
         for (const BeamNumber& number : lists_[index])
-            find_in_beam(sets()[number.set], number, plane, search.hits, search.counts);
+            find_in_beam(sets()[number.set], number, plane, hits, search.counts);
         // The polygon stands for the surface: its irradiance is the surface's.
-        for (BeamHit& hit : search.hits) hit.plane_normal = point.geometric_normal;
+        for (BeamHit& hit : hits) hit.plane_normal = point.geometric_normal;
     }
 
     ReceiverPolygons receivers_;

@@ -110,13 +110,14 @@ Forest::Forest(const Scene& scene, const TracedScene& traced, const BeamTreePara
     }
 }
 
-void Forest::find(std::span<const BeamSet> sets, const ReceiverPoint& point,
+void Forest::find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
                   BeamSearch& search) const {
-    for (const ConeTree& tree : cones_)
-        tree.find(sets[tree.set_index()], point.position, point.geometric_normal, search.stack,
-                  search.hits, search.counts);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (const ConeTree& tree : cones_)
+            tree.find(sets[tree.set_index()], points[i].position, points[i].geometric_normal,
+                      search.stack, search.hits[i], search.counts);
     for (const SliceTree& tree : slices_)
-        tree.find(sets, point.position, search.stack, search.hits, search.counts);
+        tree.find(sets, points, search.stack, search.hits, search.counts);
 }
 
 void Forest::add_to(BuildReport& report) const {

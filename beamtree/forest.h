@@ -20,8 +20,9 @@ public:
     Forest(const Scene& scene, const TracedScene& traced, const BeamTreeParams& params,
            const RunOptions& options);
 
-    /// Appends the hits at a point; `sets` are those of the traced scene.
-    void find(std::span<const BeamSet> sets, const ReceiverPoint& point, BeamSearch& search) const;
+    /// Appends the hits at each point; `sets` are those of the traced scene.
+    void find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
+              BeamSearch& search) const;
     /// Adds trees, nodes, height, and how many trees have which hierarchy.
     void add_to(BuildReport& report) const;
 

@@ -38,8 +38,9 @@ public:
     }
 
     SliceNodes run() {
-        const Made root = make(0, 1);
-        made_.root = root.reference;
+        made_.root = make(0, 1).reference;
+        made_.leaf_width /= static_cast<float>(made_.leaves.size());
+        made_.travel /= static_cast<float>(triangles_.size());
         return std::move(made_);
     }
 
@@ -130,11 +131,14 @@ private:
                 }
                 width = std::max({width, box.size(axis, 0), box.size(axis, 1)});
             }
+            made_.travel += std::hypot(leaf.growth[0][0][i], leaf.growth[0][1][i]);
             // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin.
             leaf.slack[i] = margin_ * (5 * width + 4 * margin_);
             leaf.whole_from[i] = triangle.whole_from;
             leaf.beam[i] = triangle.beam;
         }
+        for (const int plane : {0, 1})
+            made_.leaf_width += std::max(made.box.size(0, plane), made.box.size(1, plane)) / 2;
         made_.leaves.push_back(leaf);
         return made;
     }

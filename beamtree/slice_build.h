@@ -22,6 +22,8 @@ struct SliceNodes {
     std::vector<SliceLeaf> leaves;
     std::uint32_t root = 0;
     std::uint32_t height = 0;  ///< nodes on the longest way down
+    float leaf_width = 0;      ///< mean, over both planes [m]
+    float travel = 0;          ///< how far rays move from one plane to the other, mean [m]
 };
 
 /// Makes a hierarchy eight wide by opening the child with most triangles again and again. `triangles`

@@ -45,16 +45,33 @@ struct SliceView {
     const SliceLeaf* leaves;
 };
 
-/// A walk through a tree, which pauses while `found` is full: it has ended when the stack is empty.
+/// A point of the slab.
+struct SlicePoint {
+    float at[2];
+    float share;  ///< of the way down, in [0, 1]
+};
+
+/// A beam a triangle of which may hold a point.
+struct SliceCandidate {
+    uint32_t point;
+    uint32_t beam;
+};
+
+/// A walk of some points near each other through a tree: nodes are asked about the box round the
+/// points, triangles about each. It pauses while `found` is full, and has ended when the stack is empty.
 struct SliceWalk {
-    float point[2];
-    float share;      ///< t of the point, in [0, 1]
+    const SlicePoint* points;
+    uint32_t point_count;
+    float low[2];  ///< of the points
+    float high[2];
+    float least_share;
+    float most_share;
     uint32_t* stack;  ///< what is still to be visited; room for 7 entries a level and the root
     size_t stacked;
-    uint32_t* found;    ///< beams whose triangle may hold the point, triangle by triangle
-    size_t found_room;  ///< at least slice_width
+    SliceCandidate* found;  ///< those of a leaf and a point side by side, triangle by triangle
+    size_t found_room;      ///< at least slice_width for each point
     size_t found_count;
-    uint64_t tests;  ///< boxes and triangles that were tested
+    uint64_t tests;  ///< boxes, and triangles for each point, that were tested
 };
 
 /// Goes on with a walk until it ends or `found` might not hold what the next leaf has. Every

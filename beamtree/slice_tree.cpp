@@ -121,7 +121,7 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa)
     : SliceTree(std::move(beams), &hierarchy, isa) {}
 
 SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa)
-    : frame_(frame_of(beams)), walk_(walk_for(isa)) {
+    : frame_(frame_of(beams)), plane_(Vec3::Zero(), beams.normal), walk_(walk_for(isa)) {
     const Slicer slicer(beams, frame_);
     const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer);
     std::vector<SlicedTriangle> triangles;
@@ -132,36 +132,100 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa)
     leaves_ = std::move(made.leaves);
     root_ = made.root;
     height_ = made.height;
+    leaf_width_ = made.leaf_width;
+    travel_ = made.travel;
     beams_ = std::move(beams.beams);
 }
 
-void SliceTree::find(std::span<const BeamSet> sets, const Vec3& point,
-                     std::vector<std::uint32_t>& stack, std::vector<BeamHit>& hits,
-                     SearchCounts& counts) const {
-    const double height = frame_.height(point);
-    if (height > frame_.top()) return;
+/// Points near each other, each with its number among those that were asked about.
+struct SliceTree::Group {
+    static constexpr std::uint32_t room = 16;
+    std::array<SlicePoint, room> points;
+    std::array<std::uint32_t, room> number;
+    std::array<const Vec3*, room> position;
+    std::uint32_t count = 0;
+    /// x, y, share, and nothing.
+    Eigen::Array4f low;
+    Eigen::Array4f high;
+
+    // Unless the box round the points would become too large.
+    bool take(const SlicePoint& point, const Eigen::Array4f& largest) {
+        const Eigen::Array4f at(point.at[0], point.at[1], point.share, 0);
+        const Eigen::Array4f new_low = count == 0 ? at : low.min(at);
+        const Eigen::Array4f new_high = count == 0 ? at : high.max(at);
+        if (count == room || !(new_high - new_low <= largest).all()) return false;
+        low = new_low;
+        high = new_high;
+        points[count++] = point;
+        return true;
+    }
+};
+
+// False for a point above all polygons.
+bool SliceTree::place(const ReceiverPoint& point, SlicePoint& placed) const {
+    const double height = frame_.height(point.position);
+    if (height > frame_.top()) return false;
     if (height < frame_.bottom()) throw std::out_of_range("a receiver point below the slab");
-    const Vec2d across = frame_.across(point.cast<double>());
-    std::array<std::uint32_t, 64> found;
-    stack.resize(std::max<std::size_t>(stack.size(), 7 * height_ + 8));
-    SliceWalk walk{};
-    walk.point[0] = static_cast<float>(across.x());
-    walk.point[1] = static_cast<float>(across.y());
-    walk.share = static_cast<float>(frame_.share(height));
-    walk.stack = stack.data();
+    const Vec2d across = frame_.across(point.position.cast<double>());
+    placed = {{static_cast<float>(across.x()), static_cast<float>(across.y())},
+              static_cast<float>(frame_.share(height))};
+    return true;
+}
+
+void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
+                     std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
+                     SearchCounts& counts) const {
+    // Half a leaf across, and no more down than rays move by that.
+    const float reach = leaf_width_ / 2;
+    const Eigen::Array4f largest(reach, reach, reach / std::max(travel_, reach), 1);
+    Group group;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        SlicePoint point;
+        if (!place(points[i], point)) continue;
+        if (!group.take(point, largest)) {
+            find(group, sets, stack, hits, counts);
+            group.count = 0;
+            group.take(point, largest);
+        }
+        group.number[group.count - 1] = i;
+        group.position[group.count - 1] = &points[i].position;
+    }
+    if (group.count > 0) find(group, sets, stack, hits, counts);
+}
+
+void SliceTree::find(const Group& group, std::span<const BeamSet> sets,
+                     std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
+                     SearchCounts& counts) const {
+    std::array<SliceCandidate, 16 * Group::room> found;
+    const std::size_t room = 7 * height_ + 8;
+    if (stack.size() < room) stack.resize(room);
+    SliceWalk walk{group.points.data(),
+                   group.count,
+                   {group.low[0], group.low[1]},
+                   {group.high[0], group.high[1]},
+                   group.low[2],
+                   group.high[2],
+                   stack.data(),
+                   0,
+                   found.data(),
+                   found.size(),
+                   0,
+                   0};
     walk.stack[walk.stacked++] = root_;
-    walk.found = found.data();
-    walk.found_room = found.size();
-    const TestPlane plane(point, frame_.normal());
+    TestPlane plane = plane_;
     while (walk.stacked > 0) {
         walk.found_count = 0;
         walk_({nodes_.data(), leaves_.data()}, walk);
-        std::uint32_t last = Beam::none;
+        SliceCandidate last{Group::room, 0};
         for (std::size_t i = 0; i < walk.found_count; ++i) {
-            if (found[i] == last) continue;  // the other triangle of four corners
-            last = found[i];
-            const BeamNumber& number = beams_[last];
-            find_in_beam(sets[number.set], number, plane, hits, counts);
+            const SliceCandidate& candidate = found[i];
+            // The other triangle of four corners.
+            if (candidate.point == last.point && candidate.beam == last.beam) continue;
+            last = candidate;
+            const BeamNumber& number = beams_[candidate.beam];
+            plane.move_to(*group.position[candidate.point]);
+            find_in_beam(sets[number.set], number, plane, hits[group.number[candidate.point]],
+                         counts);
         }
     }
     counts.cone_point_tests += walk.tests;

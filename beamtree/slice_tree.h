@@ -7,7 +7,7 @@
 #include "beamtree/hierarchy.h"
 #include "beamtree/slice_frame.h"
 #include "beamtree/slice_nodes.h"
-#include "core/isa.h"
+#include "core/caustic_estimator.h"
 
 namespace caustics {
 
@@ -34,11 +34,14 @@ public:
     /// With a hierarchy, in the order of which the beams are given.
     SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa);
 
-    /// Appends the hits at a point. `sets` are those that the tree was made of; `stack` is scratch.
-    /// Counts the boxes and triangles that the point is tested against as cone-point tests, and exact
-    /// tests as beam-point tests. Throws std::out_of_range for a point below all receivers.
-    void find(std::span<const BeamSet> sets, const Vec3& point, std::vector<std::uint32_t>& stack,
-              std::vector<BeamHit>& hits, SearchCounts& counts) const;
+    /// Appends the hits at each point to the list of the same place. Points that follow each other and
+    /// lie within a leaf's width go through the nodes together. `sets` are those that the tree was
+    /// made of; `stack` is scratch. Counts as cone-point tests the boxes that a point or a group is
+    /// tested against and the triangles that each point is, as beam-point tests the exact ones.
+    /// Throws std::out_of_range for a point below all receivers.
+    void find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
+              std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
+              SearchCounts& counts) const;
 
     const SliceFrame& frame() const { return frame_; }
     std::uint64_t node_count() const { return nodes_.size() + leaves_.size(); }
@@ -46,15 +49,22 @@ public:
     std::uint64_t bytes() const;
 
 private:
+    struct Group;
     SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa);
+    bool place(const ReceiverPoint& point, SlicePoint& placed) const;
+    void find(const Group& group, std::span<const BeamSet> sets, std::vector<std::uint32_t>& stack,
+              std::span<std::vector<BeamHit>> hits, SearchCounts& counts) const;
 
     std::vector<BeamNumber> beams_;  ///< in the order of the leaves
     SliceFrame frame_;
+    TestPlane plane_;  ///< the direction of all planes
     WalkSlices walk_;
     std::vector<SliceNode> nodes_;
     std::vector<SliceLeaf> leaves_;
     std::uint32_t root_ = 0;
     std::uint32_t height_ = 0;
+    float leaf_width_ = 0;
+    float travel_ = 0;
 };
 
 }  // namespace caustics

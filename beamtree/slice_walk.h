@@ -4,25 +4,35 @@
 
 namespace caustics {
 
-/// The walk, for the tests of one instruction set. `Eight` is made from a point and answers, as bits,
-/// which boxes of a node and which triangles of a leaf may hold it.
+/// The walk, for the tests of one instruction set. `Eight` is made from a walk and answers, as bits,
+/// which boxes of a node its points' box meets, and which triangles of a leaf may hold a point.
 template <typename Eight>
 void walk_slices(const SliceView& tree, SliceWalk& walk) {
     const Eight eight(walk);
-    while (walk.stacked > 0 && walk.found_count + slice_width <= walk.found_room) {
-        const uint32_t next = walk.stack[--walk.stacked];
-        if ((next & slice_leaf_bit) != 0) {
-            const SliceLeaf& leaf = tree.leaves[next & ~slice_leaf_bit];
-            walk.tests += leaf.count;
-            for (uint32_t held = eight.may_hold(leaf); held != 0; held &= held - 1)
-                walk.found[walk.found_count++] = leaf.beam[__builtin_ctz(held)];
-        } else {
+    uint32_t* const stack = walk.stack;
+    size_t stacked = walk.stacked;
+    size_t count = walk.found_count;
+    uint64_t tests = walk.tests;
+    const size_t room = walk.found_room - slice_width * walk.point_count;
+    while (stacked > 0 && count <= room) {
+        const uint32_t next = stack[--stacked];
+        if ((next & slice_leaf_bit) == 0) {
             const SliceNode& node = tree.nodes[next];
-            walk.tests += node.count;
-            for (uint32_t held = eight.inside(node); held != 0; held &= held - 1)
-                walk.stack[walk.stacked++] = node.child[__builtin_ctz(held)];
+            tests += node.count;
+            for (uint32_t met = eight.meets(node); met != 0; met &= met - 1)
+                stack[stacked++] = node.child[__builtin_ctz(met)];
+            continue;
         }
+        const SliceLeaf& leaf = tree.leaves[next & ~slice_leaf_bit];
+        tests += static_cast<uint64_t>(leaf.count) * walk.point_count;
+        for (uint32_t point = 0; point < walk.point_count; ++point)
+            for (uint32_t held = Eight::may_hold(leaf, walk.points[point]); held != 0;
+                 held &= held - 1)
+                walk.found[count++] = {point, leaf.beam[__builtin_ctz(held)]};
     }
+    walk.stacked = stacked;
+    walk.found_count = count;
+    walk.tests = tests;
 }
 
 }  // namespace caustics

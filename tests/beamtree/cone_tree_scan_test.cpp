@@ -240,7 +240,9 @@ void expect_slices_as_scan(const BeamScene& scene, std::uint32_t set, const Plan
             std::vector<std::uint32_t> stack;
             SearchCounts counts;
             const Find find = [&](const Query& query, std::vector<BeamHit>& hits, SearchCounts& c) {
-                tree.find(scene.sets, query.point, stack, hits, c);
+                ReceiverPoint point;
+                point.position = query.point;
+                tree.find(scene.sets, std::span(&point, 1), stack, std::span(&hits, 1), c);
             };
             expect_same(search(find, queries, counts), truth,
                         scene.name + ", two_slice, " + name(isa) + ", set " + std::to_string(set));

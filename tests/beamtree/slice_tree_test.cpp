@@ -29,11 +29,13 @@ SlicedBeams all_of(const std::vector<BeamSet>& sets, const Box& receivers) {
 std::vector<std::uint32_t> found_in(const SliceTree& tree, const std::vector<BeamSet>& sets,
                                     const Vec3& point) {
     std::vector<std::uint32_t> stack;
-    std::vector<BeamHit> hits;
+    std::vector<BeamHit> hits[1];
     SearchCounts counts;
-    tree.find(sets, point, stack, hits, counts);
+    ReceiverPoint receiver;
+    receiver.position = point;
+    tree.find(sets, std::span(&receiver, 1), stack, hits, counts);
     std::vector<std::uint32_t> beams;
-    for (const BeamHit& hit : hits) beams.push_back(hit.beam);
+    for (const BeamHit& hit : hits[0]) beams.push_back(hit.beam);
     std::sort(beams.begin(), beams.end());
     return beams;
 }
@@ -179,6 +181,43 @@ TEST(SliceTree, HoldsTheBeamsOfAllLights) {
     EXPECT_EQ(trees(), 8U);
     const Answer regular = ask(scene, params, {}, -0.6F, 500);
     EXPECT_EQ(binned.irradiance, regular.irradiance);
+}
+
+// The points of a picture's tile, row by row and at many heights, asked about together.
+TEST(SliceTree, AnswersABatchAsEachPointAlone) {
+    for (const bool ring : {false, true}) {
+        const Scene scene(ring ? ring_desc(24) : pool_desc(24));
+        const auto estimator = build(scene, params_of(Bound::two_slice), {});
+        std::vector<ReceiverPoint> points;
+        Rng rng(4, Stage::test, 0);
+        for (int i = 0; i < 3000; ++i) {
+            ReceiverPoint point{};
+            const float step = i < 2000 ? 0.003F : 0.05F;
+            const Vec3 at(static_cast<float>(i % 16), static_cast<float>(i / 16 % 16), 0);
+            point.position = step * at + Vec3(-0.1F, -0.3F, ring ? 0.0F : -1.0F);
+            if (i % 64 > 50) point.position.z() += 0.001F * static_cast<float>(i % 60);
+            point.geometric_normal = Vec3(rng.next() - 0.5F, rng.next() - 0.5F, 1).normalized();
+            points.push_back(point);
+        }
+        const auto batch = estimator->make_context();
+        const auto single = estimator->make_context();
+        std::vector<Estimate> together(points.size());
+        std::vector<Estimate> alone(points.size());
+        estimator->irradiance(points, together, *batch);
+        int lit = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            estimator->irradiance(std::span(&points[i], 1), std::span(&alone[i], 1), *single);
+            EXPECT_TRUE((together[i].value == alone[i].value).all());
+            lit += is_black(alone[i].value) ? 0 : 1;
+        }
+        EXPECT_GT(lit, 500);
+        Counters of_batch;
+        Counters of_single;
+        batch->add_to(of_batch);
+        single->add_to(of_single);
+        EXPECT_EQ(of_batch.at("beam_point_hits"), of_single.at("beam_point_hits"));
+        EXPECT_LT(of_batch.at("cone_point_tests"), of_single.at("cone_point_tests"));
+    }
 }
 
 // Rays of a grid of triangles that all meet in one point, and part again.
