@@ -82,7 +82,7 @@ int parse_and_run(int argc, char** argv) {
         "serve the scene, 130 interrupted.\nExample:\n  causticbench VERB --help");
     const std::vector<Verb> verbs = {add_render(app),  add_probe(app), add_sweep(app),
                                      add_compare(app), add_info(app),  add_merge(app),
-                                     add_explain(app)};
+                                     add_explain(app), add_verify(app)};
     require_known_words(app, verbs, std::vector<std::string>(argv + 1, argv + argc));
     try {
         app.parse(argc, argv);

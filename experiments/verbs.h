@@ -20,5 +20,6 @@ Verb add_compare(CLI::App& app);
 Verb add_info(CLI::App& app);
 Verb add_merge(CLI::App& app);
 Verb add_explain(CLI::App& app);
+Verb add_verify(CLI::App& app);
 
 }  // namespace caustics

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace caustics {
+
+/// A place of a receiver where the caustic is known.
+struct KnownPoint {
+    Vec3d position;
+    Vec3d normal;              ///< unit, on the lit side
+    Vec3d wo = Vec3d::Zero();  ///< where a viewer looks from; zero: the irradiance is asked
+    double truth = 0;          ///< [W/m^2], or with a viewer [W m^-2 sr^-1], mean of the channels
+};
+
+/// How much work a method is given at one step of a series.
+struct Effort {
+    int resolution = 0;                   ///< of the scene's own meshes
+    std::vector<std::string> parameters;  ///< of the method, k=v
+};
+
+/// One method at growing effort. From step to step its error should fall by `factor`: by 2, say,
+/// for twice the mesh resolution at first order, or for four times the particles.
+struct Series {
+    std::string method;
+    std::vector<Effort> efforts;
+    double factor = 2;
+    double tolerance = 0.05;  ///< of the last step's error
+    double radius = 0;        ///< of the discs of methods that gather over them [m]
+    std::string variant;      ///< a parameter that the table names, beside the method
+};
+
+/// A scene whose caustic is a formula, or a quadrature good to 1e-6.
+struct GalleryScene {
+    std::string name;
+    std::string answer;  ///< in a few words
+    /// The scene; shapes that are no exact ones are meshes of that resolution.
+    std::function<SceneDesc(int resolution)> make;
+    std::vector<KnownPoint> points;
+    std::vector<Series> series;
+};
+
+/// All of them; each derivation stands where its scene is made.
+std::vector<GalleryScene> gallery();
+
+/// The parts of it.
+std::vector<GalleryScene> mirrors();
+std::vector<GalleryScene> lenses();
+std::vector<GalleryScene> laws();
+
+}  // namespace caustics
