@@ -22,7 +22,7 @@ struct SeriesOutcome {
     /// By how much it fell from step to step, as a geometric mean.
     double fall() const;
     /// An error below this is rounding: it need not fall any further.
-    static constexpr double rounding = 1e-3;
+    static constexpr double rounding = 1e-5;
     bool is_small_enough() const;
     /// The mean of n points is off by no more than four times error / sqrt(n) and half a per cent.
     bool is_balanced() const;

@@ -29,7 +29,7 @@ TEST(Program, TellsItsVersionAndHelp) {
     const ProgramResult version = causticbench({"--version"});
     EXPECT_EQ(version.exit_code, 0);
     EXPECT_EQ(version.out.rfind("causticbench ", 0), 0U) << version.out;
-    for (const std::string verb : {"render", "probe", "sweep", "compare", "info"}) {
+    for (const std::string verb : {"render", "probe", "sweep", "compare", "info", "verify"}) {
         const ProgramResult help = causticbench({verb, "--help"});
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_NE(help.out.find("Example:\n  causticbench " + verb), std::string::npos) << help.out;
@@ -165,6 +165,37 @@ TEST(Compare, FindsAPictureEqualToItself) {
     EXPECT_GT(json.at("mask_fraction"), 0);
     EXPECT_TRUE(fs::exists(strip));
     EXPECT_NE(causticbench({"compare", file, file}).out.find("0.01 mean(r)^2"), std::string::npos);
+}
+
+// Every method that can serve it, on every scene whose answer is known.
+TEST(Verify, TheGalleryHolds) {
+    const ProgramResult result = causticbench({"verify", "--gallery"});
+    EXPECT_EQ(result.exit_code, 0) << result.out;
+    for (const std::string method : {"photonmap", "lighttrace", "pathtrace", "beamtree",
+                                     "causticpolygons", "illuminationmap"})
+        EXPECT_NE(result.out.find("| " + method + " |"), std::string::npos) << method;
+}
+
+TEST(Verify, ASceneHoldsAndSaysWhatWasChecked) {
+    const ProgramResult result =
+        causticbench({"verify", scene, "--method", "photonmap", "--set", "/sensor/film/width=24",
+                      "--set", "/sensor/film/height=16"});
+    EXPECT_EQ(result.exit_code, 0) << result.out;
+    for (const std::string what : {"holds light: ", "caustic: casters", "holds threads: photonmap",
+                                   "holds against the reference: photonmap", "verify: all holds"})
+        EXPECT_NE(result.out.find(what), std::string::npos) << what << "\n" << result.out;
+}
+
+TEST(Verify, TellsWhyThereIsNoCaustic) {
+    const ProgramResult result =
+        causticbench({"verify", scene, "--method", "photonmap", "--set", "/light/intensity=0"});
+    EXPECT_NE(result.out.find("no caustic: "), std::string::npos) << result.out << result.err;
+}
+
+TEST(Verify, WantsASceneOrTheGallery) {
+    EXPECT_EQ(causticbench({"verify"}).exit_code, 2);
+    EXPECT_EQ(causticbench({"verify", scene, "--gallery"}).exit_code, 2);
+    EXPECT_EQ(causticbench({"verify", scene, "--method", "photonmaps"}).exit_code, 2);
 }
 
 }  // namespace

@@ -1,0 +1,96 @@
+"""tools/compare_methods.py on records made by hand: intervals, bias and variance, curves, ties."""
+import csv
+import math
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+
+import compare_methods as tool
+
+COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "isa", "photons_stored", "nearest", "alpha",
+           "mesh_resolution", "render_cpu_s", "total_s", "rmse", "relmse", "variance", "mean_ratio", "reference",
+           "reference_stderr", "reference_mean", "code_version", "effort")
+
+
+def rows(method, efforts, errors, seeds=5, scatter=0.01, reference="lighttrace:1"):
+    """`errors`: rmse by effort; seeds scatter about it by equal steps, seconds are the effort."""
+    for effort, error in zip(efforts, errors):
+        for seed in range(seeds):
+            step = 0 if seeds == 1 else scatter * error * (2 * seed / (seeds - 1) - 1)
+            yield dict(zip(COLUMNS, [f"{method}{effort}s{seed}", "done", "pool", method, str(seed), "1", "1", "plain", "",
+                                     "", "", "", str(effort), str(effort), repr(error + step), "0.1", repr(error**2 / 2),
+                                     "1", reference, "0.01", "1", "v", str(effort)]))
+
+
+def outputs(*records):
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "records.csv"), "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, COLUMNS)
+            writer.writeheader()
+            for some in records:
+                writer.writerows(some)
+        tool.write_all(folder, folder)
+        return {name: pathlib.Path(folder, name).read_text(encoding="utf-8")
+                for name in ("statistics.csv", "statistics.md", "equal_time.md", "equal_error.md")}
+
+
+class Comparison(unittest.TestCase):
+    def test_interval_is_students(self):
+        self.assertAlmostEqual(tool.half_interval([1.0, 2.0, 3.0]), 4.303 / math.sqrt(3))
+        self.assertIsNone(tool.half_interval([1.0]))
+
+    def test_bias_and_variance_and_the_references_error_add_up_to_the_mean_square(self):
+        text = outputs(rows("a", [1], [0.5], scatter=0))["statistics.csv"]
+        row = next(csv.DictReader(text.splitlines()))
+        self.assertAlmostEqual(float(row["variance"]), 0.125)
+        self.assertAlmostEqual(float(row["reference_square"]), 1e-4)
+        self.assertAlmostEqual(float(row["bias_square"]), 0.25 - 0.125 - 1e-4)
+        self.assertAlmostEqual(float(row["efficiency"]), 4)
+
+    def test_errors_of_the_references_size_are_marked(self):
+        text = outputs(rows("a", [1, 2], [0.5, 0.012], scatter=0))["statistics.md"]
+        marked = [line for line in text.splitlines() if "\\*" in line and line.startswith("| pool")]
+        self.assertEqual(len(marked), 1)
+        self.assertIn("0.012", marked[0])
+
+    def test_curve_leaves_out_what_something_faster_beats(self):
+        self.assertEqual(tool.front([(1, 4), (3, 5), (2, 2), (4, 1)]), [(1, 4), (2, 2), (4, 1)])
+
+    def test_between_neighbours_runs_a_power_law(self):
+        curve = [(1, 8), (4, 4), (16, 2)]  # error = 8 / sqrt(seconds)
+        self.assertAlmostEqual(tool.equal_time(curve, 2), 8 / math.sqrt(2))
+        self.assertAlmostEqual(tool.equal_error(curve, 5), 2.56)
+        self.assertIsNone(tool.equal_time(curve, 0.5))
+        self.assertEqual(tool.equal_time(curve, 100), 2)
+        self.assertIsNone(tool.equal_error(curve, 1))
+        self.assertEqual(tool.equal_error(curve, 9), 1)
+
+    def test_the_better_method_alone_is_bold(self):
+        text = outputs(rows("good", [1, 4], [0.4, 0.2]), rows("poor", [1, 4], [0.8, 0.4]))["equal_time.md"]
+        good, poor = (next(line for line in text.splitlines() if line.startswith(f"| {name}")) for name in ("good", "poor"))
+        self.assertEqual(good.count("**"), 2 * tool.STEPS)
+        self.assertNotIn("**", poor)
+
+    def test_what_the_seeds_do_not_tell_is_a_tie(self):
+        text = outputs(rows("one", [1, 4], [0.4, 0.2], scatter=0.5), rows("two", [1, 4], [0.41, 0.205], scatter=0.5))
+        for name in ("equal_time.md", "equal_error.md"):
+            for method in ("one", "two"):
+                line = next(line for line in text[name].splitlines() if line.startswith(f"| {method}"))
+                self.assertEqual(line.count("**"), 2 * tool.STEPS, text[name])
+
+    def test_scenes_set_differently_are_not_compared(self):
+        text = outputs(rows("one", [1, 4], [0.4, 0.2]), rows("two", [1, 4], [0.4, 0.2], reference="lighttrace:2"))
+        self.assertEqual(text["equal_time.md"].count("Fewer than two methods"), 2)
+
+    def test_the_same_records_give_the_same_bytes(self):
+        make = lambda: outputs(rows("one", [1, 4], [0.4, 0.2], scatter=0.3), rows("two", [1, 4], [0.5, 0.2], scatter=0.3))
+        self.assertEqual(make(), make())
+
+
+if __name__ == "__main__":
+    unittest.main()
