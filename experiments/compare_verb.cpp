@@ -46,6 +46,21 @@ void append_text(std::string& text, const char* title, const nlohmann::json& met
                                                       : value.dump());
 }
 
+/// What the reference's own standard error leaves of a difference, in one line; empty where it tells none.
+std::string said_of_reference(const Film& reference, const std::string& layer,
+                              const PixelMask& reached, const nlohmann::json& metrics) {
+    const auto share =
+        layer == "caustic" ? relative_standard_error(reference, reached) : std::optional<double>();
+    if (!share || !metrics.at("rmse").is_number()) return "";
+    const double error = *share * mean(reference, layer, reached);
+    const double rmse = metrics.at("rmse").get<double>();
+    return fmt::format(
+        "the reference's own standard error is {} (root mean square): {}\n", shortest(error),
+        rmse <= 1.5 * error
+            ? "the difference is within it, and tells nothing of the picture"
+            : fmt::format("{:.0f} % of rmse squared", 100 * error * error / (rmse * rmse)));
+}
+
 int compare(const CompareOptions& options) {
     if (!options.strip.empty()) require_writable_place(options.strip);
     const Film picture = read_exr(options.picture);
@@ -63,12 +78,15 @@ int compare(const CompareOptions& options) {
     const std::string name = layer.empty() ? "beauty" : layer;
     const double unreached = 1 - fraction(reached);
     if (options.json) {
-        const nlohmann::json all = {{"layer", name},
-                                    {"unreached_fraction", unreached},
-                                    {"mask_fraction", fraction(mask)},
-                                    {"metrics", whole},
-                                    {"mask_metrics", masked},
-                                    {"formulas", metric_formulas}};
+        const std::optional<double> own = relative_standard_error(reference, reached);
+        const nlohmann::json all = {
+            {"layer", name},
+            {"unreached_fraction", unreached},
+            {"mask_fraction", fraction(mask)},
+            {"reference_stderr", own ? nlohmann::json(*own) : nlohmann::json()},
+            {"metrics", whole},
+            {"mask_metrics", masked},
+            {"formulas", metric_formulas}};
         write_stdout(all.dump(2) + "\n");
         return 0;
     }
@@ -81,6 +99,7 @@ int compare(const CompareOptions& options) {
         text,
         options.mask.empty() ? "pixels whose reference is at least its mean" : "pixels of the mask",
         masked);
+    text += said_of_reference(reference, layer, reached, whole);
     text += metric_formulas;
     write_stdout(text);
     return 0;

@@ -9,6 +9,7 @@
 #include "core/hash.h"
 #include "experiments/csv.h"
 #include "experiments/metrics.h"
+#include "experiments/reference_extension.h"
 
 namespace caustics {
 
@@ -62,15 +63,20 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
         throw InputError(
             fmt::format("{}: changed while the sweep runs", request.request.scene_file.string()));
     const Scene scene(file.desc);
+    std::optional<SmallerReference> begun;
+    if (!rebuild_) begun = find_smaller({request.kept_folder, own_folder_}, request.request, file);
     Stopwatch stopwatch;
-    const RunResult result = run(scene, request.request, options, stopwatch);
+    const RunResult result = run(
+        scene, begun ? remainder(request.request, *begun) : request.request, options, stopwatch);
     for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the reference");
     Film film = reference_film(result.film);
+    if (begun) film = joined(request.request, *begun, film);
     film.metadata = picture_metadata(request.request, file, result.report);
     // The command names the scene as it was reached from here, and the version that of today; the
     // file depends on neither.
     film.metadata.erase("command");
     film.metadata["reference_key"] = request.key;
+    if (begun) film.metadata["extends"] = begun->file.filename().string();
     if (result.why_empty) film.metadata["why_empty"] = *result.why_empty;
     const std::filesystem::path target = file_of(request);
     std::filesystem::create_directories(target.parent_path());

@@ -38,7 +38,8 @@ public:
 
     /// Whether it has to be rendered before get().
     bool must_render(const ReferenceRequest& request) const;
-    /// Renders it and writes its file. `options` brings threads and progress.
+    /// Renders it and writes its file; one that differs only in having fewer samples is extended
+    /// (reference_extension.h), except by `rebuild`. `options` brings threads and progress.
     void render(const ReferenceRequest& request, const RunOptions& options) const;
     /// Takes note that it was rendered, for `rebuild`; here or in another process.
     void note_rendered(const ReferenceRequest& request) { rendered_.insert(request.key); }

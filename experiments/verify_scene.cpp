@@ -14,7 +14,7 @@
 #include "experiments/caustic_survey.h"
 #include "experiments/light_audit.h"
 #include "experiments/methods.h"
-#include "experiments/progress.h"
+#include "experiments/step_progress.h"
 
 namespace caustics {
 
@@ -142,7 +142,7 @@ public:
     }
 
     SceneReport run() {
-        Progress progress(2 * methods_.size() + 2);
+        StepProgress progress(2 * methods_.size() + 2);
         progress.begin("account of the light");
         audit();
         look_for_the_caustic();
@@ -227,7 +227,7 @@ private:
         return films;
     }
 
-    void compare(Progress& progress) {
+    void compare(StepProgress& progress) {
         if (why_nothing_is_aimed(scene_)) return;
         const bool has_area_lights_alone =
             !why_unsupported(scene_, with_effort("pathtrace")).has_value();

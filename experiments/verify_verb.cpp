@@ -7,7 +7,7 @@
 #include "experiments/cli_options.h"
 #include "experiments/csv.h"
 #include "experiments/files.h"
-#include "experiments/progress.h"
+#include "experiments/step_progress.h"
 #include "experiments/verbs.h"
 #include "experiments/verify_gallery.h"
 #include "experiments/verify_scene.h"
@@ -33,7 +33,7 @@ int verify_gallery(const VerifyOptions& options, const RunOptions& run) {
     for (const GalleryScene& scene : scenes)
         for (const Series& series : scene.series)
             count += is_wanted(options.methods, series.method);
-    Progress progress(count);
+    StepProgress progress(count);
     std::vector<SeriesOutcome> outcomes;
     bool holds = true;
     for (const GalleryScene& scene : scenes)
