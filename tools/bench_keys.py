@@ -4,6 +4,7 @@ import re
 
 FEW, MANY = "250677", "5036126"
 MESHES = ("pool33k", "pool524k", "ball65k", "ball261k")
+BEAMS = ("7442", "131072")
 
 
 def geometric_mean(values):
@@ -105,6 +106,33 @@ def unbalanced_parts():
     return parts
 
 
+def beam_parts(above, tile="two_slice_tile"):
+    """A peer's time a query over the tree of slices', which answers tiles together."""
+    return {f"{order} {beams} {waves}": Ratio(above, tile, f"query/{waves}/{beams}/{order}")
+            for order in ("tiles", "random") for beams in BEAMS for waves in ("calm", "folded")}
+
+
+def beam_marks(few, many):
+    """Marks of the tiles' parts by the number of beams; random points are reported."""
+    marks = dict(zip(BEAMS, (few, many)))
+    return {part: marks[part.split()[1]] if part.startswith("tiles") else (None, None)
+            for part in beam_parts("scan")}
+
+
+def beam_tests():
+    return {f"{kind} {beams} {waves}": Ratio(f"two_slice_{kind}_tests", f"hybrid_{kind}_tests",
+                                             f"query/{waves}/{beams}/tiles")
+            for kind in ("cone", "beam") for beams in BEAMS for waves in ("calm", "folded")}
+
+
+class Sum(Ratio):
+    """The sum of some counters over one."""
+
+    def of(self, runs):
+        chosen = [run for name, run in runs.items() if name.startswith(self.prefixes)]
+        return geometric_mean(sum(run[one] for one in self.above) / run[self.below] for run in chosen)
+
+
 def tracing_parts():
     return {f"{emission} {mesh}": Ratio("replay", "trace", f"tracing/{mesh}/{emission}")
             for emission in ("stratified", "random") for mesh in MESHES}
@@ -151,4 +179,26 @@ KEYS = [
     Key("stratified_vs_random_emission", "photons per second", "tracing",
         {"": Across("trace", [(f"tracing/{mesh}/random", f"tracing/{mesh}/stratified") for mesh in MESHES])},
         1.5, 2),
+    Key("beam_query_vs_brute_force", "a scan of all beams' rays, 8 at a time, over two_slice", "beam_tree",
+        beam_parts("scan"), marks=beam_marks((80, 150), (800, 2500)), headline="^tiles"),
+    Key("beam_query_vs_slice_scan", "the same scan of rays that are on two planes already", "beam_tree",
+        beam_parts("slice_scan"), headline="^tiles"),
+    Key("beam_query_vs_embree_point_query", "Embree's boxes with two time steps, rtcPointQuery, over two_slice",
+        "beam_tree", beam_parts("embree"), marks=beam_marks((2, 3), (2, 3)), headline="^tiles"),
+    Key("two_slice_vs_hybrid", "time a query of the paper's tree over two_slice, point by point and by tiles",
+        "beam_tree", {**{f"alone {part}": ratio for part, ratio in beam_parts("hybrid", "two_slice").items()},
+                      **beam_parts("hybrid")}, 3, headline="^alone tiles"),
+    Key("two_slice_tests_vs_hybrid", "tests a query, point by point, over those of the paper's tree; the same "
+        "successes", "beam_tree", beam_tests(), at_most=True, headline="folded$",
+        marks={part: (0.5, 0.35) for part in beam_tests() if part.endswith("folded")}),
+    Key("beam_build_vs_embree_build", "beams and trees of a mesh over rtcCommitScene of it, 131,072 triangles",
+        "beam_tree", {"refracted light": Sum(("beams", "tree"), "embree", "build/"),
+                      "reflected light as well": Sum(("beams", "tree", "tree_reflected"), "embree", "build/")},
+        10, 4, at_most=True, headline="^refracted"),
+    Key("cost_growth_16x_beams", "time a query at 131,072 beams over that at 7,442", "beam_tree",
+        {f"{order} {waves}": Ratio("two_slice_131k", "two_slice_7k", f"cost/{waves}/{order}")
+         for order in ("tiles", "random") for waves in ("calm", "folded")}, 2, 1.5, at_most=True,
+        marks={f"random {waves}": (None, None) for waves in ("calm", "folded")}, headline="^tiles"),
+    Key("area_light_trees", "a query through a tree for each of 16 lamp points over one through a tree of all",
+        "beam_tree", {"": Ratio("apart", "together", "area/")}),
 ]

@@ -19,7 +19,7 @@ LAYERS = {
     "tests/core": ["core", "tests/support"],
     "tests/photonmap": ["core", "photonmap", "tests/support"],
     "tests/beamtree": ["core", "beamtree", "tests/support"],
-    "tests/bench": ["core", "photonmap", "tests/support"],
+    "tests/bench": ["core", "photonmap", "beamtree", "tests/support"],
     "tests": ["core", "photonmap", "beamtree", "experiments", "tests/support"],
 }
 # The one file that names all methods, and what tells of a photon map's file.

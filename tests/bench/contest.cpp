@@ -40,8 +40,10 @@ void begin(const std::string& name, const std::function<Contest()>& make) {
 
 }  // namespace
 
-void Contest::add(std::string name, std::function<void()> run, std::function<void()> prepare) {
-    contestants_.push_back({std::move(name), std::move(run), std::move(prepare)});
+void Contest::add(std::string name, std::function<void()> run, std::function<void()> prepare,
+                  double units) {
+    contestants_.push_back(
+        {std::move(name), std::move(run), std::move(prepare), units > 0 ? units : units_});
 }
 
 void Contest::warm_up() {
@@ -67,9 +69,9 @@ void Contest::run(benchmark::State& state) {
         state.SetIterationTime(total - before);
         before = total;
     }
-    const double units = 2 * static_cast<double>(state.iterations()) * units_;
+    const double rounds = 2 * static_cast<double>(state.iterations());
     for (const Contestant& contestant : contestants_)
-        state.counters[contestant.name] = 1e9 * contestant.seconds / units;
+        state.counters[contestant.name] = 1e9 * contestant.seconds / (rounds * contestant.units);
     for (const auto& [name, value] : notes_) state.counters[name] = value;
 }
 

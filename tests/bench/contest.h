@@ -17,8 +17,10 @@ public:
     /// `units`: how many pieces of work (queries, photons) a contestant does when it runs once.
     explicit Contest(double units) : units_(units) {}
 
-    /// `prepare` is run before each `run`, and is not timed. Both are called many times.
-    void add(std::string name, std::function<void()> run, std::function<void()> prepare = {});
+    /// `prepare` is run before each `run`, and is not timed. Both are called many times. `units`: of
+    /// a contestant that does another number of pieces; 0: as many as the others.
+    void add(std::string name, std::function<void()> run, std::function<void()> prepare = {},
+             double units = 0);
     /// Time by the wall's clock: for contestants that start threads.
     void use_wall_clock() { wall_clock_ = true; }
     /// A figure to be reported beside the times.
@@ -35,6 +37,7 @@ private:
         std::string name;
         std::function<void()> run;
         std::function<void()> prepare;
+        double units;
         double seconds = 0;
     };
     void time_once(Contestant& contestant) const;

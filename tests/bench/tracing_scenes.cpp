@@ -16,12 +16,15 @@ Shape floor_mesh(double z, double half) {
 
 }  // namespace
 
-SceneDesc pool_scene(int resolution) {
+SceneDesc pool_scene(int resolution) { return pool_scene(resolution, 1); }
+
+SceneDesc pool_scene(int resolution, double waves) {
     SineHeightfield field;
     field.waves = {{0.024, {7.1, 2.3}, 0.4},
                    {0.019, {-4.2, 8.6}, 1.9},
                    {0.011, {12.7, -6.1}, 3.1},
                    {0.006, {5.3, 17.9}, 5.2}};
+    for (SineWave& wave : field.waves) wave.amplitude *= waves;
     field.half_size = {1, 1};
     SceneDesc desc;
     desc.shapes = {support::mesh("water", tessellate_heightfield(field, resolution),
