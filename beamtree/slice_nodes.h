@@ -80,6 +80,5 @@ using WalkSlices = void (*)(const SliceView&, SliceWalk&);
 
 void walk_slices_plain(const SliceView&, SliceWalk&);
 void walk_slices_avx2(const SliceView&, SliceWalk&);
-void walk_slices_avx512(const SliceView&, SliceWalk&);
 
 }  // namespace caustics
