@@ -41,9 +41,7 @@ Score score(const GalleryScene& gallery, const Series& series, const Effort& eff
     const Scene scene(gallery.make(effort.resolution));
     const Method method = parse_method(series.method, parameters_node(effort.parameters));
     const auto built = build(scene, method, options);
-    std::vector<ReceiverPoint> points;
-    for (const KnownPoint& known : gallery.points)
-        points.push_back(receiver_at(scene, known, points.size(), series.radius));
+    const std::vector<ReceiverPoint> points = receiver_points(scene, gallery, series.radius);
     std::vector<Estimate> found(points.size());
     const auto context = built->make_context();
     if (gallery.points.front().wo.isZero(0))
@@ -62,6 +60,14 @@ Score score(const GalleryScene& gallery, const Series& series, const Effort& eff
 }
 
 }  // namespace
+
+std::vector<ReceiverPoint> receiver_points(const Scene& scene, const GalleryScene& gallery,
+                                           double radius) {
+    std::vector<ReceiverPoint> points;
+    for (const KnownPoint& known : gallery.points)
+        points.push_back(receiver_at(scene, known, points.size(), radius));
+    return points;
+}
 
 double SeriesOutcome::fall() const {
     return std::pow(errors.front() / errors.back(), 1.0 / static_cast<double>(errors.size() - 1));

@@ -32,6 +32,10 @@ struct SeriesOutcome {
     bool holds() const;
 };
 
+/// A gallery's points on its scene as methods are asked at them; `radius` as in Series.
+std::vector<ReceiverPoint> receiver_points(const Scene& scene, const GalleryScene& gallery,
+                                           double radius);
+
 /// Runs one method on one scene at growing effort. What it refuses (UnsupportedScene) is told.
 SeriesOutcome run_series(const GalleryScene& scene, const Series& series,
                          const RunOptions& options);
