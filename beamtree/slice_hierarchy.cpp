@@ -86,9 +86,9 @@ std::size_t part(std::span<BoxedBeam> beams) {
     for (int axis = 0; axis < 4; ++axis)
         if (binning.splits(axis)) improve(all[static_cast<std::size_t>(axis)], axis, best);
     if (best.axis < 0) return beams.size() / 2;  // all at one place
-    const auto middle = std::stable_partition(
-        beams.begin(), beams.end(),
-        [&](const BoxedBeam& beam) { return binning.of(beam.box)[best.axis] <= best.last_bin; });
+    const auto middle = std::partition(beams.begin(), beams.end(), [&](const BoxedBeam& beam) {
+        return binning.of(beam.box)[best.axis] <= best.last_bin;
+    });
     return static_cast<std::size_t>(middle - beams.begin());
 }
 

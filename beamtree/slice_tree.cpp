@@ -99,6 +99,7 @@ private:
 // Sorts the beams by the hierarchy.
 Hierarchy split(SlicedBeams& from, const Slicer& slicer) {
     std::vector<BoxedBeam> boxed;
+    boxed.reserve(from.beams.size());
     std::size_t most_triangles = 1;
     for (std::uint32_t i = 0; i < from.beams.size(); ++i) {
         const BeamNumber& number = from.beams[i];
@@ -125,6 +126,7 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa)
     const Slicer slicer(beams, frame_);
     const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer);
     std::vector<SlicedTriangle> triangles;
+    triangles.reserve(beams.beams.size());
     for (std::uint32_t place = 0; place < beams.beams.size(); ++place)
         slicer.add_triangles(beams.beams[place], place, triangles);
     SliceNodes made = widen(hierarchy, triangles);
