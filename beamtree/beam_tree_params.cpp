@@ -24,8 +24,8 @@ void read_bound(const JsonNode& node, BeamTreeParams& params) {
     }
 }
 
-// What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, and do best with
-// the hierarchy that is split by them.
+// What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, and do
+// best with the hierarchy that is split by them.
 void read_tree(const JsonNode& node, BeamTreeParams& params) {
     if (params.bound == Bound::two_slice) {
         params.hierarchy = BeamTreeParams::Tree::binned;

@@ -11,10 +11,10 @@
 
 namespace caustics {
 
-/// The trees that find a scene's beams. Each beam is in one of them: cone trees have the beams of one
-/// light sample, caster and event; trees of slices those of all that share the normal of the test
-/// planes (those over a mesh's quadtree: of one set as well). Beams that spread too far for any fixed
-/// plane are in a cone tree of swept spheres, tested on the receiver's planes.
+/// The trees that find a scene's beams. Each beam is in one of them: cone trees have the beams of
+/// one light sample, caster and event; trees of slices those of all that share the normal of the
+/// test planes (those over a mesh's quadtree: of one set as well). Beams that spread too far for
+/// any fixed plane are in a cone tree of swept spheres, tested on the receiver's planes.
 class Forest {
 public:
     Forest(const Scene& scene, const TracedScene& traced, const BeamTreeParams& params,

@@ -26,8 +26,8 @@ struct SliceNodes {
     float travel = 0;          ///< how far rays move from one plane to the other, mean [m]
 };
 
-/// Makes a hierarchy eight wide by opening the child with most triangles again and again. `triangles`
-/// are in the order of the hierarchy's beams; those of one beam side by side.
+/// Makes a hierarchy eight wide by opening the child with most triangles again and again.
+/// `triangles` are in the order of the hierarchy's beams; those of one beam side by side.
 SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles);
 
 }  // namespace caustics

@@ -7,8 +7,8 @@
 
 namespace caustics {
 
-/// Where a ray, as a line, meets the upper and the lower plane of a slab: (x, y) above, (x, y) below,
-/// in the frame's coordinates [m].
+/// Where a ray, as a line, meets the upper and the lower plane of a slab: (x, y) above, (x, y)
+/// below, in the frame's coordinates [m].
 using RaySlices = std::array<float, 4>;
 
 /// A slab of space between two planes across a fixed normal, and coordinates in it. Points of a ray

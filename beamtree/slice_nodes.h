@@ -58,7 +58,8 @@ struct SliceCandidate {
 };
 
 /// A walk of some points near each other through a tree: nodes are asked about the box round the
-/// points, triangles about each. It pauses while `found` is full, and has ended when the stack is empty.
+/// points, triangles about each. It pauses while `found` is full, and has ended when the stack is
+/// empty.
 struct SliceWalk {
     const SlicePoint* points;
     uint32_t point_count;

@@ -27,7 +27,8 @@ void for_each_ray(const SlicedBeams& from, const BeamNumber& number, const Do& a
         if (corner != Beam::none) act(corner);
 }
 
-// The slab from above all polygons to below all receivers, both a little beyond: heights are rounded.
+// The slab from above all polygons to below all receivers, both a little beyond: heights are
+// rounded.
 SliceFrame frame_of(const SlicedBeams& from) {
     const Vec3d up = from.normal.cast<double>();
     double top = -std::numeric_limits<double>::infinity();

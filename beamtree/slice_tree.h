@@ -22,8 +22,8 @@ struct SlicedBeams {
 
 /// A tree of beams, each node bounded by its rays' boxes on two planes across the normal: above all
 /// polygons and below all receivers. Between the planes a box whose sides move linearly holds all
-/// rays, however they converge and part again, and so all that test_beam can accept on planes across
-/// that normal: such points are means of ray points of their own height, or of points of the
+/// rays, however they converge and part again, and so all that test_beam can accept on planes
+/// across that normal: such points are means of ray points of their own height, or of points of the
 /// polygon's edges, and those move linearly as well. It is a tree of moving boxes, with depth in
 /// place of time. Eight children a node, eight triangles a leaf, tested at once; the beams that
 /// remain are tested exactly.
@@ -34,11 +34,11 @@ public:
     /// With a hierarchy, in the order of which the beams are given.
     SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa);
 
-    /// Appends the hits at each point to the list of the same place. Points that follow each other and
-    /// lie within a leaf's width go through the nodes together. `sets` are those that the tree was
-    /// made of; `stack` is scratch. Counts as cone-point tests the boxes that a point or a group is
-    /// tested against and the triangles that each point is, as beam-point tests the exact ones.
-    /// Throws std::out_of_range for a point below all receivers.
+    /// Appends the hits at each point to the list of the same place. Points that follow each other
+    /// and lie within half a leaf's width go through the nodes together. `sets` are those that the
+    /// tree was made of; `stack` is scratch. Counts as cone-point tests the boxes that a point or a
+    /// group is tested against and the triangles that each point is, as beam-point tests the exact
+    /// ones. Throws std::out_of_range for a point below all receivers.
     void find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
               std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
               SearchCounts& counts) const;

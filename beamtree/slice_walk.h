@@ -4,8 +4,9 @@
 
 namespace caustics {
 
-/// The walk, for the tests of one instruction set. `Eight` is made from a walk and answers, as bits,
-/// which boxes of a node its points' box meets, and which triangles of a leaf may hold a point.
+/// The walk, for the tests of one instruction set. `Eight` is made from a walk and answers, as
+/// bits, which boxes of a node its points' box meets, and which triangles of a leaf may hold a
+/// point.
 template <typename Eight>
 void walk_slices(const SliceView& tree, SliceWalk& walk) {
     const Eight eight(walk);

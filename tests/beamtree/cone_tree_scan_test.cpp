@@ -26,8 +26,8 @@ struct Query {
 
 Vec3 random_direction(Rng& rng) { return uniform_cap(2, rng.next(), rng.next()).normalized(); }
 
-// A quarter of the points anywhere round the scene, the others in a beam at any distance, some of them on
-// its edges and corners; planes of any tilt that face some beam.
+// A quarter of the points anywhere round the scene, the others in a beam at any distance, some of
+// them on its edges and corners; planes of any tilt that face some beam.
 std::vector<Query> random_queries(const BeamScene& scene, const BeamSet& set, int count) {
     std::vector<Query> queries;
     Rng rng(7, Stage::test, 0);
@@ -222,8 +222,8 @@ SlicedBeams sliced(const BeamScene& scene, std::uint32_t set, const PlaneGroup& 
     return all;
 }
 
-// Trees of slices over both hierarchies, at any height of the slab, on every instruction set: the same
-// hits after the same tests.
+// Trees of slices over both hierarchies, at any height of the slab, on every instruction set: the
+// same hits after the same tests.
 void expect_slices_as_scan(const BeamScene& scene, std::uint32_t set, const PlaneGroup& group,
                            const std::vector<Query>& queries, const Found& truth) {
     const auto& patches = scene.casters[0].mesh.patches;

@@ -90,8 +90,8 @@ Loss loss_at(const BeamSet& set, const SliceFrame& frame, float tilt) {
     return loss;
 }
 
-// Why `leaf: n` is refused: boxes on two planes close to each other hold nothing on steep planes, whose
-// caustic polygons reach out of the slab.
+// Why `leaf: n` is refused: boxes on two planes close to each other hold nothing on steep planes,
+// whose caustic polygons reach out of the slab.
 TEST(SliceBox, LosesHitsOfTiltedPlanesInAThinSlab) {
     const BeamScene pool("pool", pool_desc(16));
     const BeamSet& set = pool.sets[pool.sets[0].refracted ? 0 : 1];
@@ -140,8 +140,8 @@ Answer ask(const Scene& scene, const BeamTreeParams& params, const RunOptions& o
     return answer;
 }
 
-// Both leaf tests are one where the receiver lies across the fixed normal: the paper's tree and this
-// one give the same light to the bit, on every instruction set.
+// Both leaf tests are one where the receiver lies across the fixed normal: the paper's tree and
+// this one give the same light to the bit, on every instruction set.
 TEST(SliceTree, GivesThePapersLightWhereTheNormalsAreOne) {
     SceneDesc desc = pool_desc(24);
     desc.point_lights.push_back(support::point_light({-0.7, 0.2, 1.9}, 6));

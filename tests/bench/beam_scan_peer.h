@@ -29,8 +29,8 @@ class BeamScan {
 public:
     explicit BeamScan(const std::vector<RaysPeer>& triangles);
 
-    /// Numbers of the triangles that may hold the point, on the plane across `normal`, of whose axes the
-    /// third is the longest; `found` has room for all.
+    /// Numbers of the triangles that may hold the point, on the plane across `normal`, of whose
+    /// axes the third is the longest; `found` has room for all.
     std::size_t find(const float point[3], const float normal[3], float slack,
                      std::uint32_t* found) const;
 

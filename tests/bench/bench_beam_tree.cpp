@@ -1,10 +1,10 @@
-// Which beams hold a point: the tree of slices against a scan over all beams, Embree's point queries
-// and the paper's tree of cones; and building it, beams and all, against Embree's build of the same
-// mesh. Counters are nanoseconds per query (or per triangle of the mesh). Every contestant ends with the
-// same exact beam-point test, and finds the same hits before anything is timed.
+// Which beams hold a point: the tree of slices against a scan over all beams, Embree's point
+// queries and the paper's tree of cones; and building it, beams and all, against Embree's build of
+// the same mesh. Counters are nanoseconds per query (or per triangle of the mesh). Every contestant
+// ends with the same exact beam-point test, and finds the same hits before anything is timed.
 //
-// query/WAVES/BEAMS/ORDER     two_slice (point by point), two_slice_tile, scan, embree, hybrid; and
-//                             the counts of tests
+// query/WAVES/BEAMS/ORDER     two_slice (point by point), two_slice_tile, scan, slice_scan, embree,
+//                             hybrid; and the counts of tests
 // cost/WAVES/ORDER            two_slice_7k, two_slice_131k
 // build/BEAMS                 beams (refracted and reflected), tree, tree_reflected, embree
 // area/WAVES                  apart (16 trees), together (one)
