@@ -51,7 +51,7 @@ def failures(copy, fault):
     """The tests that fail, an empty list when none does."""
     program = copy / "build" / "ci" / "tests" / fault["target"]
     done = subprocess.run([program, f"--gtest_filter={fault['filter']}"], cwd=copy, capture_output=True, text=True)
-    failed = list(dict.fromkeys(re.findall(r"^\[  FAILED  \] (\S+?)[ ,(]", done.stdout + " ", re.MULTILINE)))
+    failed = list(dict.fromkeys(re.findall(r"^\[  FAILED  \] (\w\S*\.[^\s,]+)", done.stdout, re.MULTILINE)))
     if done.returncode != 0 and not failed:
         return [f"the program ends with {done.returncode}"]
     return failed if done.returncode != 0 else []

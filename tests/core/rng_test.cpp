@@ -40,6 +40,21 @@ TEST(Rng, StreamsOfOtherSeedsStagesAndPathsDiffer) {
     EXPECT_EQ(seen.size(), streams);
 }
 
+// Every bit of a path's and of a seed's number counts.
+TEST(Rng, NoBitOfAStreamsNumberIsLost) {
+    std::set<std::uint64_t> seen;
+    const auto see = [&seen](std::uint64_t seed, std::uint64_t path) {
+        Rng rng(seed, Stage::test, path);
+        const std::uint64_t first = rng.next_word();
+        return seen.insert(first << 32U | rng.next_word()).second;
+    };
+    EXPECT_TRUE(see(0, 0));
+    for (unsigned bit = 0; bit < 64; ++bit) {
+        EXPECT_TRUE(see(0, std::uint64_t{1} << bit)) << bit;
+        EXPECT_TRUE(see(std::uint64_t{1} << bit, 0)) << bit;
+    }
+}
+
 TEST(Rng, TheSameStreamRepeats) {
     Rng a(7, Stage::test, 99), b(7, Stage::test, 99);
     for (int i = 0; i < 100; ++i) EXPECT_EQ(a.next_word(), b.next_word());
