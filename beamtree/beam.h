@@ -33,27 +33,36 @@ struct RaySpread {
 
 /// The light that one specular polygon sends on [CC95 sec. 3.1]: rays through its three or four
 /// corners (a triangle, what is left of one, or a cell of a grid), and the flux they enclose. Four
-/// corners are two triangles, (0, 1, 2) and (0, 2, 3).
+/// corners are two triangles, (0, 1, 2) and (0, 2, 3). After several events the rays start where the
+/// light of the polygon's corners was bent last.
 struct Beam {
     static constexpr std::uint32_t none = ~0U;
     std::array<std::uint32_t, 4> corners;  ///< into BeamSet::rays; the last may be `none`
     Spectrum flux = black();               ///< through the polygon, after the event [W]
     float first_share = 1;                 ///< of the flux, in the first triangle
     float offset = 0;                      ///< rays to and from the polygon end this far off it [m]
-    std::uint32_t triangle = 0;            ///< of the caster's mesh; the first one of a cell
-    bool inside = false;  ///< goes through the medium behind the caster's front side
+    std::uint32_t triangle = 0;            ///< of the first caster's mesh; the first one of a cell
+    bool inside = false;  ///< goes through the medium behind the last caster's front side
 
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
 };
 
-/// The beams of one light sample, one caster and one event, reflection or refraction.
+/// What a caster has done with light.
+struct SpecularEvent {
+    std::uint32_t shape = 0;  ///< index into Scene::shapes
+    bool refracted = false;   ///< or reflected
+};
+
+/// The beams of one light sample that have met the same casters, with the same events.
 struct BeamSet {
     LightSample light;
-    std::uint32_t caster = 0;  ///< index into Scene::shapes
-    bool refracted = false;
-    std::array<Spectrum, 2> absorption = {black(), black()};  ///< outside, inside [1/m]
-    std::vector<VertexRay> rays;  ///< neighbouring beams share them, bit for bit
-    std::vector<Beam> beams;      ///< in the order of the mesh's triangles
+    std::uint32_t caster = 0;         ///< the first: the polygons are its
+    bool refracted = false;           ///< by the last
+    std::vector<SpecularEvent> path;  ///< in the light's order
+    std::array<Spectrum, 2> absorption = {black(),
+                                          black()};  ///< of the last: outside, inside [1/m]
+    std::vector<VertexRay> rays;                     ///< neighbouring beams share them, bit for bit
+    std::vector<Beam> beams;                         ///< in the order of the mesh's triangles
     /// One a ray where the intensity is `refined`, else none.
     std::vector<RaySpread> spreads;
     /// One a beam with `spreads`: the other beam of its pair of triangles, or Beam::none.

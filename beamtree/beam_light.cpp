@@ -40,6 +40,8 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     ray.direction.normalize();
     ray.start.geometric_normal =
         triangle_normal(rays[0]->position, rays[1]->position, rays[2]->position);
+    // Light after several events may be bent all at one place.
+    if (ray.start.geometric_normal.isZero(0)) ray.start.geometric_normal = ray.direction;
     ray.start.offset = beam.offset;
     return ray;
 }
@@ -62,7 +64,9 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
         if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
         const Spectrum factor = weight(Vec3(-ray.direction));
         if (is_black(factor)) continue;
-        if (scene_.occluded(receiver, ray.start) || !sees(scene_, ray.start, set.light)) continue;
+        if (scene_.occluded(receiver, ray.start)) continue;
+        // Of light after several events the earlier legs were seen to be free when it was traced.
+        if (set.path.size() <= 1 && !sees(scene_, ray.start, set.light)) continue;
         double density = refined_density(set, hit, point.position)
                              .value_or(hit.flux_share / std::max(hit.area, least_area));
         // The caustic polygon lies on the test's plane; the receiver's is turned against it.

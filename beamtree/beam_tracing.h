@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "beamtree/beam.h"
+#include "beamtree/beam_following.h"
 #include "beamtree/caster_mesh.h"
 #include "core/caustic_estimator.h"
 
@@ -14,8 +15,9 @@ namespace caustics {
 /// is bent at some corners of a triangle only (total internal reflection, a normal turned away, the
 /// horizon of an area light), the triangle is cut by bisection along its edges. Where its corners do
 /// not tell what it does (all dark and light inside, rays that part by 60 degrees), it is quartered,
-/// up to five times: a mesh's triangle may send several beams. Polygons of a closed caster send nothing from the side that the light cannot
-/// reach; what else stands between surfaces is not known here.
+/// up to five times: a mesh's triangle may send several beams. Polygons of a closed caster send
+/// nothing from the side that the light cannot reach; what else stands between surfaces is not known
+/// here.
 std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light);
 
@@ -25,11 +27,15 @@ enum class Intensity {
     refined  ///< by the rays' spreads: right to second order where the light is smooth
 };
 
-/// All of them that hold a beam: lights outermost, then casters, reflection before refraction. With
-/// `refined` they have spreads.
-std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
-                                     const std::vector<LightSample>& lights,
-                                     const RunOptions& options,
-                                     Intensity intensity = Intensity::area);
+struct TraceSettings {
+    Intensity intensity = Intensity::area;
+    int max_bounces = 1;
+};
+
+/// All sets that hold a beam: lights outermost, then first casters, reflection before refraction, each
+/// set before those that its light goes on to. With `refined` they have spreads.
+TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
+                            const std::vector<LightSample>& lights, const TraceSettings& settings,
+                            const RunOptions& options);
 
 }  // namespace caustics

@@ -11,7 +11,7 @@
 namespace caustics {
 
 /// `beamtree` [CC95]: the light that each specular polygon sends on is a beam; the beams of each
-/// light are found from a receiver point through a tree of cones. One specular event.
+/// light are found from a receiver point through a tree of cones.
 struct BeamTreeParams : BeamParams {
     enum class Tree {
         quadtree,  ///< of a regular subdivision; casters that have none get `binned`, and the report
@@ -34,8 +34,8 @@ struct BeamTreeParams : BeamParams {
 void read(const JsonNode& node, BeamTreeParams& params);
 
 /// Phases "beams" and "tree". Counters: polygons, beams, trees, nodes, height (of the highest
-/// tree), cone_point_tests, beam_point_tests, beam_point_hits. Throws UnsupportedScene where too
-/// much light meets a second specular surface.
+/// tree), cone_point_tests, beam_point_tests, beam_point_hits. Throws UnsupportedScene where beams
+/// lose most of the light on its way to further specular surfaces.
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options);
 

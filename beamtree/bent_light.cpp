@@ -58,11 +58,14 @@ MeshPoint LightBender::nearest_to_light(const MeshPiece& piece) const {
     return inside(piece, weights);
 }
 
-Spectrum LightBender::flux(const MeshPiece& piece, Event event) const {
-    const auto& [a, b, c] = piece;
-    if (!weights_differ(piece, event))
+Spectrum LightBender::flux(const PieceCorners& corners, Event event) const {
+    const MeshPoint& a = *corners[0];
+    const MeshPoint& b = *corners[1];
+    const MeshPoint& c = *corners[2];
+    if (!weights_differ(corners, event))
         return (a.bent.weight[event] + b.bent.weight[event] + c.bent.weight[event]) *
                static_cast<float>(measure(light_, a.position, b.position, c.position) / 3);
+    const MeshPiece piece = {a, b, c};
     const auto at = [&](const Vec3& l) -> Vec3 {
         return l[0] * a.position + l[1] * b.position + l[2] * c.position;
     };
@@ -85,8 +88,8 @@ Spectrum LightBender::flux(const MeshPiece& piece, Event event) const {
     return sum;
 }
 
-bool weights_differ(const MeshPiece& piece, Event event) {
-    const auto weight = [&](std::size_t i) { return piece[i].bent.weight[event].mean(); };
+bool weights_differ(const PieceCorners& corners, Event event) {
+    const auto weight = [&](std::size_t i) { return corners[i]->bent.weight[event].mean(); };
     const auto [least, most] = std::minmax({weight(0), weight(1), weight(2)});
     return most > 1.5F * least;
 }

@@ -30,6 +30,7 @@ struct MeshPoint {
 
 /// A triangle on a triangle of the mesh.
 using MeshPiece = std::array<MeshPoint, 3>;
+using PieceCorners = std::array<const MeshPoint*, 3>;
 
 /// Bends the light of one sample at points of one caster [CC95 sec. 3.1], by the normal there.
 class LightBender {
@@ -49,7 +50,7 @@ public:
     /// Flux that the piece sends on [W]: strength x solid angle x mean weight. The mean of the
     /// corners' weights is right to second order where they are alike. Near total reflection, where
     /// Fresnel's shares run like a root, the surface is asked inside as well.
-    Spectrum flux(const MeshPiece& piece, Event event) const;
+    Spectrum flux(const PieceCorners& corners, Event event) const;
 
 private:
     const Bsdf& bsdf_;
@@ -57,6 +58,6 @@ private:
 };
 
 /// Whether the weights of the corners differ by more than half of the least.
-bool weights_differ(const MeshPiece& piece, Event event);
+bool weights_differ(const PieceCorners& corners, Event event);
 
 }  // namespace caustics

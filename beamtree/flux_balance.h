@@ -1,20 +1,20 @@
 #pragma once
 
-#include <vector>
-
-#include "beamtree/beam.h"
-#include "core/caustic_estimator.h"
-
 namespace caustics {
 
-/// Flux of the beams that are lit, and of those among them that next meet another specular surface,
-/// judged at each beam's middle [W, mean of channels]. The method follows one event only.
+/// What becomes of the light that casters bend [W, mean of channels].
 struct FluxBalance {
-    double lit = 0;
-    double to_casters = 0;
-    double share() const { return lit > 0 ? to_casters / lit : 0; }
+    double lit = 0;     ///< leaves first surfaces that the light sees
+    double lost = 0;    ///< goes on to a further caster, and no beam carries it
+    double pruned = 0;  ///< and of that in paths too weak to be followed
+
+    void add(const FluxBalance& other) {
+        lit += other.lit;
+        lost += other.lost;
+        pruned += other.pruned;
+    }
+    /// The share that beams carry to the last event on its way (or that of `max_bounces`).
+    double captured() const { return lit > 0 ? 1 - lost / lit : 1; }
 };
-FluxBalance flux_balance(const Scene& scene, const std::vector<BeamSet>& sets,
-                         const RunOptions& options);
 
 }  // namespace caustics

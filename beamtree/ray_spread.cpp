@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <Eigen/Cholesky>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -39,6 +40,7 @@ public:
             if (vertex >= ray_of_.size()) ray_of_.resize(vertex + 1, Beam::none);
             ray_of_[vertex] = ray;
         }
+        join();
     }
 
     RaySpread spread(std::uint32_t ray) {
@@ -57,12 +59,25 @@ public:
     }
 
 private:
+    // Rays that whole beams join have gone the same way, over no crease.
+    void join() {
+        group_.resize(origins_.size());
+        std::iota(group_.begin(), group_.end(), 0U);
+        for (const Beam& beam : set_.beams)
+            for (std::size_t i = 1; i < 4; ++i)
+                if (beam.corners[i] != Beam::none)
+                    group_[group(beam.corners[i])] = group(beam.corners[0]);
+    }
+    std::uint32_t group(std::uint32_t ray) {
+        while (group_[ray] != ray) ray = group_[ray] = group_[group_[ray]];
+        return ray;
+    }
+
     // Rays beside a vertex that have gone the same way as `ray`.
     void add_round(std::uint32_t vertex, std::uint32_t ray) {
         for (const std::uint32_t other : neighbours_.round(vertex)) {
             const std::uint32_t found = other < ray_of_.size() ? ray_of_[other] : Beam::none;
-            if (found == Beam::none || found == ray || origins_[found].path != origins_[ray].path)
-                continue;
+            if (found == Beam::none || found == ray || group(found) != group(ray)) continue;
             if (std::find(around_.begin(), around_.end(), found) == around_.end())
                 around_.push_back(found);
         }
@@ -131,6 +146,8 @@ private:
     std::span<const RayOrigin> origins_;
     const MeshNeighbours& neighbours_;
     std::vector<std::uint32_t> ray_of_;  ///< one a vertex
+    std::vector<std::uint32_t>
+        group_;  ///< one a ray: another of its group, at last the group itself
     std::vector<std::uint32_t> around_;
 };
 

@@ -1,5 +1,6 @@
 #include "beamtree/traced_scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -7,17 +8,17 @@
 namespace caustics {
 namespace {
 
-// With most of the light missing it would be another picture. A mirror ring loses a fifth.
-constexpr double most_lost = 0.5;
+// With most of the light missing it would be another picture.
+constexpr double least_captured = 0.5;
 
-void refuse_several_events(const std::string& method, const BeamParams& params,
-                           const FluxBalance& balance) {
-    if (params.max_bounces == 1 || balance.share() <= most_lost) return;
-    const auto percent = std::to_string(std::lround(100 * balance.share()));
+void refuse_what_is_lost(const std::string& method, const FluxBalance& balance) {
+    if (balance.captured() >= least_captured) return;
+    const auto percent = std::to_string(std::lround(100 * (1 - balance.captured())));
     throw UnsupportedScene(
-        method + ": beams follow one specular event, and here " + percent +
-        " % of the light they carry goes on to another specular surface (give max_bounces=1 for "
-        "the paths with one event alone, or use photonmap)");
+        method + ": beams lose " + percent +
+        " % of the light between specular surfaces, where polygons are too coarse for them (refine "
+        "the casters' meshes, give max_bounces=1 for the paths with one event alone, or use "
+        "photonmap)");
 }
 
 }  // namespace
@@ -46,7 +47,12 @@ BuildReport TracedScene::report() const {
     report.resolved["casters_tessellated"] = tessellated;
     report.resolved["closed_parts"] = closed;
     report.resolved["quads"] = quads;
-    report.resolved["flux_share_to_second_event"] = balance.share();
+    report.resolved["flux_share_captured"] = balance.captured();
+    report.resolved["flux_share_pruned"] = balance.lit > 0 ? balance.pruned / balance.lit : 0;
+    double bounces = 0;
+    for (const BeamSet& set : sets)
+        bounces = std::max(bounces, static_cast<double>(set.path.size()));
+    report.resolved["most_bounces"] = bounces;
     return report;
 }
 
@@ -63,9 +69,11 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);
     const std::vector<LightSample> lights =
         sample_lights(scene, params.light_samples, options.seed);
-    traced.sets = trace_all_beams(scene, traced.casters, lights, options, intensity);
-    traced.balance = flux_balance(scene, traced.sets, options);
-    refuse_several_events(method, params, traced.balance);
+    TracedBeams beams =
+        trace_all_beams(scene, traced.casters, lights, {intensity, params.max_bounces}, options);
+    traced.sets = std::move(beams.sets);
+    traced.balance = beams.balance;
+    refuse_what_is_lost(method, traced.balance);
     return traced;
 }
 

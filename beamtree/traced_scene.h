@@ -21,8 +21,8 @@ struct TracedScene {
     const CasterMesh& caster(std::uint32_t shape) const;
 };
 
-/// Phase "beams". Throws UnsupportedScene, in the name of `method`, where more than half of the flux
-/// goes on to another specular surface, unless max_bounces is 1.
+/// Phase "beams". Throws UnsupportedScene, in the name of `method`, where beams lose more than half of
+/// the light on its way to further events.
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity = Intensity::area);
 

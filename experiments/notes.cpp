@@ -59,14 +59,16 @@ private:
 std::vector<std::string> notes(const Scene& scene, const Method& method,
                                const BuildReport& report) {
     std::vector<std::string> all;
-    const double share = resolved(report, "flux_share_to_second_event").value_or(0);
-    if (share > least_share_told && describe(method).value("max_bounces", 0) > 1)
+    const std::optional<double> captured = resolved(report, "flux_share_captured");
+    if (!captured) return all;
+    if (*captured < 1 - least_share_told)
         all.push_back(fmt::format(
-            "{} follows one specular event: {:.1f} % of the light that its beams carry goes on to "
-            "another specular surface and is missing here (photonmap follows it; max_bounces=1 "
-            "asks for the paths with one event alone)",
-            method.name, 100 * share));
-    if (!resolved(report, "flux_share_to_second_event")) return all;
+            "{} loses {:.1f} % of the light between specular surfaces, {:.1f} % in paths too weak "
+            "to "
+            "be followed and the rest where polygons are too coarse for what they meet (photonmap "
+            "follows it; max_bounces=1 asks for the paths with one event alone)",
+            method.name, 100 * (1 - *captured),
+            100 * resolved(report, "flux_share_pruned").value_or(0)));
 
     const SetParameters parameters(method);
     const auto add = [&](const char* name, bool useless, const char* why) {

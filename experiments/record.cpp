@@ -71,7 +71,7 @@ constexpr Column columns_of_all[] = {
     {"nodes", "/counters/nodes"},
     {"height", "/counters/height"},
     {"casters_with_face_normals", "/method/resolved/casters_with_face_normals"},
-    {"flux_share_to_second_event", "/method/resolved/flux_share_to_second_event"},
+    {"flux_share_captured", "/method/resolved/flux_share_captured"},
     {"camera_rays", "/counters/camera_rays"},
     {"gathers", "/counters/gathers"},
     {"gathered_photons", "/counters/gathered_photons"},

@@ -351,7 +351,8 @@ TEST(BeamRefined, KeepsTheFlux) {
         for (const TriangleMesh& mesh : {tessellate_heightfield(water(), 48), irregular(48)}) {
             const Scene scene(pool(mesh, Lamp::point));
             const auto sets = trace_all_beams(scene, caster_meshes(scene, 2, kind),
-                                              sample_lights(scene, 1, 1), {}, Intensity::refined);
+                                              sample_lights(scene, 1, 1), {Intensity::refined}, {})
+                                  .sets;
             for (const BeamSet& set : sets)
                 if (set.refracted) {
                     EXPECT_NEAR(flux_on_plane(set, -1), 1, 1e-3);
@@ -368,7 +369,8 @@ TEST(BeamRefined, TakesCutPolygons) {
     desc.point_lights = {support::point_light({0.02, 0.03, -1}, 1)};
     const Scene scene(std::move(desc));
     const auto sets = trace_all_beams(scene, caster_meshes(scene, 2), sample_lights(scene, 1, 1),
-                                      {}, Intensity::refined);
+                                      {Intensity::refined}, {})
+                          .sets;
     ASSERT_EQ(sets.size(), 2U);
     const BeamSet& reflected = sets[0];
     EXPECT_NEAR(flux_on_plane(reflected, -2), 1, 2e-3);

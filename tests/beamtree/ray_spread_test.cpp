@@ -9,7 +9,8 @@ namespace caustics {
 namespace {
 
 std::vector<BeamSet> refined_sets(const Scene& scene, const std::vector<CasterMesh>& casters) {
-    return trace_all_beams(scene, casters, sample_lights(scene, 1, 1), {}, Intensity::refined);
+    return trace_all_beams(scene, casters, sample_lights(scene, 1, 1), {Intensity::refined}, {})
+        .sets;
 }
 
 // Behind a plane mirror light spreads from the lamp's image: (d + s)^2 / (I R) in all.

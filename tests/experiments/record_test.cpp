@@ -20,7 +20,7 @@ TEST(RecordsCsv, BeginsWithTheColumnsOfTheContract) {
     const std::string header = csv_line(record_columns({"nearest", "alpha", "photons"}));
     EXPECT_EQ(header.substr(0, contract.size()), contract);
     for (const char* name : {",trees,", ",trees_binned,", ",nodes,", ",height,",
-                             ",casters_with_face_normals,", ",flux_share_to_second_event,"})
+                             ",casters_with_face_normals,", ",flux_share_captured,"})
         EXPECT_NE(header.find(name), std::string::npos) << name;
     EXPECT_EQ(header.substr(header.size() - 9), ",photons\n") << "swept keys come last, once";
 }
@@ -39,18 +39,18 @@ TEST(RecordsCsv, LeavesEmptyWhatDoesNotApply) {
         {"seed", 12345678901234},
         {"counters", {{"nodes", 7}}},
         {"method",
-         {{"parameters", {{"nearest", 50}}}, {"resolved", {{"flux_share_to_second_event", 0.25}}}}},
+         {{"parameters", {{"nearest", 50}}}, {"resolved", {{"flux_share_captured", 0.25}}}}},
         {"swept", {{"alpha", 0.1}, {"bound", "hybrid"}}},
         {"metrics", {{"rmse", 1.0 / 3}, {"relmse", nullptr}}}};
     const std::vector<std::string> columns = {
         "trial", "seed",   "nearest", "alpha", "bound",
-        "rmse",  "relmse", "beams",   "nodes", "flux_share_to_second_event"};
+        "rmse",  "relmse", "beams",   "nodes", "flux_share_captured"};
     const std::vector<nlohmann::json> row = record_row(record, columns);
     EXPECT_EQ(csv_line(row), "\"a, b\",12345678901234,50,0.1,hybrid,0.3333333333333333,,,7,0.25\n");
     EXPECT_EQ(json_line(row, columns),
               R"({"trial":"a, b","seed":12345678901234,"nearest":50,"alpha":0.1,"bound":"hybrid",)"
               R"("rmse":0.3333333333333333,"relmse":null,"beams":null,"nodes":7,)"
-              R"("flux_share_to_second_event":0.25})"
+              R"("flux_share_captured":0.25})"
               "\n");
 }
 

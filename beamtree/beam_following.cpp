@@ -1,0 +1,593 @@
+#include "beamtree/beam_following.h"
+
+#include <algorithm>
+
+#include "beamtree/cut_piece.h"
+#include "beamtree/landing.h"
+#include "beamtree/ray_spread.h"
+
+namespace caustics {
+namespace {
+
+constexpr int most_splits = 4;
+constexpr int bisections = 14;
+constexpr float widest_cosine = 0.5F;
+// Corners whose weights differ by more than this do not tell the mean; then this many parts of a side do.
+constexpr float most_varied = 1.5F;
+constexpr int parts = 5;
+constexpr double least_set_share = 1e-4;
+constexpr double least_beam_share = 1e-3;
+
+/// One more event on a beam's way, after the first.
+struct Step {
+    const Landing* where;  ///< of one of the beam's corners
+    Event event;
+};
+
+/// A set on its way, with what its light has done before.
+struct Level {
+    const Level* parent = nullptr;
+    Event event = reflection;  ///< its last
+    TracedSet traced;
+    std::vector<Departure> departures;  ///< one a ray
+    std::vector<Landing> landings;      ///< one a ray, once it is followed
+    /// One a beam, but for the first level: the beam it comes from, and a place where its light was bent.
+    std::vector<std::uint32_t> parents;
+    std::vector<Landing> places;
+    std::vector<std::uint32_t>
+        ray_of_parent;  ///< for rays of the parent: the one that goes on here
+
+    std::size_t bounces() const { return traced.set.path.size(); }
+};
+
+/// The light of one point of the first surface, after the steps of some path.
+struct PathPoint {
+    RayOrigin origin;
+    Departure from;
+    VertexRay ray;
+    bool alive = false;  ///< it has gone that path
+    Landing next;
+};
+
+using Piece = std::array<PathPoint, 3>;
+
+/// The way of a beam, to be gone again from other points of its triangle.
+class Path {
+public:
+    Path(const Scene& scene, const FirstSurface& surface, const Level& level, std::uint32_t beam)
+        : scene_(scene),
+          surface_(surface),
+          triangle_(level.traced.set.beams[beam].triangle),
+          facing_(surface.facing(triangle_)) {
+        const Level* at = &level;
+        for (; at->parent != nullptr; beam = at->parents[beam], at = at->parent)
+            steps_.push_back({&at->places[beam], at->event});
+        std::reverse(steps_.begin(), steps_.end());
+        first_event_ = at->event;
+    }
+
+    PathPoint between(const PathPoint& a, const PathPoint& b, float t) const {
+        if (t == 0) {
+            PathPoint point = a;
+            point.origin.vertex = RayOrigin::no_vertex;
+            return point;
+        }
+        return go((1 - t) * a.origin.position + t * b.origin.position,
+                  (1 - t) * a.origin.normal + t * b.origin.normal);
+    }
+    /// The point with these barycentric weights.
+    PathPoint inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const {
+        Vec3 position = Vec3::Zero();
+        Vec3 normal = Vec3::Zero();
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float weight = weights[static_cast<Eigen::Index>(i)];
+            position += weight * corners[i]->position;
+            normal += weight * corners[i]->normal;
+        }
+        return go(position, normal);
+    }
+    PathPoint middle(const Piece& piece) const {
+        return inside({&piece[0].origin, &piece[1].origin, &piece[2].origin},
+                      Vec3::Constant(1.0F / 3));
+    }
+
+private:
+    PathPoint go(const Vec3& position, const Vec3& normal) const {
+        PathPoint point;
+        const MeshPoint first = surface_.bender().at(position, normal);
+        point.origin = {first.position, first.normal, first.bent.weight[first_event_]};
+        point.from = {surface_.caster().shape, facing_.normal, surface_.offset(triangle_)};
+        if (!sends_on(first, facing_, first_event_)) return point;
+        if (!sees(scene_, {position, facing_.normal, point.from.offset}, surface_.light()))
+            return point;
+        point.ray = {position, first.bent.direction[first_event_]};
+        for (const Step& step : steps_) {
+            const Landing landing = land(scene_, point.ray, point.from);
+            if (!same_piece(landing, *step.where)) return point;
+            point.origin.weight *= landing.weight[step.event];
+            if (is_black(point.origin.weight)) return point;
+            point.ray = {landing.position, landing.direction[step.event]};
+            point.from = {landing.shape, landing.geometric_normal, landing.offset};
+        }
+        point.alive = true;
+        point.next = land(scene_, point.ray, point.from);
+        return point;
+    }
+
+    const Scene& scene_;
+    const FirstSurface& surface_;
+    std::uint32_t triangle_;
+    Facing facing_;
+    Event first_event_;
+    std::vector<Step> steps_;
+};
+
+/// A corner of a beam to be.
+struct Corner {
+    const RayOrigin* origin;
+    const Landing* landing;
+    std::uint32_t parent_ray;  ///< or Beam::none
+};
+
+/// What one set's light does next: the sets of all casters it meets, after each event.
+class NextEvent {
+public:
+    NextEvent(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
+              FluxBalance& balance)
+        : scene_(scene),
+          surface_(surface),
+          level_(level),
+          set_(level.traced.set),
+          least_flux_(least_flux),
+          balance_(balance),
+          stays_(set_.beams.size(), false) {
+        land_all();
+    }
+
+    std::vector<Level> run() {
+        for (std::uint32_t beam = 0; beam < set_.beams.size(); ++beam)
+            for (std::size_t i = 0; i < set_.beams[beam].triangle_count(); ++i)
+                follow_triangle(beam, i);
+        return std::move(next_);
+    }
+    /// Of a beam: does light of its last leg come to something else than a caster, as far as its corners tell?
+    const std::vector<bool>& stays() const { return stays_; }
+
+private:
+    void land_all() {
+        const bool is_first = level_.parent == nullptr;
+        for (std::size_t i = 0; i < set_.rays.size(); ++i) {
+            const VertexRay& ray = set_.rays[i];
+            const Departure& from = level_.departures[i];
+            const bool blocked = is_first && !sees(scene_, {ray.position, from.normal, from.offset},
+                                                   surface_.light());
+            level_.landings.push_back(blocked ? Landing{} : land(scene_, ray, from));
+        }
+    }
+
+    void follow_triangle(std::uint32_t beam, std::size_t which) {
+        const Beam& parent = set_.beams[beam];
+        const std::array<std::uint32_t, 3> rays = {parent.corners[0], parent.corners[1 + which],
+                                                   parent.corners[2 + which]};
+        const Landing& a = level_.landings[rays[0]];
+        const Landing& b = level_.landings[rays[1]];
+        const Landing& c = level_.landings[rays[2]];
+        const bool alike = same_piece(a, b) && same_piece(b, c) && same_piece(c, a);
+        if (alike && !a.goes_on()) {
+            end(beam, rays);
+            return;
+        }
+        count_lit(parent);
+        if (alike && goes_plainly(a, b, c)) {
+            for (const Event event : events)
+                if (!is_black(a.weight[event])) {
+                    std::array<Corner, 3> corners;
+                    for (std::size_t i = 0; i < 3; ++i)
+                        corners[i] = {&level_.traced.origins[rays[i]], &level_.landings[rays[i]],
+                                      rays[i]};
+                    add_beam(beam, corners, event);
+                }
+            return;
+        }
+        stays_[beam] = stays_[beam] || !alike;
+        Piece piece;
+        for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
+        cut(beam, Path(scene_, surface_, level_, beam), piece, most_splits);
+    }
+
+    // Whether the rays after an event part too far for one beam.
+    static bool part_widely(const Landing& a, const Landing& b, const Landing& c, Event event) {
+        const auto far = [event](const Landing& p, const Landing& q) {
+            return p.direction[event].dot(q.direction[event]) < widest_cosine;
+        };
+        return !is_black(a.weight[event]) && !is_black(b.weight[event]) &&
+               !is_black(c.weight[event]) && (far(a, b) || far(b, c) || far(c, a));
+    }
+    static bool part_widely(const Landing& a, const Landing& b, const Landing& c) {
+        return part_widely(a, b, c, reflection) || part_widely(a, b, c, refraction);
+    }
+    // Whether all corners do the same at the piece they meet, and go on side by side.
+    static bool goes_plainly(const Landing& a, const Landing& b, const Landing& c) {
+        for (const Event event : events) {
+            const bool black = is_black(a.weight[event]);
+            if (is_black(b.weight[event]) != black || is_black(c.weight[event]) != black)
+                return false;
+        }
+        return !part_widely(a, b, c);
+    }
+
+    // Light that goes no further; unless the ray in the middle says another thing than the corners.
+    void end(std::uint32_t beam, const std::array<std::uint32_t, 3>& rays) {
+        stays_[beam] = true;
+        const Beam& parent = set_.beams[beam];
+        const Departure& from = level_.departures[rays[0]];
+        VertexRay ray{Vec3::Zero(), Vec3::Zero()};
+        for (const std::uint32_t i : rays) {
+            ray.position += set_.rays[i].position / 3;
+            ray.direction += set_.rays[i].direction;
+        }
+        ray.direction.normalize();
+        const SegmentEnd middle{ray.position, from.normal, parent.offset};
+        if (level_.parent == nullptr) {
+            if (!sees(scene_, middle, surface_.light())) return;
+            count_lit(parent);
+        }
+        if (!land(scene_, ray, {from.shape, from.normal, parent.offset}).goes_on()) return;
+        Piece piece;
+        for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
+        cut(beam, Path(scene_, surface_, level_, beam), piece, most_splits);
+    }
+
+    void count_lit(const Beam& beam) {
+        if (level_.parent == nullptr)
+            balance_.lit +=
+                static_cast<double>(beam.flux.mean()) / static_cast<double>(beam.triangle_count());
+    }
+
+    PathPoint corner(std::uint32_t ray) const {
+        PathPoint point;
+        point.origin = level_.traced.origins[ray];
+        point.from = level_.departures[ray];
+        point.ray = set_.rays[ray];
+        point.alive = true;
+        point.next = level_.landings[ray];
+        return point;
+    }
+
+    void quarter(std::uint32_t beam, const Path& path, const Piece& piece, int splits) {
+        const auto& [a, b, c] = piece;
+        const PathPoint ab = path.between(a, b, 0.5F);
+        const PathPoint bc = path.between(b, c, 0.5F);
+        const PathPoint ca = path.between(c, a, 0.5F);
+        for (const Piece& part :
+             {Piece{a, ab, ca}, Piece{ab, b, bc}, Piece{ca, bc, c}, Piece{ab, bc, ca}})
+            cut(beam, path, part, splits - 1);
+    }
+
+    static bool goes_on(const PathPoint& p) { return p.alive && p.next.goes_on(); }
+    static bool alike(const PathPoint& a, const PathPoint& b) {
+        if (!goes_on(a) || !goes_on(b)) return goes_on(a) == goes_on(b);
+        return same_piece(a.next, b.next);
+    }
+
+    // What becomes of a piece whose corners do different things.
+    void cut(std::uint32_t beam, const Path& path, const Piece& piece, int splits) {
+        const auto& [a, b, c] = piece;
+        if (!goes_on(a) && !goes_on(b) && !goes_on(c)) {
+            if (!goes_on(path.middle(piece))) return;
+            if (splits > 0)
+                quarter(beam, path, piece, splits);
+            else
+                balance_.lost += flux(piece);
+            return;
+        }
+        const bool one = alike(a, b) && alike(b, c) && alike(c, a);
+        const bool three = !alike(a, b) && !alike(b, c) && !alike(c, a);
+        const bool more = three || (!one && hides_another(path, piece));
+        if (splits > 0 && (more || (one && part_widely(a.next, b.next, c.next)))) {
+            quarter(beam, path, piece, splits);
+            return;
+        }
+        double carried = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool known =
+                (i > 0 && alike(piece[i], piece[0])) || (i > 1 && alike(piece[i], piece[1]));
+            if (!known && goes_on(piece[i])) carried += cut_out(beam, path, piece, piece[i].next);
+        }
+        if (more) balance_.lost += std::max(0.0, flux(piece) - carried);
+    }
+
+    // Whether along an edge between corners that do different things light does a third one.
+    static bool hides_another(const Path& path, const Piece& piece) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const PathPoint& a = piece[i];
+            const PathPoint& b = piece[(i + 1) % 3];
+            if (alike(a, b)) continue;
+            const auto found = last_and_next(
+                a, b, bisections, [&](const PathPoint& p) { return alike(p, a); },
+                [&](const PathPoint& p, const PathPoint& q, float t) {
+                    return path.between(p, q, t);
+                });
+            if (!alike(found[1], b)) return true;
+        }
+        return false;
+    }
+
+    // The part of a piece that goes on as `where` does. Returns the flux of the parent's that it takes.
+    double cut_out(std::uint32_t beam, const Path& path, const Piece& piece, const Landing& where) {
+        double carried = 0;
+        for (const Event event : events) {
+            const auto part = cut_piece(
+                piece, bisections,
+                [&](const PathPoint& p) {
+                    return goes_on(p) && same_piece(p.next, where) &&
+                           !is_black(p.next.weight[event]);
+                },
+                [&](const PathPoint& p, const PathPoint& q, float t) {
+                    return path.between(p, q, t);
+                });
+            if (part.count == 0) continue;
+            double taken = 0;
+            for (std::size_t i = 0; i + 2 < part.count; ++i) {
+                const std::array<const PathPoint*, 3> points = {
+                    &part.corners[0], &part.corners[1 + i], &part.corners[2 + i]};
+                std::array<Corner, 3> corners;
+                for (std::size_t k = 0; k < 3; ++k)
+                    corners[k] = {&points[k]->origin, &points[k]->next, Beam::none};
+                add_beam(beam, corners, event);
+                taken += flux({*points[0], *points[1], *points[2]});
+            }
+            carried = std::max(carried, taken);
+        }
+        return carried;
+    }
+
+    double flux(const Piece& piece) const {
+        const auto& [a, b, c] = piece;
+        const Spectrum weight = (a.origin.weight + b.origin.weight + c.origin.weight) / 3;
+        return static_cast<double>(weight.mean()) *
+               measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
+    }
+
+    using Corners = std::array<Corner, 3>;
+
+    // As LightBender::flux: by the corners' weights where they are alike; near total reflection the way is
+    // gone from places inside as well.
+    Spectrum flux(std::uint32_t parent, const Corners& corners, Event event) const {
+        std::array<Spectrum, 3> weights;
+        for (std::size_t i = 0; i < 3; ++i)
+            weights[i] = corners[i].origin->weight * corners[i].landing->weight[event];
+        const auto [least, most] =
+            std::minmax({weights[0].mean(), weights[1].mean(), weights[2].mean()});
+        const std::array<const RayOrigin*, 3> at = {corners[0].origin, corners[1].origin,
+                                                    corners[2].origin};
+        const float whole = static_cast<float>(
+            measure(set_.light, at[0]->position, at[1]->position, at[2]->position));
+        if (most <= most_varied * least)
+            return (weights[0] + weights[1] + weights[2]) * (whole / 3);
+        const Path path(scene_, surface_, level_, parent);
+        Spectrum sum = black();
+        const auto add = [&](int i, int j, float to_middle) {
+            const float u = (static_cast<float>(i) + to_middle) / parts;
+            const float v = (static_cast<float>(j) + to_middle) / parts;
+            const PathPoint point = path.inside(at, {1 - u - v, u, v});
+            if (goes_on(point) && same_piece(point.next, *corners[0].landing))
+                sum += point.origin.weight * point.next.weight[event];
+        };
+        for (int i = 0; i < parts; ++i)
+            for (int j = 0; i + j < parts; ++j) {
+                add(i, j, 1.0F / 3);
+                if (i + j + 2 <= parts) add(i, j, 2.0F / 3);
+            }
+        return sum * (whole / (parts * parts));
+    }
+
+    void add_beam(std::uint32_t parent, const Corners& corners, Event event) {
+        const Landing& first = *corners[0].landing;
+        Beam beam;
+        beam.flux = flux(parent, corners, event);
+        const auto mean = static_cast<double>(beam.flux.mean());
+        if (!(mean > 0)) return;
+        if (mean < least_flux_) {
+            balance_.lost += mean;
+            balance_.pruned += mean;
+            return;
+        }
+        Level& level = next_level(first.shape, event);
+        beam.triangle = set_.beams[parent].triangle;
+        beam.inside = first.front == (event == refraction);
+        beam.offset = first.offset + bulge(corners);
+        beam.corners.fill(Beam::none);
+        for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
+        level.traced.set.beams.push_back(beam);
+        level.parents.push_back(parent);
+        level.places.push_back(first);
+    }
+
+    // How far the surface may lie off the triangle of the corners, as FirstSurface::offset. Facets of a
+    // mesh turn by steps.
+    static float bulge(const Corners& corners) {
+        float largest = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Landing& a = *corners[i].landing;
+            const Landing& b = *corners[(i + 1) % 3].landing;
+            const float turn = std::max((a.shading_normal - b.shading_normal).norm(),
+                                        (a.geometric_normal - b.geometric_normal).norm());
+            largest = std::max(largest, (a.position - b.position).norm() * turn);
+        }
+        return largest / 4;
+    }
+
+    Level& next_level(std::uint32_t shape, Event event) {
+        for (Level& level : next_)
+            if (level.traced.set.path.back().shape == shape && level.event == event) return level;
+        Level& level = next_.emplace_back();
+        level.parent = &level_;
+        level.event = event;
+        level.ray_of_parent.assign(set_.rays.size(), Beam::none);
+        BeamSet& set = level.traced.set;
+        set.light = set_.light;
+        set.caster = set_.caster;
+        set.refracted = event == refraction;
+        set.path = set_.path;
+        set.path.push_back({shape, event == refraction});
+        if (const auto* medium = std::get_if<Dielectric>(&scene_.shapes()[shape].bsdf.model))
+            set.absorption = {medium->ext_absorption, medium->absorption};
+        return level;
+    }
+
+    // Beams that meet in a ray of the parent's share the one it goes on as.
+    static std::uint32_t ray_of(Level& level, const Corner& corner, Event event) {
+        const bool shared = corner.parent_ray != Beam::none;
+        if (shared && level.ray_of_parent[corner.parent_ray] != Beam::none)
+            return level.ray_of_parent[corner.parent_ray];
+        const Landing& landing = *corner.landing;
+        const auto ray = static_cast<std::uint32_t>(level.traced.set.rays.size());
+        level.traced.set.rays.push_back({landing.position, landing.direction[event]});
+        RayOrigin origin = *corner.origin;
+        origin.weight *= landing.weight[event];
+        if (!shared) origin.vertex = RayOrigin::no_vertex;
+        level.traced.origins.push_back(origin);
+        level.departures.push_back({landing.shape, landing.geometric_normal, landing.offset});
+        if (shared) level.ray_of_parent[corner.parent_ray] = ray;
+        return ray;
+    }
+
+    const Scene& scene_;
+    const FirstSurface& surface_;
+    Level& level_;
+    BeamSet& set_;
+    double least_flux_;
+    FluxBalance& balance_;
+    std::vector<bool> stays_;
+    std::vector<Level> next_;
+};
+
+double flux_of(const BeamSet& set) {
+    double sum = 0;
+    for (const Beam& beam : set.beams) sum += static_cast<double>(beam.flux.mean());
+    return sum;
+}
+
+/// Leaves out beams for queries.
+void keep_only(BeamSet& set, const std::vector<bool>& kept) {
+    std::vector<std::uint32_t> number(set.beams.size(), Beam::none);
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < set.beams.size(); ++i) {
+        if (!kept[i]) continue;
+        number[i] = count;
+        set.beams[count] = set.beams[i];
+        if (!set.partners.empty()) set.partners[count] = set.partners[i];
+        ++count;
+    }
+    set.beams.resize(count);
+    if (set.partners.empty()) return;
+    set.partners.resize(count);
+    for (std::uint32_t& partner : set.partners)
+        if (partner != Beam::none) partner = number[partner];
+}
+
+/// Follows one level after the other, as far as it is worth it.
+class Follower {
+public:
+    Follower(const Scene& scene, const FirstSurface& surface, const MeshNeighbours* neighbours,
+             const std::vector<Box>& receivers, std::size_t max_bounces, TracedBeams& traced)
+        : scene_(scene),
+          surface_(surface),
+          neighbours_(neighbours),
+          receivers_(receivers),
+          max_bounces_(max_bounces),
+          traced_(traced) {}
+
+    void follow(Level& level, double first_flux, double mean_flux) {
+        BeamSet& set = level.traced.set;
+        const std::size_t place = traced_.sets.size();
+        traced_.sets.emplace_back();
+        if (level.bounces() < max_bounces_) {
+            NextEvent event(scene_, surface_, level, least_beam_share * mean_flux, traced_.balance);
+            std::vector<Level> next = event.run();
+            for (Level& one : next) {
+                const double flux = flux_of(one.traced.set);
+                if (flux < least_set_share * first_flux) {
+                    traced_.balance.lost += flux;
+                    traced_.balance.pruned += flux;
+                } else {
+                    follow(one, first_flux, mean_flux);
+                }
+            }
+            if (neighbours_ != nullptr) refine(set, level.traced.origins, *neighbours_);
+            std::vector<bool> kept = event.stays();
+            for (std::size_t i = 0; i < kept.size(); ++i)
+                kept[i] = kept[i] || comes_near_a_receiver(level, set.beams[i]);
+            keep_only(set, kept);
+        } else if (neighbours_ != nullptr) {
+            refine(set, level.traced.origins, *neighbours_);
+        }
+        traced_.sets[place] = std::move(set);
+    }
+
+private:
+    bool comes_near_a_receiver(const Level& level, const Beam& beam) const {
+        Box box;
+        for (const std::uint32_t corner : beam.corners) {
+            if (corner == Beam::none) continue;
+            box.extend(level.traced.set.rays[corner].position);
+            box.extend(level.landings[corner].position);
+        }
+        // Surfaces bulge from the beam's triangles by about its own width.
+        const Vec3 margin = Vec3::Constant(0.05F * box.diagonal().norm() + beam.offset);
+        const Box wide(box.min() - margin, box.max() + margin);
+        return std::ranges::any_of(receivers_,
+                                   [&](const Box& receiver) { return wide.intersects(receiver); });
+    }
+
+    const Scene& scene_;
+    const FirstSurface& surface_;
+    const MeshNeighbours* neighbours_;
+    const std::vector<Box>& receivers_;
+    std::size_t max_bounces_;
+    TracedBeams& traced_;
+};
+
+}  // namespace
+
+BeamFollower::BeamFollower(const Scene& scene, const FirstSurface& surface,
+                           const MeshNeighbours* neighbours, int max_bounces)
+    : scene_(scene), surface_(surface), neighbours_(neighbours), max_bounces_(max_bounces) {
+    for (const Shape& shape : scene.shapes())
+        if (is_receiver(shape.bsdf)) receivers_.push_back(bounds(shape));
+}
+
+void BeamFollower::follow(std::array<TracedSet, 2> first) {
+    double flux = 0;
+    std::size_t beams = 0;
+    for (const TracedSet& one : first) {
+        flux += flux_of(one.set);
+        beams += one.set.beams.size();
+    }
+    for (const Event event : events) {
+        if (first[event].set.beams.empty()) continue;
+        Level level;
+        level.event = event;
+        level.traced = std::move(first[event]);
+        level.departures = first_departures(level.traced);
+        Follower(scene_, surface_, neighbours_, receivers_, static_cast<std::size_t>(max_bounces_),
+                 traced_)
+            .follow(level, flux, flux / static_cast<double>(beams));
+    }
+}
+
+std::vector<Departure> BeamFollower::first_departures(const TracedSet& first) const {
+    const std::uint32_t shape = surface_.caster().shape;
+    std::vector<Departure> departures;
+    for (const RayOrigin& origin : first.origins)
+        departures.push_back({shape, origin.normal, scene_.offset(shape)});
+    // Points between vertices lie below an exact shape's surface.
+    for (const Beam& beam : first.set.beams)
+        for (const std::uint32_t corner : beam.corners)
+            if (corner != Beam::none && first.origins[corner].vertex == RayOrigin::no_vertex)
+                departures[corner].offset = beam.offset;
+    return departures;
+}
+
+}  // namespace caustics

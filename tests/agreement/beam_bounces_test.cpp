@@ -1,0 +1,240 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "beamtree/beam_tracing.h"
+#include "beamtree/beam_tree.h"
+#include "beamtree/caustic_polygons.h"
+#include "core/aimed_emission.h"
+#include "core/tessellate.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/fresnel.h"
+#include "tests/support/light_flux.h"
+#include "tests/support/sanitizers.h"
+#include "tests/support/statistics.h"
+
+namespace caustics {
+namespace {
+
+const Vec3d ball_centre(0, 0, 1.2);
+constexpr double ball_radius = 0.5;
+const Vec3d ball_lamp(0.3, -0.2, 4);
+
+Shape floor_of(double half) {
+    return support::horizontal("floor", 0, half, true, support::diffuse(0.5F));
+}
+
+SceneDesc over_a_floor(std::vector<Shape> casters, const Vec3d& lamp, float intensity = 10) {
+    SceneDesc desc;
+    desc.shapes = {floor_of(4)};
+    for (Shape& caster : casters) desc.shapes.push_back(std::move(caster));
+    desc.point_lights = {support::point_light(lamp, intensity)};
+    return desc;
+}
+
+Shape ball_mesh(int resolution, const Bsdf& bsdf = support::glass(1.5F)) {
+    return support::mesh("ball", tessellate_sphere(resolution),
+                         Transform(Eigen::Translation3d(ball_centre) * Eigen::Scaling(ball_radius)),
+                         bsdf);
+}
+
+TracedBeams beams_of(const Scene& scene, int resolution, int max_bounces = 16) {
+    return trace_all_beams(scene, caster_meshes(scene, resolution), sample_lights(scene, 1, 1),
+                           {Intensity::area, max_bounces}, {});
+}
+
+double flux_of(const TracedBeams& traced, const std::vector<bool>& refracted) {
+    double sum = 0;
+    for (const BeamSet& set : traced.sets) {
+        bool same = set.path.size() == refracted.size();
+        for (std::size_t i = 0; same && i < refracted.size(); ++i)
+            same = set.path[i].refracted == refracted[i];
+        for (const Beam& beam : set.beams)
+            if (same) sum += static_cast<double>(beam.flux.mean());
+    }
+    return sum;
+}
+
+// Of a point lamp's light by the angle from the ball's middle: Fresnel's shares along each ray, with
+// `inner` reflections inside.
+double flux_through_ball(double intensity, int inner) {
+    const double distance = (ball_lamp - ball_centre).norm();
+    const double limit = std::asin(ball_radius / distance);
+    constexpr int steps = 20'000;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double angle = limit * (i + 0.5) / steps;
+        const double sine = std::min(1.0, distance * std::sin(angle) / ball_radius);
+        const double r = support::fresnel(std::sqrt(1 - sine * sine), 1.5);
+        sum += 2 * pi_d * std::sin(angle) * (1 - r) * (1 - r) * std::pow(r, inner);
+    }
+    return intensity * sum * limit / steps;
+}
+
+// What goes through a ball, exact or a mesh, by two refractions, and what comes back after one reflection
+// inside: above 99 % at a resolution of 64.
+TEST(BeamBounces, CaptureTheFluxThroughABall) {
+    for (const bool exact : {true, false}) {
+        const Shape ball =
+            exact ? support::sphere("ball", ball_centre, ball_radius, support::glass(1.5F))
+                  : ball_mesh(64);
+        const TracedBeams traced = beams_of(Scene(over_a_floor({ball}, ball_lamp)), 64, 4);
+        const double through = flux_of(traced, {true, true}) / flux_through_ball(10, 0);
+        EXPECT_GT(through, 0.99) << exact;
+        EXPECT_LT(through, 1.002);
+        EXPECT_NEAR(flux_of(traced, {true, false, true}) / flux_through_ball(10, 1), 1, 0.02);
+        EXPECT_GT(traced.balance.captured(), 0.99);
+    }
+}
+
+// Neighbours on the first surface share their rays after every event, to the bit.
+TEST(BeamBounces, NeighboursShareTheirRays) {
+    const TracedBeams traced = beams_of(Scene(over_a_floor({ball_mesh(32)}, ball_lamp)), 2, 3);
+    for (const BeamSet& set : traced.sets) {
+        std::size_t corners = 0;
+        for (const Beam& beam : set.beams) corners += beam.triangle_count() + 2;
+        EXPECT_LT(set.rays.size(), corners / 3) << set.path.size();
+        for (const VertexRay& ray : set.rays) {
+            ASSERT_TRUE(ray.position.allFinite() && ray.direction.allFinite());
+            ASSERT_NEAR(ray.direction.norm(), 1, 1e-5);
+        }
+    }
+}
+
+constexpr int cells = 12;
+
+/// Flux in cells of the floor's |x|, |y| <= half, of photons.
+support::ArrivedFlux photon_cells(const Scene& scene, double half, std::uint64_t paths) {
+    const AimedEmission emission(scene);
+    return support::arrived_flux(
+        scene, support::aimed(emission), paths, cells * cells,
+        [half](const Deposit& deposit) {
+            const Vec2d at = deposit.position.head<2>().cast<double>() / (2 * half);
+            if (deposit.shape != 0 || at.cwiseAbs().maxCoeff() >= 0.5) return -1;
+            return static_cast<int>(cells * (at.x() + 0.5)) +
+                   cells * static_cast<int>(cells * (at.y() + 0.5));
+        },
+        3);
+}
+
+// As agreement/beam_picture_test, with all events on the way. `margin`: of the mean flux of a cell, what
+// beams take as even over a polygon.
+template <typename Params>
+void expect_same_flux(const Scene& scene, double half, const Params& params, double margin) {
+    const support::ArrivedFlux photons =
+        photon_cells(scene, half, static_cast<std::uint64_t>(support::repetitions(500'000)));
+    const auto method = build(scene, params, RunOptions{});
+    const double side = 2 * half / cells;
+    const double mean_flux = photons.total() / (cells * cells);
+    double largest = 0;
+    double total = 0;
+    double variance = 0;
+    for (int cell = 0; cell < cells * cells; ++cell) {
+        const auto index = static_cast<std::size_t>(cell);
+        Rng rng(9, Stage::test, index);
+        support::Moments irradiance;
+        std::vector<ReceiverPoint> points;
+        const int n = support::sanitized ? 6 : 12;
+        for (int i = 0; i < n * n; ++i) {
+            const double u = (i % n + static_cast<double>(rng.next())) / n;
+            const double v = (i / n + static_cast<double>(rng.next())) / n;
+            const Vec3d p(side * (cell % cells + u) - half, side * (cell / cells + v) - half, 0);
+            points.push_back(support::probe(scene, 0, p, Vec3d::UnitZ(), 0));
+        }
+        for (const Estimate& e : support::irradiance(*method, points))
+            irradiance.add(static_cast<double>(e.value.mean()));
+        const double area = side * side;
+        const double error = std::sqrt(std::pow(photons.standard_error[index], 2) +
+                                       std::pow(irradiance.standard_error() * area, 2) +
+                                       std::pow(margin * mean_flux, 2));
+        total += irradiance.mean() * area;
+        variance += error * error;
+        const double z = (irradiance.mean() * area - photons.mean[index]) / error;
+        largest = std::max(largest, std::abs(z));
+    }
+    EXPECT_LT(largest, support::sidak_bound(cells * cells));
+    EXPECT_NEAR(total, photons.total(), 4 * std::sqrt(variance) + 0.005 * photons.total());
+}
+
+BeamTreeParams swept(Intensity intensity = Intensity::area) {
+    BeamTreeParams params;
+    params.bound = Bound::sphere_swept;
+    params.intensity = intensity;
+    return params;
+}
+
+TEST(BeamBounces, AgreeBehindAnExactGlassBall) {
+    const Scene scene(over_a_floor(
+        {support::sphere("ball", ball_centre, ball_radius, support::glass(1.5F))}, ball_lamp));
+    expect_same_flux(scene, 1, swept(), 0.005);
+}
+
+TEST(BeamBounces, AgreeBehindABallOfTriangles) {
+    expect_same_flux(Scene(over_a_floor({ball_mesh(48)}, ball_lamp)), 1, swept(Intensity::refined),
+                     0.005);
+}
+
+// Facets, edges, total reflection: polygons are cut at each event.
+TEST(BeamBounces, AgreeBehindAGlassCube) {
+    const Transform place(Eigen::Translation3d(0, 0, 1) *
+                          Eigen::AngleAxisd(0.6, Vec3d(1, 0.4, 0.2).normalized()) *
+                          Eigen::Scaling(0.35));
+    const Scene scene(over_a_floor(
+        {support::mesh("cube", tessellate_cube(8), place, support::glass(1.5F))}, ball_lamp));
+    expect_same_flux(scene, 1.5, swept(), 0.01);
+}
+
+TEST(BeamBounces, AgreeBehindTwoBallsOneHalfInTheShadeOfALid) {
+    const Bsdf opaque = support::diffuse(0.5F, true);
+    const Scene scene(
+        over_a_floor({support::sphere("ball", ball_centre, ball_radius, support::glass(1.5F)),
+                      support::sphere("second", {0.1, 0.1, 0.45}, 0.2, support::glass(1.33F)),
+                      support::rectangle("lid", {0.6, 0, 2.5}, {0.5, 0, 0}, {0, 0.5, 0}, opaque)},
+                     ball_lamp));
+    expect_same_flux(scene, 1, swept(), 0.01);
+}
+
+TEST(BeamBounces, CausticPolygonsFollowThemToo) {
+    const Scene scene(over_a_floor({ball_mesh(20)}, ball_lamp));
+    CausticPolygonsParams watt;
+    watt.max_bounces = 3;
+    BeamTreeParams tree = swept();
+    tree.max_bounces = 3;
+    Rng rng(4, Stage::test, 0);
+    std::vector<ReceiverPoint> points;
+    for (int i = 0; i < 400; ++i) {
+        const Vec3d p(2 * static_cast<double>(rng.next()) - 1,
+                      2 * static_cast<double>(rng.next()) - 1, 0);
+        points.push_back(support::probe(scene, 0, p, Vec3d::UnitZ(), 0));
+    }
+    const auto by_tree = support::irradiance(*build(scene, tree, {}), points);
+    const auto by_polygons = support::irradiance(*build(scene, watt, {}), points);
+    int different = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        different += std::abs(by_tree[i].value.mean() - by_polygons[i].value.mean()) >
+                     1e-4F * by_tree[i].value.mean() + 1e-6F;
+    EXPECT_LE(different, 4);
+}
+
+// A slab of glass that absorbs: all its inner reflections, by the closed form.
+TEST(BeamBounces, AddUpToTheSeriesOfASlab) {
+    const Bsdf bsdf = support::glass(1.5F, 1, Spectrum::Constant(4));
+    SceneDesc desc;
+    desc.shapes = {floor_of(4), support::horizontal("top", 1, 2, true, bsdf),
+                   support::horizontal("bottom", 0.9, 2, false, bsdf)};
+    desc.directional_lights = {support::directional_light({0.5, 0, -std::sqrt(0.75)}, 1)};
+    const Scene scene(std::move(desc));
+    BeamTreeParams params = swept();
+    params.mesh_resolution = 8;
+    const double cosine = std::sqrt(0.75);
+    const double a = std::exp(-4 * 0.1 / support::refracted_cosine(cosine, 1.5));
+    const double expected = cosine * support::slab(support::fresnel(cosine, 1.5), a).transmitted;
+    for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(0.31, 0.17, 0)}) {
+        const auto found = support::irradiance(*build(scene, params, {}),
+                                               {support::probe(scene, 0, p, Vec3d::UnitZ(), 0)});
+        EXPECT_NEAR(static_cast<double>(found[0].value.mean()) / expected, 1, 2e-3);
+    }
+}
+
+}  // namespace
+}  // namespace caustics
