@@ -9,12 +9,14 @@
 namespace caustics {
 namespace {
 
-constexpr int most_splits = 4;
+// How often a polygon is quartered, and an edge halved to find where light does another thing.
+constexpr int most_splits = 3;
 constexpr int bisections = 14;
 constexpr float widest_cosine = 0.5F;
 // Corners whose weights differ by more than this do not tell the mean; then this many parts of a side do.
 constexpr float most_varied = 1.5F;
 constexpr int parts = 5;
+// Of the flux of all first events, and of one of their beams on average: less is not followed.
 constexpr double least_set_share = 1e-4;
 constexpr double least_beam_share = 1e-3;
 
@@ -129,6 +131,8 @@ struct Corner {
     std::uint32_t parent_ray;  ///< or Beam::none
 };
 
+using Corners = std::array<Corner, 3>;
+
 /// What one set's light does next: the sets of all casters it meets, after each event.
 class NextEvent {
 public:
@@ -181,7 +185,7 @@ private:
         if (alike && goes_plainly(a, b, c)) {
             for (const Event event : events)
                 if (!is_black(a.weight[event])) {
-                    std::array<Corner, 3> corners;
+                    Corners corners;
                     for (std::size_t i = 0; i < 3; ++i)
                         corners[i] = {&level_.traced.origins[rays[i]], &level_.landings[rays[i]],
                                       rays[i]};
@@ -267,7 +271,43 @@ private:
     static bool goes_on(const PathPoint& p) { return p.alive && p.next.goes_on(); }
     static bool alike(const PathPoint& a, const PathPoint& b) {
         if (!goes_on(a) || !goes_on(b)) return goes_on(a) == goes_on(b);
+        for (const Event event : events)
+            if (is_black(a.next.weight[event]) != is_black(b.next.weight[event])) return false;
         return same_piece(a.next, b.next);
+    }
+
+    /// An edge of a piece, from corner to corner, where they do different things.
+    struct CutEdge {
+        bool is_cut = false;
+        bool hides_another = false;  ///< a third thing between
+        PathPoint last;              ///< that does as the first corner
+        PathPoint first;             ///< that does as the second one
+    };
+
+    // Neighbours find the same points, because both begin at the same end.
+    static CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b) {
+        CutEdge edge;
+        if (alike(a, b)) return edge;
+        const auto search = [&path](const PathPoint& from, const PathPoint& to) {
+            return last_and_next(
+                from, to, bisections, [&](const PathPoint& p) { return alike(p, from); },
+                [&](const PathPoint& p, const PathPoint& q, float t) {
+                    return path.between(p, q, t);
+                });
+        };
+        const Vec3& p = a.origin.position;
+        const Vec3& q = b.origin.position;
+        const bool forward = std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+        const PathPoint& low = forward ? a : b;
+        const PathPoint& high = forward ? b : a;
+        auto [last, next] = search(low, high);
+        edge.is_cut = true;
+        edge.hides_another = !alike(next, high);
+        if (edge.hides_another) next = search(high, low)[0];
+        next.origin.vertex = RayOrigin::no_vertex;
+        edge.last = forward ? last : next;
+        edge.first = forward ? next : last;
+        return edge;
     }
 
     // What becomes of a piece whose corners do different things.
@@ -282,9 +322,15 @@ private:
             return;
         }
         const bool one = alike(a, b) && alike(b, c) && alike(c, a);
-        const bool three = !alike(a, b) && !alike(b, c) && !alike(c, a);
-        const bool more = three || (!one && hides_another(path, piece));
+        bool more = !alike(a, b) && !alike(b, c) && !alike(c, a);
         if (splits > 0 && (more || (one && part_widely(a.next, b.next, c.next)))) {
+            quarter(beam, path, piece, splits);
+            return;
+        }
+        const std::array<CutEdge, 3> edges = {cut_edge(path, a, b), cut_edge(path, b, c),
+                                              cut_edge(path, c, a)};
+        for (const CutEdge& edge : edges) more = more || edge.hides_another;
+        if (splits > 0 && more) {
             quarter(beam, path, piece, splits);
             return;
         }
@@ -292,54 +338,34 @@ private:
         for (std::size_t i = 0; i < 3; ++i) {
             const bool known =
                 (i > 0 && alike(piece[i], piece[0])) || (i > 1 && alike(piece[i], piece[1]));
-            if (!known && goes_on(piece[i])) carried += cut_out(beam, path, piece, piece[i].next);
+            if (!known && goes_on(piece[i])) carried += add_part(beam, piece, edges, piece[i]);
         }
         if (more) balance_.lost += std::max(0.0, flux(piece) - carried);
     }
 
-    // Whether along an edge between corners that do different things light does a third one.
-    static bool hides_another(const Path& path, const Piece& piece) {
+    // The part of a piece that does as one of its corners. Returns the flux of the parent's that it takes.
+    double add_part(std::uint32_t beam, const Piece& piece, const std::array<CutEdge, 3>& edges,
+                    const PathPoint& like) {
+        std::array<const PathPoint*, 6> part;
+        std::size_t count = 0;
         for (std::size_t i = 0; i < 3; ++i) {
-            const PathPoint& a = piece[i];
-            const PathPoint& b = piece[(i + 1) % 3];
-            if (alike(a, b)) continue;
-            const auto found = last_and_next(
-                a, b, bisections, [&](const PathPoint& p) { return alike(p, a); },
-                [&](const PathPoint& p, const PathPoint& q, float t) {
-                    return path.between(p, q, t);
-                });
-            if (!alike(found[1], b)) return true;
+            const bool here = alike(piece[i], like);
+            if (here) part[count++] = &piece[i];
+            if (!edges[i].is_cut) continue;
+            if (here) part[count++] = &edges[i].last;
+            if (alike(piece[(i + 1) % 3], like)) part[count++] = &edges[i].first;
         }
-        return false;
-    }
-
-    // The part of a piece that goes on as `where` does. Returns the flux of the parent's that it takes.
-    double cut_out(std::uint32_t beam, const Path& path, const Piece& piece, const Landing& where) {
-        double carried = 0;
-        for (const Event event : events) {
-            const auto part = cut_piece(
-                piece, bisections,
-                [&](const PathPoint& p) {
-                    return goes_on(p) && same_piece(p.next, where) &&
-                           !is_black(p.next.weight[event]);
-                },
-                [&](const PathPoint& p, const PathPoint& q, float t) {
-                    return path.between(p, q, t);
-                });
-            if (part.count == 0) continue;
-            double taken = 0;
-            for (std::size_t i = 0; i + 2 < part.count; ++i) {
-                const std::array<const PathPoint*, 3> points = {
-                    &part.corners[0], &part.corners[1 + i], &part.corners[2 + i]};
-                std::array<Corner, 3> corners;
-                for (std::size_t k = 0; k < 3; ++k)
-                    corners[k] = {&points[k]->origin, &points[k]->next, Beam::none};
-                add_beam(beam, corners, event);
-                taken += flux({*points[0], *points[1], *points[2]});
-            }
-            carried = std::max(carried, taken);
+        double taken = 0;
+        for (std::size_t i = 1; i + 1 < count; ++i) {
+            const std::array<const PathPoint*, 3> points = {part[0], part[i], part[i + 1]};
+            Corners corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = {&points[k]->origin, &points[k]->next, Beam::none};
+            for (const Event event : events)
+                if (!is_black(like.next.weight[event])) add_beam(beam, corners, event);
+            taken += flux({*points[0], *points[1], *points[2]});
         }
-        return carried;
+        return taken;
     }
 
     double flux(const Piece& piece) const {
@@ -348,8 +374,6 @@ private:
         return static_cast<double>(weight.mean()) *
                measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
     }
-
-    using Corners = std::array<Corner, 3>;
 
     // As LightBender::flux: by the corners' weights where they are alike; near total reflection the way is
     // gone from places inside as well.

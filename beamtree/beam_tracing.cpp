@@ -256,4 +256,10 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
     return all;
 }
 
+std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
+                                     const std::vector<LightSample>& lights,
+                                     const RunOptions& options) {
+    return trace_all_beams(scene, casters, lights, TraceSettings{}, options).sets;
+}
+
 }  // namespace caustics

@@ -37,5 +37,9 @@ struct TraceSettings {
 TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
                             const std::vector<LightSample>& lights, const TraceSettings& settings,
                             const RunOptions& options);
+/// Those of the paper: one event, without spreads.
+std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
+                                     const std::vector<LightSample>& lights,
+                                     const RunOptions& options);
 
 }  // namespace caustics

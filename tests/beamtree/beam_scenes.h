@@ -20,7 +20,7 @@ struct BeamScene {
     BeamScene(const std::string& scene_name, SceneDesc desc,
               PolygonKind kind = PolygonKind::triangle, int light_samples = 4)
         : name(scene_name), scene(std::move(desc)), casters(caster_meshes(scene, 16, kind)) {
-        sets = trace_all_beams(scene, casters, sample_lights(scene, light_samples, 1), {}, {}).sets;
+        sets = trace_all_beams(scene, casters, sample_lights(scene, light_samples, 1), {});
     }
 };
 
