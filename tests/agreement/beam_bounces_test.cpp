@@ -236,5 +236,28 @@ TEST(BeamBounces, AddUpToTheSeriesOfASlab) {
     }
 }
 
+// Panes of glass thrown about, each of a few polygons: what the corners of one meet is seldom one pane.
+TEST(BeamBounces, SayWhatTheyLose) {
+    Rng rng(5, Stage::test, 0);
+    const auto random = [&rng] {
+        return Vec3d(2 * Vec3d(rng.next(), rng.next(), rng.next()) - Vec3d::Ones());
+    };
+    std::vector<Shape> panes;
+    for (int i = 0; i < 60; ++i) {
+        const Vec3d u = random().normalized();
+        const Vec3d v = u.cross(random()).normalized();
+        panes.push_back(support::rectangle("pane" + std::to_string(i),
+                                           Vec3d(0, 0, 0.9) + 0.4 * random(), 0.15 * u, 0.15 * v,
+                                           support::glass(2.4F)));
+    }
+    const Scene scene(over_a_floor(std::move(panes), {0, 0, 3}));
+    const TracedBeams traced = beams_of(scene, 2);
+    EXPECT_LT(traced.balance.captured(), 0.98);
+    EXPECT_GT(traced.balance.captured(), 0.5);
+    EXPECT_GT(traced.balance.pruned, 0);
+    EXPECT_LT(traced.balance.pruned, traced.balance.lost);
+    EXPECT_EQ(beams_of(scene, 2, 1).balance.captured(), 1);
+}
+
 }  // namespace
 }  // namespace caustics
