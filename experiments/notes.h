@@ -8,8 +8,7 @@
 namespace caustics {
 
 /// What a user should know of a picture that could be made, one line each and mostly none: how much
-/// light a method of one specular event leaves out (from 1 % on, unless max_bounces asks for just
-/// one), and parameters that were set and make no difference in this scene.
+/// light beams lose between specular surfaces (from 1 % on), and parameters that were set and make no difference in this scene.
 std::vector<std::string> notes(const Scene& scene, const Method& method, const BuildReport& report);
 
 }  // namespace caustics

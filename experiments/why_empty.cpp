@@ -32,14 +32,15 @@ int max_bounces(const Method& method, const BuildReport& report) {
 }
 
 /// The camera sees lit receivers, but the method showed it nothing.
-std::string why_missed(const Scene& scene, const Method& method, const CausticSurvey& survey,
-                       const BuildReport& report, const Counters& counters) {
+std::string why_missed(const Method& method, const CausticSurvey& survey, const BuildReport& report,
+                       const Counters& counters) {
     const std::string found =
         fmt::format(" ({} of {} light paths traced to find out arrived where the camera sees them)",
                     survey.seen, survey.counts.emitted);
-    if (counters.contains("beams") && survey_caustic(scene, 1).seen == 0)
-        return fmt::format("{} follows one specular event, and the light needs more{}", method.name,
-                           found);
+    if (counters.contains("beams"))
+        return fmt::format(
+            "{} has no beam for it: the casters' polygons are too coarse for what they light{}",
+            method.name, found);
     const auto radius = report.resolved.find("max_radius");
     if (find(counters, "empty_gathers") == find(counters, "gathers") &&
         radius != report.resolved.end())
@@ -69,7 +70,7 @@ std::optional<std::string> why_empty(const Scene& scene, const Method& method, c
                "cannot "
                "connect the two (layer unreached; photonmap can)";
     if (survey.seen == 0) return why_unseen(survey);
-    return why_missed(scene, method, survey, report, counters);
+    return why_missed(method, survey, report, counters);
 }
 
 }  // namespace caustics

@@ -142,7 +142,7 @@ TEST(WhyEmpty, KnowsWhatAMethodCannotDo) {
               std::string::npos);
     EXPECT_EQ(reason(above, "photonmap", {"emitted=3000"}), "");
 
-    // Most of the light passes the second mirror, which turns the rest to the floor.
+    // Most of the light passes the second mirror, which turns the rest to the floor. Beams follow it there.
     SceneDesc periscope;
     periscope.shapes = {
         support::rectangle("first", {0, 0, 2}, {0, 0.5, 0}, {-0.5, 0, 0.5}, support::mirror()),
@@ -150,8 +150,7 @@ TEST(WhyEmpty, KnowsWhatAMethodCannotDo) {
         support::horizontal("floor", 0, 5, true, support::diffuse(0.5F))};
     periscope.directional_lights = {support::directional_light({0, 0, -1}, 1)};
     periscope.camera = support::camera({3, 1, 1}, {3, 0, 0}, {0, 0, 1}, 40, 6, 4);
-    EXPECT_NE(reason(periscope, "beamtree", {"mesh_resolution=4"}).find("one specular event"),
-              std::string::npos);
+    EXPECT_EQ(reason(periscope, "beamtree", {"mesh_resolution=4"}), "");
     EXPECT_EQ(reason(periscope, "photonmap", {"emitted=3000"}), "");
 }
 
