@@ -159,26 +159,27 @@ Series photon_map(double tolerance, const std::string& more) {
     return series;
 }
 
-Series beam_tree(double factor, double tolerance, const std::string& more) {
+Series beam_tree(double factor, double tolerance, const std::string& more, int coarsest) {
     Series series{"beamtree", {}, factor, tolerance, 0, more};
-    for (const int n : {16, 32, 64})
+    for (const int n : {coarsest, 2 * coarsest, 4 * coarsest})
         series.efforts.push_back({n, with({fmt::format("mesh_resolution={}", n)}, more)});
     return series;
 }
 
-Series caustic_polygons(double factor, double tolerance, const std::string& more) {
-    Series series = beam_tree(factor, tolerance, more);
+Series caustic_polygons(double factor, double tolerance, const std::string& more, int coarsest) {
+    Series series = beam_tree(factor, tolerance, more, coarsest);
     series.method = "causticpolygons";
     return series;
 }
 
-std::vector<Series> usual_series(double radius, double beam_factor, double beam_tolerance) {
+std::vector<Series> usual_series(double radius, double beam_factor, double beam_tolerance,
+                                 int coarsest) {
     return {light_trace(radius, 0.05),
             photon_map(0.08),
-            beam_tree(beam_factor, beam_tolerance),
-            beam_tree(beam_factor, beam_tolerance, "bound=two_slice"),
-            beam_tree(beam_factor * beam_factor, beam_tolerance / 3, "intensity=refined"),
-            caustic_polygons(beam_factor, beam_tolerance)};
+            beam_tree(beam_factor, beam_tolerance, "", coarsest),
+            beam_tree(beam_factor, beam_tolerance, "bound=two_slice", coarsest),
+            beam_tree(beam_factor * beam_factor, beam_tolerance / 3, "intensity=refined", coarsest),
+            caustic_polygons(beam_factor, beam_tolerance, "", coarsest)};
 }
 
 }  // namespace caustics::gallery_parts

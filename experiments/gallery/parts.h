@@ -44,10 +44,12 @@ std::vector<Vec2d> spread_over_ring(int count, double inner, double outer);
 Series light_trace(double radius, double tolerance, std::uint64_t paths = 100'000);
 Series path_trace(double tolerance, int paths);
 Series photon_map(double tolerance, const std::string& more = "");
-/// Beam tree and caustic polygons over meshes of 16, 32 and 64 bands or cells.
-Series beam_tree(double factor, double tolerance, const std::string& more = "");
-Series caustic_polygons(double factor, double tolerance, const std::string& more = "");
+/// Beam tree and caustic polygons over meshes of `coarsest` bands or cells, twice and four times as many.
+Series beam_tree(double factor, double tolerance, const std::string& more = "", int coarsest = 16);
+Series caustic_polygons(double factor, double tolerance, const std::string& more = "",
+                        int coarsest = 16);
 /// All that serve point and directional lights on diffuse receivers.
-std::vector<Series> usual_series(double radius, double beam_factor, double beam_tolerance);
+std::vector<Series> usual_series(double radius, double beam_factor, double beam_tolerance,
+                                 int coarsest = 16);
 
 }  // namespace caustics::gallery_parts
