@@ -1,5 +1,6 @@
 #include "experiments/cell_variance.h"
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,27 +16,39 @@ namespace {
 
 using nlohmann::json;
 
-/// Mean over reached pixels and channels of the sample variance over the pictures.
-std::optional<double> mean_variance(const std::vector<Film>& films) {
-    PixelMask reached = reached_pixels(films[0], films[0]);
-    double sum = 0;
-    std::size_t values = 0;
-    for (std::size_t i = 0; i < reached.size(); ++i) {
-        if (!reached[i]) continue;
-        SpectrumSum mean = SpectrumSum::Zero();
-        SpectrumSum squares = SpectrumSum::Zero();
-        for (const Film& film : films) mean += film.rgb("caustic", i).cast<double>();
-        mean /= static_cast<double>(films.size());
-        for (const Film& film : films) {
-            const SpectrumSum difference = film.rgb("caustic", i).cast<double>() - mean;
-            squares += difference.square();
+/// Gathers the sample variance over pictures, one at a time (Welford 1962).
+class PictureVariance {
+public:
+    void add(const Film& film) {
+        if (count_ == 0) {
+            reached_ = reached_pixels(film, film);
+            mean_.assign(film.pixel_count(), SpectrumSum::Zero());
+            squares_ = mean_;
         }
-        sum += squares.sum() / static_cast<double>(films.size() - 1);
-        values += 3;
+        ++count_;
+        for (std::size_t i = 0; i < mean_.size(); ++i) {
+            const SpectrumSum value = film.rgb("caustic", i).cast<double>();
+            const SpectrumSum difference = value - mean_[i];
+            mean_[i] += difference / static_cast<double>(count_);
+            squares_[i] += difference * (value - mean_[i]);
+        }
     }
-    if (values == 0) return {};
-    return sum / static_cast<double>(values);
-}
+    /// Mean over reached pixels and channels; empty when there are none, or fewer than two pictures.
+    std::optional<double> mean() const {
+        const auto pixels = std::ranges::count(reached_, true);
+        if (pixels == 0 || count_ < 2) return {};
+        double sum = 0;
+        for (std::size_t i = 0; i < squares_.size(); ++i)
+            if (reached_[i]) sum += squares_[i].sum();
+        return sum / static_cast<double>(count_ - 1) / static_cast<double>(3 * pixels);
+    }
+
+private:
+    std::size_t count_ = 0;
+    PixelMask reached_;
+    std::vector<SpectrumSum> mean_;
+    std::vector<SpectrumSum> squares_;
+};
 
 /// The pictures a variance stands on, one a seed, and how the table knows it.
 struct Cell {
@@ -76,9 +89,9 @@ json variances_of(const std::map<std::string, Cell>& cells, const JobStore& stor
     json result = json::object();
     for (const auto& [name, cell] : cells) {
         if (cell.as_earlier) continue;
-        std::vector<Film> films;
-        for (const auto& [seed, id] : cell.trials) films.push_back(read_exr(store.image_of(id)));
-        if (const auto variance = mean_variance(films)) result[name] = *variance;
+        PictureVariance variance;
+        for (const auto& [seed, id] : cell.trials) variance.add(read_exr(store.image_of(id)));
+        if (const auto mean = variance.mean()) result[name] = *mean;
     }
     return result;
 }

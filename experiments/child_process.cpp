@@ -5,10 +5,10 @@
 #include <poll.h>
 #include <sched.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -44,12 +44,14 @@ std::size_t thread_count() {
 }
 
 /// Some of OpenImageIO's own libraries begin threads when they are loaded; those sleep and hold
-/// nothing that a child needs.
-const std::size_t threads_of_libraries = thread_count();
+/// nothing that a child needs. One of them ends its thread for good at the first fork.
+std::size_t threads_of_libraries = thread_count();
 
 void require_no_other_thread() {
-    if (thread_count() > threads_of_libraries)
+    const std::size_t threads = thread_count();
+    if (threads > threads_of_libraries)
         throw std::logic_error("a child must be forked before any thread begins");
+    threads_of_libraries = threads;
 }
 
 void write_all(int descriptor, std::string_view bytes) {
@@ -82,12 +84,16 @@ private:
     std::chrono::steady_clock::time_point last_;
 };
 
-void limit_memory(std::uint64_t bytes) {
-    // When the system runs out of memory it is to end this process, not the one that waits for it.
-    std::ofstream("/proc/self/oom_score_adj") << 1000;
-    if (bytes == 0) return;
-    const rlimit limit{bytes, bytes};
-    if (setrlimit(RLIMIT_DATA, &limit) != 0) fail("setrlimit");
+/// When the system runs out of memory it is to end this process, not the one that waits for it.
+void offer_for_sacrifice() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
+
+std::uint64_t resident_bytes_of(pid_t process) {
+    // proc(5): size and resident set in pages.
+    std::ifstream in(fmt::format("/proc/{}/statm", process));
+    std::uint64_t size = 0;
+    std::uint64_t resident = 0;
+    in >> size >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 void run_on(const std::vector<int>& processors) {
@@ -115,7 +121,7 @@ std::string last_message(const ChildProcess::Work& work, const ChildLimits& limi
     try {
         print_to(log);
         run_on(limits.processors);
-        limit_memory(limits.memory_bytes);
+        offer_for_sacrifice();
         Teller teller(pipe);
         return answer_letter + work([&](double share) { teller(share); });
     } catch (const InputError& error) {
@@ -162,7 +168,10 @@ std::string death(int status) {
 
 ChildProcess::ChildProcess(const Work& work, const ChildLimits& limits,
                            const std::filesystem::path& log)
-    : limit_seconds_(limits.seconds), start_(Clock::now()), stop_(start_) {
+    : limit_seconds_(limits.seconds),
+      limit_bytes_(limits.memory_bytes),
+      start_(Clock::now()),
+      stop_(start_) {
     require_no_other_thread();
     std::fflush(nullptr);  // or the child would print it again
     int ends[2];
@@ -188,6 +197,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
       pipe_(std::exchange(other.pipe_, -1)),
       pipe_open_(other.pipe_open_),
       limit_seconds_(other.limit_seconds_),
+      limit_bytes_(other.limit_bytes_),
       start_(other.start_),
       stop_(other.stop_),
       share_(other.share_),
@@ -226,25 +236,39 @@ bool ChildProcess::has_ended() {
         std::memcpy(&share_, &received_[1], sizeof share_);
         received_.erase(0, message);
     }
-    if (!pipe_open_) reap(false);
-    if (process_ > 0 && limit_seconds_ > 0 && seconds() > limit_seconds_) {
-        kill(process_, SIGKILL);
-        reap(true);
-    }
+    if (!pipe_open_)
+        reap();
+    else if (limit_seconds_ > 0 && seconds() > limit_seconds_)
+        give_up({ChildEnd::How::timed_out, fmt::format("no result after {} s", limit_seconds_)});
+    else if (limit_bytes_ > 0 && resident_bytes_of(process_) > limit_bytes_)
+        give_up({ChildEnd::How::too_large,
+                 fmt::format("took more than {} MiB of memory", limit_bytes_ >> 20)});
     return process_ < 0;
 }
 
-void ChildProcess::reap(bool timed_out) {
+int ChildProcess::patience() const {
+    constexpr int longest = 200;
+    constexpr int between_looks_at_memory = 20;  // a thread fills some 40 MB in that time
+    const double left = limit_seconds_ > 0 ? 1000 * (limit_seconds_ - seconds()) : longest;
+    return std::clamp(static_cast<int>(left) + 1, 1,
+                      limit_bytes_ > 0 ? between_looks_at_memory : longest);
+}
+
+void ChildProcess::reap() {
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {}
     stop_ = Clock::now();
     process_ = -1;
-    if (timed_out)
-        end_ = {ChildEnd::How::timed_out, fmt::format("no result after {} s", limit_seconds_)};
-    else if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && !received_.empty())
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && !received_.empty())
         end_ = {how(received_[0]), received_.substr(1)};
     else
         end_ = {ChildEnd::How::died, death(status)};
+}
+
+void ChildProcess::give_up(ChildEnd end) {
+    kill(process_, SIGKILL);
+    reap();
+    end_ = std::move(end);
 }
 
 std::vector<int> own_processors() {
@@ -257,10 +281,13 @@ std::vector<int> own_processors() {
 }
 
 void wait_for_any(const std::vector<ChildProcess*>& children) {
-    constexpr int milliseconds = 200;
+    int patience = 1000;
     std::vector<pollfd> all;
-    for (const ChildProcess* child : children) all.push_back({child->descriptor(), POLLIN, 0});
-    poll(all.data(), all.size(), milliseconds);
+    for (const ChildProcess* child : children) {
+        all.push_back({child->descriptor(), POLLIN, 0});
+        patience = std::min(patience, child->patience());
+    }
+    poll(all.data(), all.size(), patience);
 }
 
 std::string run_in_child(const ChildProcess::Work& work, const ChildProcess::Tell& tell) {

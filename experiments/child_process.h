@@ -14,7 +14,7 @@ namespace caustics {
 /// What a child process may use; 0 or empty: no limit.
 struct ChildLimits {
     double seconds = 0;              ///< on the wall
-    std::uint64_t memory_bytes = 0;  ///< of writable memory; an allocation beyond it fails
+    std::uint64_t memory_bytes = 0;  ///< in memory at a time, the program's own included
     std::vector<int> processors;     ///< to run on
 };
 
@@ -26,7 +26,8 @@ struct ChildEnd {
         unsupported,  ///< ... UnsupportedScene
         threw,        ///< ... anything else
         died,         ///< by a signal, or without a word
-        timed_out
+        timed_out,
+        too_large  ///< took more memory than it may
     };
     How how = How::died;
     std::string text;  ///< the answer, what() of the exception, or how it died
@@ -50,9 +51,11 @@ public:
     ChildProcess(ChildProcess&& other) noexcept;
     ChildProcess& operator=(ChildProcess&& other) = delete;
 
-    /// Reads what the child told, without waiting; kills it when its time is over. True when it has
-    /// ended.
+    /// Reads what the child told, without waiting; kills it when its time is over or its memory too
+    /// large. True when it has ended.
     bool has_ended();
+    /// Milliseconds after which has_ended() should be asked again, though nothing was told.
+    int patience() const;
     /// How it ended; only when it has.
     const ChildEnd& end() const { return end_; }
     double share() const { return share_; }   ///< told last
@@ -62,13 +65,15 @@ public:
 
 private:
     void read_pipe();
-    void reap(bool timed_out);
+    void reap();
+    void give_up(ChildEnd end);
 
     using Clock = std::chrono::steady_clock;
     pid_t process_ = -1;
     int pipe_ = -1;
     bool pipe_open_ = true;
     double limit_seconds_ = 0;
+    std::uint64_t limit_bytes_ = 0;
     Clock::time_point start_;
     Clock::time_point stop_;
     double share_ = 0;
@@ -79,7 +84,7 @@ private:
 /// The processors this process may run on.
 std::vector<int> own_processors();
 
-/// Waits until one of the children has something to tell, a signal comes, or a fifth of a second is
+/// Waits until one of the children has something to tell, a signal comes, or the patience with one is
 /// over.
 void wait_for_any(const std::vector<ChildProcess*>& children);
 

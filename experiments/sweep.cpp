@@ -39,6 +39,17 @@ std::string result_text(const json& record) {
     return status_of(record);
 }
 
+constexpr std::string_view temporary_mark = ".tmp-";  ///< of WholeFile
+
+/// Removes files that killed processes left under temporary names.
+void remove_leftovers(const fs::path& folder) {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+        if (entry.is_regular_file() &&
+            entry.path().filename().string().find(temporary_mark) != std::string::npos)
+            fs::remove(entry.path(), ignored);
+}
+
 class Sweep {
 public:
     Sweep(const SweepPlan& plan, const SweepOptions& options)
@@ -48,6 +59,11 @@ public:
           store_(options.folder),
           references_(options.folder / "references", options.rebuild_references) {
         store_.prepare();
+        remove_leftovers(options.folder);
+        remove_leftovers(figures_folder());
+        // Shards may share a folder of references, where others are at work.
+        const fs::path references = options.folder / "references";
+        if (!fs::is_symlink(references)) remove_leftovers(references);
         status_ = sweep_status(plan, options, store_);
         progress_.emplace(status_.share.size(), status_.share.size() - status_.todo.size());
     }
@@ -59,15 +75,16 @@ public:
             write_whole_file(options_.folder / "environment.json", environment().dump(2) + "\n");
         try {
             render_references();
-            run_trials();
+            if (!options_.only_references) run_trials();
         } catch (...) {
             save_table_of_the_stopped();
             throw;
         }
         progress_.reset();
+        if (options_.only_references) return broken_references_.empty() ? 0 : 1;
         SweepSummary summary;
         write_table(&summary);
-        const fs::path figures = options_.folder / "report" / "figures";
+        const fs::path figures = figures_folder();
         fs::create_directories(figures);
         write_figures(
             plan_, store_, [&](const Trial& trial) { return known_status(trial) == "done"; },
@@ -78,6 +95,8 @@ public:
     }
 
 private:
+    fs::path figures_folder() const { return options_.folder / "report" / "figures"; }
+
     std::string known_status(const Trial& trial) const {
         const auto found = status_.statuses.find(trial.id);
         return found == status_.statuses.end() ? std::string() : found->second;
@@ -211,8 +230,11 @@ private:
     std::optional<double> remaining() {
         const auto now = std::chrono::steady_clock::now();
         const double age = std::chrono::duration<double>(now - estimated_).count();
+        // A long list is not added up for each of its trials.
         constexpr double oldest = 1;
-        if (waiting_ && age < oldest) return std::max(0.0, *waiting_ - age);
+        constexpr std::size_t long_list = 100;
+        const bool is_long = status_.todo.size() - next_ > long_list;
+        if (is_long && waiting_ && age < oldest) return std::max(0.0, *waiting_ - age);
         estimated_ = now;
         waiting_.reset();
         double sum = 0;

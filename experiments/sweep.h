@@ -16,6 +16,7 @@ struct SweepOptions {
     bool rerun_failed = false;        ///< run trials again that failed or took too long
     bool fail_fast = false;           ///< stop at the first failure
     bool rebuild_references = false;  ///< render references anew
+    bool only_references = false;     ///< render what the trials need, and stop
     TrialSettings trials;
 };
 

@@ -38,6 +38,7 @@ SweepOptions options_of(const SweepFlags& flags) {
     options.rerun_failed = !flags.rerun.empty();
     options.fail_fast = flags.fail_fast;
     options.rebuild_references = flags.references == "rebuild";
+    options.only_references = flags.references == "only";
     options.trials.jobs = flags.jobs;
     options.trials.threads = flags.machine.threads;
     options.trials.isa = flags.machine.isa;
@@ -90,13 +91,14 @@ Verb add_sweep(CLI::App& app) {
     verb->add_flag("--fail-fast", flags->fail_fast, "Stop at the first trial that fails");
     verb->add_option("--timeout", flags->timeout, "Seconds after which a trial is given up")
         ->check(CLI::Range(0.001, 1e9));
-    verb->add_option("--memory", flags->memory, "MiB that a trial may allocate")
+    verb->add_option("--memory", flags->memory, "MiB that a trial may have in memory at a time")
         ->check(CLI::Range(1, 1 << 30));
     verb->add_option("--jobs", flags->jobs, "Trials at a time (default 1, so that times hold)")
         ->check(CLI::Range(1, 4096));
     verb->add_option("--references", flags->references,
-                     "keep: use the references that are there; rebuild: render them anew")
-        ->check(CLI::IsMember({"keep", "rebuild"}));
+                     "keep: use the references that are there; rebuild: render them anew; only: "
+                     "render those missing and run no trial")
+        ->check(CLI::IsMember({"keep", "rebuild", "only"}));
     flags->machine.add_to(*verb, "as the sweep file says, or 1");
     verb->footer(
         "Each trial runs in a process of its own; what it leaves behind is whole or absent. Trials "

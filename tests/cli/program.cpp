@@ -14,58 +14,51 @@ namespace caustics::support {
 
 namespace {
 
-/// The program at work, its output going to files.
-class Program {
-public:
-    explicit Program(const std::vector<std::string>& arguments) {
-        std::vector<std::string> words = {CAUSTICBENCH};
-        words.insert(words.end(), arguments.begin(), arguments.end());
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
-
-        child_ = fork();
-        if (child_ == 0) {
-            constexpr mode_t mode = 0600;
-            dup2(open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDOUT_FILENO);
-            dup2(open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDERR_FILENO);
-            execv(argv[0], argv.data());
-            _exit(127);
-        }
-    }
-
-    bool has_ended() { return waitpid(child_, &status_, WNOHANG) == child_; }
-    void interrupt() const { kill(child_, SIGINT); }
-
-    ProgramResult wait() {
-        waitpid(child_, &status_, 0);
-        return result();
-    }
-    ProgramResult result() const {
-        ProgramResult result;
-        if (WIFEXITED(status_)) result.exit_code = WEXITSTATUS(status_);
-        result.out = read_whole_file(out_);
-        result.err = read_whole_file(err_);
-        std::filesystem::remove(out_);
-        std::filesystem::remove(err_);
-        return result;
-    }
-
-private:
-    static std::string file_base() {
-        static int runs = 0;
-        return std::filesystem::temp_directory_path() /
-               ("causticbench-" + std::to_string(getpid()) + "-" + std::to_string(++runs));
-    }
-
-    std::string base_ = file_base();
-    std::string out_ = base_ + ".out";
-    std::string err_ = base_ + ".err";
-    pid_t child_ = -1;
-    int status_ = 0;
-};
+std::string file_base() {
+    static int runs = 0;
+    return std::filesystem::temp_directory_path() /
+           ("causticbench-" + std::to_string(getpid()) + "-" + std::to_string(++runs));
+}
 
 }  // namespace
+
+Program::Program(const std::vector<std::string>& arguments) {
+    const std::string base = file_base();
+    out_ = base + ".out";
+    err_ = base + ".err";
+    std::vector<std::string> words = {CAUSTICBENCH};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+
+    child_ = fork();
+    if (child_ == 0) {
+        constexpr mode_t mode = 0600;
+        dup2(open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDOUT_FILENO);
+        dup2(open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDERR_FILENO);
+        execv(argv[0], argv.data());
+        _exit(127);
+    }
+}
+
+bool Program::reap(bool wait) {
+    has_ended_ = waitpid(child_, &status_, wait ? 0 : WNOHANG) == child_;
+    return has_ended_;
+}
+
+void Program::signal(int number) const { kill(child_, number); }
+
+ProgramResult Program::wait() {
+    if (!has_ended_) reap(true);
+    ProgramResult result;
+    if (WIFEXITED(status_)) result.exit_code = WEXITSTATUS(status_);
+    result.out = read_whole_file(out_);
+    result.err = read_whole_file(err_);
+    std::filesystem::remove(out_);
+    std::filesystem::remove(err_);
+    return result;
+}
 
 ProgramResult causticbench(const std::vector<std::string>& arguments) {
     return Program(arguments).wait();
@@ -75,10 +68,10 @@ ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments
                                        const std::filesystem::path& file) {
     Program program(arguments);
     while (!std::filesystem::exists(file)) {
-        if (program.has_ended()) return program.result();
+        if (program.has_ended()) return program.wait();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    program.interrupt();
+    program.signal(SIGINT);
     return program.wait();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,6 +13,27 @@ struct ProgramResult {
     int exit_code = -1;  ///< -1: it did not end by itself
     std::string out;
     std::string err;
+};
+
+/// causticbench at work, its output going to files.
+class Program {
+public:
+    explicit Program(const std::vector<std::string>& arguments);
+
+    pid_t id() const { return child_; }
+    bool has_ended() { return has_ended_ || reap(false); }
+    void signal(int number) const;
+    /// Waits for its end; once only.
+    ProgramResult wait();
+
+private:
+    bool reap(bool wait);
+
+    std::string out_;
+    std::string err_;
+    pid_t child_ = -1;
+    int status_ = 0;
+    bool has_ended_ = false;
 };
 
 /// Runs causticbench with these arguments.

@@ -143,6 +143,10 @@ TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
     const std::vector<std::pair<std::string, std::string>> cases = {
         {R"("methods": [])", "/methods"},
         {none + R"(, "seeds": [])", "/seeds"},
+        {none + R"(, "set": {"a": {"pointer": "/ball/radius", "values": []}})", "/set/a/values"},
+        {none + R"(, "threads": 0)", "/threads"},
+        {none + R"(, "seeds": [-1])", "/seeds/0"},
+        {none + R"(, "version": 2)", "version"},
         {none + R"(, "repeats": 0)", "/repeats"},
         {none + R"(, "spq": 4)", "spq"},
         {R"("methods": [{"method": "photonmpa"}])", "/methods/0/method"},
@@ -160,6 +164,29 @@ TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
     EXPECT_THROW(plan(none + R"(, "reference": {"method": "pathtrace"})"), UnsupportedScene);
+}
+
+TEST_F(SweepPlans, NameThePlaceOfAMistakeInTheSweepFileToo) {
+    const std::string file = (folder_ / "sweep.json").string();
+    EXPECT_EQ(error(none + R"(, "set": {"a": {"pointer": "/ball/radius", "values": [0.4]},
+                                        "b": {"pointer": "/ball/bsdf/int_ior", "values": [1.5, -1]},
+                                        "c": {"pointer": "/floor/bsdf/reflectance", "values": [0]}})"),
+              file + ": /set/b: -1: " + scene +
+                  ": /ball/bsdf/int_ior: -1 is out of range (from 0.1 to 10)");
+    EXPECT_NE(error(none + R"(, "set": {"a": {"pointer": "/flor/x", "values": [1]}})")
+                  .find(file + ": /set/a: 1: "),
+              std::string::npos);
+    const std::string broken = folder_ / "broken.json";
+    write_whole_file(broken, "{}");
+    const std::filesystem::path sweep = folder_ / "second.json";
+    write_whole_file(sweep, fmt::format(R"({{"version": 1, "scenes": ["{}"], {}}})", broken, none));
+    try {
+        read_plan({sweep});
+        FAIL();
+    } catch (const InputError& mistake) {
+        EXPECT_EQ(std::string(mistake.what()).rfind(sweep.string() + ": /scenes: " + broken, 0), 0U)
+            << mistake.what();
+    }
 }
 
 }  // namespace

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "core/film.h"
+#include "experiments/files.h"
+#include "tests/cli/program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+using nlohmann::json;
+using support::causticbench;
+using support::ProgramResult;
+namespace fs = std::filesystem;
+
+const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+
+class Runner : public testing::Test {
+protected:
+    std::string write_sweep(const std::string& methods) {
+        const fs::path file = folder_ / "sweep.json";
+        write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+                                               "methods": {}}})",
+                                           scene, methods));
+        return file;
+    }
+    std::vector<std::string> arguments(const std::string& file,
+                                       const std::vector<std::string>& more = {}) {
+        std::vector<std::string> all = {"sweep", file, "-o", out_};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    ProgramResult sweep(const std::string& file, const std::vector<std::string>& more = {}) {
+        return causticbench(arguments(file, more));
+    }
+    /// The lines of records.jsonl.
+    std::vector<json> rows() const {
+        std::istringstream in(read_whole_file(fs::path(out_) / "records.jsonl"));
+        std::vector<json> all;
+        for (std::string line; std::getline(in, line);) all.push_back(json::parse(line));
+        return all;
+    }
+    std::string log_of(const json& row) const {
+        return read_whole_file(fs::path(out_) / "trials" / row.at("trial").get<std::string>() /
+                               "log.txt");
+    }
+    /// Until the program has written a file of the results.
+    void wait_for(support::Program& program, const std::string& file) const {
+        while (!fs::exists(fs::path(out_) / file)) {
+            ASSERT_FALSE(program.has_ended());
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    support::TemporaryFolder folder_;
+    std::string out_ = folder_ / "out";
+};
+
+const std::string endless = R"([{"method": "photonmap", "param": {"emitted": 2000000000}}])";
+
+TEST_F(Runner, MakesARowOfATrialThatHangsAndOfOneThatEatsMemory) {
+    const std::string file = folder_ / "sweep.json";
+    write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+        "set": {{"film": {{"pointer": "/sensor/film", "values": [
+            {{"type": "hdrfilm", "width": 4, "height": 4}},
+            {{"type": "hdrfilm", "width": 11000, "height": 11000}}]}}}},
+        "methods": [{{"method": "none"}},
+                    {{"method": "photonmap", "param": {{"emitted": 2000000000}}}}]}})",
+                                       scene));
+    const ProgramResult result = sweep(file, {"--timeout", "0.7", "--memory", "500"});
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    const std::vector<json> table = rows();
+    ASSERT_EQ(table.size(), 4U);
+    const json& hungry = table[2];
+    const json& endless_one = table[1];
+    EXPECT_EQ(table[0].at("status"), "done");
+    EXPECT_EQ(endless_one.at("status"), "timeout");
+    EXPECT_EQ(endless_one.at("message"), "no result after 0.7 s");
+    EXPECT_NE(log_of(endless_one).find("timeout: no result after 0.7 s"), std::string::npos);
+    EXPECT_GE(endless_one.at("elapsed_s"), 0.7);
+    EXPECT_EQ(hungry.at("status"), "failed");
+    EXPECT_EQ(hungry.at("message"), "took more than 500 MiB of memory");
+    EXPECT_EQ(hungry.at("memory_limit_bytes"), 500 << 20);
+    EXPECT_NE(log_of(hungry).find("failed: took more than"), std::string::npos);
+    EXPECT_NE(result.err.find("log.txt"), std::string::npos) << "failures name their log at once";
+}
+
+TEST_F(Runner, KeepsOtherRunnersOutUntilItEnds) {
+    const std::string file = write_sweep(endless);
+    support::Program first(arguments(file));
+    wait_for(first, "plan.json");
+    const ProgramResult second = sweep(file);
+    EXPECT_EQ(second.exit_code, 2);
+    EXPECT_NE(
+        second.err.find(fmt::format("another runner works on it (process {} on ", first.id())),
+        std::string::npos)
+        << second.err;
+    EXPECT_EQ(sweep(file, {"--list"}).exit_code, 0) << "looking is allowed";
+    first.signal(SIGKILL);
+    first.wait();
+    const ProgramResult third = sweep(file, {"--timeout", "0.1"});
+    EXPECT_EQ(third.exit_code, 1) << third.err;
+    EXPECT_EQ(rows().at(0).at("status"), "timeout");
+}
+
+TEST_F(Runner, DropsTheTrialAtWorkWhenAskedToStop) {
+    support::Program program(arguments(write_sweep(endless)));
+    wait_for(program, "environment.json");
+    program.signal(SIGTERM);
+    EXPECT_EQ(program.wait().exit_code, 130);
+    EXPECT_TRUE(fs::is_empty(fs::path(out_) / "trials"));
+}
+
+TEST_F(Runner, TellsWhatItWouldDo) {
+    const std::string file = write_sweep(
+        R"([{"method": "none"}, {"method": "photonmap", "param": {"photons": [10, 20, 30]}}])");
+    const ProgramResult before = sweep(file, {"--dry-run", "--shard", "1/2"});
+    EXPECT_EQ(before.exit_code, 0) << before.err;
+    EXPECT_NE(before.out.find("2 planned in shard 1/2; 2 to run\n"), std::string::npos)
+        << before.out;
+    EXPECT_NE(before.out.find("time       unknown"), std::string::npos) << before.out;
+    EXPECT_FALSE(fs::exists(out_));
+
+    EXPECT_EQ(sweep(file, {"--filter", "photons=20", "--filter", "photons=30"}).exit_code, 0);
+    ASSERT_EQ(rows().size(), 2U);
+    const ProgramResult after = sweep(file, {"--dry-run"});
+    EXPECT_NE(after.out.find("4 planned, 2 done; 2 to run\n"), std::string::npos) << after.out;
+    EXPECT_NE(after.out.find("from 2 earlier records"), std::string::npos) << after.out;
+
+    EXPECT_EQ(sweep(file, {"--filter", "method=none"}).exit_code, 0);
+    EXPECT_EQ(rows().size(), 3U) << "the table keeps what other filters chose";
+    EXPECT_EQ(sweep(file, {"--jobs", "2"}).exit_code, 0);
+    EXPECT_EQ(rows().size(), 4U);
+}
+
+TEST_F(Runner, WarnsOfResultsByOtherCodeAndRunsBrokenOnesAgain) {
+    const std::string file = write_sweep(R"([{"method": "none"}])");
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const fs::path record =
+        fs::path(out_) / "trials" / rows()[0].at("trial").get<std::string>() / "record.json";
+    json changed = json::parse(read_whole_file(record));
+    changed["code_version"] = "0.0.1 (older)";
+    write_whole_file(record, changed.dump());
+    const ProgramResult warned = sweep(file);
+    EXPECT_EQ(warned.exit_code, 0);
+    EXPECT_NE(warned.err.find("1 by 0.0.1 (older)"), std::string::npos) << warned.err;
+
+    write_whole_file(record, changed.dump().substr(0, 100));
+    const ProgramResult again = sweep(file);
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_NE(again.err.find("broken record"), std::string::npos) << again.err;
+    EXPECT_EQ(rows()[0].at("status"), "done");
+}
+
+TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
+    const std::string file = folder_ / "sweep.json";
+    write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [7],
+        "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3]}}}},
+        "methods": [{{"method": "photonmap", "param": {{"photons": 100, "filter": "cone"}}}}]}})",
+                                       scene));
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const std::string id = rows()[0].at("trial");
+    const ProgramResult result =
+        causticbench({"explain", out_, rows()[0].at("config_hash").get<std::string>()});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(std::system(fmt::format("cd '{}' && ({}) 2>/dev/null", fs::current_path().string(),
+                                      result.out)
+                              .c_str()),
+              0)
+        << result.out;
+    const Film again = read_exr(id + ".exr");
+    fs::remove(id + ".exr");
+    const Film first = read_exr(fs::path(out_) / "trials" / id / "image.exr");
+    for (const Plane& plane : first.planes()) EXPECT_EQ(*again.find(plane.channel), plane.values);
+    EXPECT_EQ(causticbench({"explain", out_, "absent"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,138 @@
+#!/usr/bin/python3
+"""Runs a sweep as an array of Slurm jobs: writes the batch script, submits it, and says how to put the shards together.
+
+Usage: slurm_sweep.py SWEEP.json... -o DIR --shards N [--at-once K] [--cpus-per-task C] [--program PATH]
+                      [--sbatch=OPTION]... [--sweep=OPTION]... [--only-write]
+
+Shard i goes to DIR/shards/i, and all shards share DIR/references, which a first job renders. The N tasks are submitted as
+arrays that the cluster's MaxArraySize allows, one after the other, of which at most K tasks run at a time. Each
+trial gets the C processors of its task (SLURM_CPUS_PER_TASK). A task that is requeued or submitted again goes on where
+it stopped. Options of sbatch and of the sweep are handed on: --sbatch=--partition=long --sweep=--timeout=600.
+"""
+import argparse
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+SCRIPT = """#!/bin/bash
+#SBATCH --job-name={name}
+#SBATCH --output={log}
+#SBATCH --open-mode=append
+#SBATCH --requeue
+#SBATCH --cpus-per-task={cpus}
+# One task: shard OFFSET + its number in the array, or without an array the references.
+set -euo pipefail
+program={program}
+common=({common} --threads "${{SLURM_CPUS_PER_TASK:-1}}")
+if [ -z "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
+    exec "$program" "${{common[@]}}" -o {references} --references only
+fi
+shard=$((OFFSET + SLURM_ARRAY_TASK_ID))
+exec "$program" "${{common[@]}}" -o {shards}/"$shard" --shard "$shard/{count}"
+"""
+
+
+class SlurmError(Exception):
+    """One line for the user."""
+
+
+def run(command):
+    try:
+        done = subprocess.run(command, capture_output=True, text=True)
+    except OSError as error:
+        raise SlurmError(f"{command[0]}: {error.strerror} (is Slurm installed?)") from error
+    if done.returncode != 0:
+        raise SlurmError(f"{shlex.join(command)}: {done.stderr.strip() or done.stdout.strip()}")
+    return done.stdout
+
+
+def largest_index():
+    """The largest index that a task of an array may have."""
+    found = re.search(r"^MaxArraySize\s*=\s*(\d+)", run(["scontrol", "show", "config"]), re.MULTILINE)
+    if not found:
+        raise SlurmError("scontrol show config does not tell MaxArraySize")
+    return int(found.group(1)) - 1
+
+
+def arrays(shards, largest):
+    """(offset, tasks) of the arrays that number the shards from 1."""
+    return [(offset, min(largest, shards - offset)) for offset in range(0, shards, largest)]
+
+
+def write(options):
+    """Writes what the jobs need below DIR; returns the batch script."""
+    folder = pathlib.Path(options.output).absolute()
+    shards = [folder / "shards" / str(i) for i in range(1, options.shards + 1)]
+    (folder / "references").mkdir(parents=True, exist_ok=True)
+    (folder / "slurm").mkdir(exist_ok=True)
+    for shard in shards + [folder / "slurm" / "references"]:
+        shard.mkdir(parents=True, exist_ok=True)
+        if not (shard / "references").exists():
+            (shard / "references").symlink_to(folder / "references")
+    files = [str(pathlib.Path(file).absolute()) for file in options.sweep_files]
+    script = folder / "slurm" / "sweep.sbatch"
+    script.write_text(SCRIPT.format(
+        name="causticbench", log=folder / "slurm" / "%A_%a.log", cpus=options.cpus_per_task,
+        program=shlex.quote(str(pathlib.Path(options.program).absolute())),
+        common=shlex.join(["sweep"] + files + options.sweep),
+        references=shlex.quote(str(folder / "slurm" / "references")),
+        shards=shlex.quote(str(folder / "shards")), count=options.shards))
+    return script
+
+
+def submit(options, script):
+    """Submits the references and then the arrays, each after the one before; returns the jobs' numbers."""
+    jobs = []
+    for offset, tasks in [(None, None)] + arrays(options.shards, largest_index()):
+        command = ["sbatch", "--parsable"] + options.sbatch
+        if jobs:
+            command.append(f"--dependency=afterany:{jobs[-1]}")
+        if tasks:
+            limit = f"%{options.at_once}" if options.at_once else ""
+            command += [f"--array=1-{tasks}{limit}", f"--export=ALL,OFFSET={offset}"]
+        jobs.append(run(command + [str(script)]).strip().split(";")[0])
+    return jobs
+
+
+def positive(text):
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text}: expected a whole number from 1 on")
+    return int(text)
+
+
+def parse(arguments):
+    root = pathlib.Path(__file__).resolve().parent.parent
+    parser = argparse.ArgumentParser(usage=__doc__.split("Usage: ")[1], allow_abbrev=False)
+    parser.add_argument("sweep_files", nargs="+")
+    parser.add_argument("-o", "--output", required=True)
+    parser.add_argument("--shards", type=positive, required=True)
+    parser.add_argument("--at-once", type=positive)
+    parser.add_argument("--cpus-per-task", type=positive, default=1)
+    parser.add_argument("--program", default=root / "build/release/bin/causticbench")
+    parser.add_argument("--sbatch", action="append", default=[])
+    parser.add_argument("--sweep", action="append", default=[])
+    parser.add_argument("--only-write", action="store_true")
+    return parser.parse_args(arguments)
+
+
+def main(arguments):
+    options = parse(arguments)
+    # A mistake in the sweep is told here, not by a thousand tasks.
+    run([str(options.program), "sweep", *options.sweep_files, "-o", options.output, "--list", *options.sweep])
+    script = write(options)
+    print(f"script  {script}")
+    if not options.only_write:
+        for job in submit(options, script):
+            print(f"job     {job}")
+    print(f"then    {shlex.quote(str(options.program))} merge {shlex.quote(options.output)}/shards/* "
+          f"-o {shlex.quote(options.output)}/all")
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1:])
+    except SlurmError as error:
+        print(f"slurm_sweep: {error}", file=sys.stderr)
+        sys.exit(1)
