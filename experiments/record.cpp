@@ -1,6 +1,7 @@
 #include "experiments/record.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.h"
@@ -97,9 +98,14 @@ constexpr Column columns_of_all[] = {
     {"message", "/message"},
 };
 
-json value_at(const json& record, const std::string& pointer) {
-    const json::json_pointer place(pointer);
-    return record.contains(place) ? record.at(place) : json();
+/// Where the columns of every trial are found in a record; built once, for tables are long.
+const std::map<std::string, json::json_pointer>& places() {
+    static const std::map<std::string, json::json_pointer> all = [] {
+        std::map<std::string, json::json_pointer> made;
+        for (const Column& column : columns_of_all) made.emplace(column.name, column.pointer);
+        return made;
+    }();
+    return all;
 }
 
 std::string cell(const json& value) {
@@ -143,10 +149,10 @@ std::vector<std::string> record_columns(const std::vector<std::string>& swept) {
 std::vector<json> record_row(const json& record, const std::vector<std::string>& columns) {
     std::vector<json> row;
     for (const std::string& name : columns) {
-        const auto known = std::ranges::find_if(
-            columns_of_all, [&](const Column& column) { return name == column.name; });
-        row.push_back(value_at(
-            record, known == std::end(columns_of_all) ? "/swept/" + name : known->pointer));
+        const auto known = places().find(name);
+        const json::json_pointer place =
+            known == places().end() ? json::json_pointer("/swept/" + name) : known->second;
+        row.push_back(record.contains(place) ? record.at(place) : json());
     }
     return row;
 }

@@ -60,6 +60,15 @@ bool belongs_to(const Film& film, const RunRequest& wanted, const SceneFile& sce
                without_samples(describe(wanted.method), wanted.method.name);
 }
 
+/// Empty for a file that is no picture: the trials that need that reference will say so.
+std::optional<Film> readable(const std::filesystem::path& file) {
+    try {
+        return read_exr(file);
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> samples_of(const Method& method) {
@@ -80,13 +89,13 @@ std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::
             if (entry.path().extension() == ".exr") files.push_back(entry.path());
         std::ranges::sort(files);  // a folder has no order
         for (const std::filesystem::path& file : files) {
-            Film film = read_exr(file);
-            if (!belongs_to(film, wanted, scene)) continue;
-            const auto samples = json::parse(said(film, "parameters"))
+            std::optional<Film> film = readable(file);
+            if (!film || !belongs_to(*film, wanted, scene)) continue;
+            const auto samples = json::parse(said(*film, "parameters"))
                                      .at(samples_name(wanted.method.name))
                                      .get<std::uint64_t>();
             if (samples < *most && (!best || samples > best->samples))
-                best = SmallerReference{file, std::move(film), samples};
+                best = SmallerReference{file, std::move(*film), samples};
         }
     }
     return best;
