@@ -80,9 +80,9 @@ int parse_and_run(int argc, char** argv) {
     app.footer(
         "Exit codes: 0 done, 1 some trials failed, 2 bad input or usage, 3 the method cannot "
         "serve the scene, 130 interrupted.\nExample:\n  causticbench VERB --help");
-    const std::vector<Verb> verbs = {add_render(app),  add_probe(app), add_sweep(app),
-                                     add_compare(app), add_info(app),  add_merge(app),
-                                     add_explain(app), add_verify(app)};
+    const std::vector<Verb> verbs = {add_render(app),  add_probe(app),  add_sweep(app),
+                                     add_compare(app), add_info(app),   add_merge(app),
+                                     add_explain(app), add_verify(app), add_export(app)};
     require_known_words(app, verbs, std::vector<std::string>(argv + 1, argv + argc));
     try {
         app.parse(argc, argv);

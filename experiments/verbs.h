@@ -21,5 +21,6 @@ Verb add_info(CLI::App& app);
 Verb add_merge(CLI::App& app);
 Verb add_explain(CLI::App& app);
 Verb add_verify(CLI::App& app);
+Verb add_export(CLI::App& app);
 
 }  // namespace caustics

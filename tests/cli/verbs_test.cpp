@@ -29,7 +29,8 @@ TEST(Program, TellsItsVersionAndHelp) {
     const ProgramResult version = causticbench({"--version"});
     EXPECT_EQ(version.exit_code, 0);
     EXPECT_EQ(version.out.rfind("causticbench ", 0), 0U) << version.out;
-    for (const std::string verb : {"render", "probe", "sweep", "compare", "info", "verify"}) {
+    for (const std::string verb :
+         {"render", "probe", "sweep", "compare", "info", "verify", "export"}) {
         const ProgramResult help = causticbench({verb, "--help"});
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_NE(help.out.find("Example:\n  causticbench " + verb), std::string::npos) << help.out;
@@ -171,8 +172,8 @@ TEST(Compare, FindsAPictureEqualToItself) {
 TEST(Verify, TheGalleryHolds) {
     const ProgramResult result = causticbench({"verify", "--gallery"});
     EXPECT_EQ(result.exit_code, 0) << result.out;
-    for (const std::string method : {"photonmap", "lighttrace", "pathtrace", "beamtree",
-                                     "causticpolygons", "illuminationmap"})
+    for (const std::string method :
+         {"photonmap", "lighttrace", "pathtrace", "beamtree", "causticpolygons", "illuminationmap"})
         EXPECT_NE(result.out.find("| " + method + " |"), std::string::npos) << method;
 }
 

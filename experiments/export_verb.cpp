@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "core/error.h"
+#include "experiments/cli_options.h"
+#include "experiments/exported_scene.h"
+#include "experiments/files.h"
+#include "experiments/verbs.h"
+
+namespace caustics {
+
+namespace {
+
+struct ExportOptions {
+    SceneOptions scene;
+    std::string target;
+    std::string folder;
+    ExportSettings settings;
+};
+
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (!std::filesystem::is_directory(folder))
+        throw InputError(fmt::format("-o {}: is no folder and cannot be made ({})", folder.string(),
+                                     failed ? failed.message() : "a file of that name is there"));
+}
+
+int export_scene(ExportOptions options) {
+    const SceneFile file = options.scene.load();
+    options.settings.scene_file = options.scene.file;
+    const ExportedScene exported = options.target == "mitsuba"
+                                       ? to_mitsuba(file.desc, options.settings)
+                                       : to_povray(file.desc, options.settings);
+    make_folder(options.folder);
+    const std::filesystem::path folder = options.folder;
+    for (const ExportedScene::File& each : exported.files)
+        write_whole_file(folder / each.name, each.bytes);
+    print_notes(exported.notes);
+    fmt::print(stderr, "{}: {} file{}\n", (folder / exported.files.front().name).string(),
+               exported.files.size(), exported.files.size() == 1 ? "" : "s");
+    return 0;
+}
+
+}  // namespace
+
+Verb add_export(CLI::App& app) {
+    auto options = std::make_shared<ExportOptions>();
+    CLI::App* const verb =
+        app.add_subcommand("export", "Write a scene as Mitsuba 3 or POV-Ray 3.7 read it");
+    options->scene.add_to(*verb);
+    verb->add_option("--to", options->target, "The other renderer: mitsuba, povray")
+        ->required()
+        ->check(CLI::IsMember({"mitsuba", "povray"}))
+        ->type_name("NAME");
+    verb->add_option("-o,--output", options->folder,
+                     "Folder to write to, made where it is missing: scene.xml, or scene.pov and "
+                     "scene.ini, and the meshes and textures they name")
+        ->required()
+        ->type_name("DIR");
+    verb->add_option("--max-bounces", options->settings.max_bounces,
+                     "Specular events between light and receiver (default 16)")
+        ->check(CLI::Range(1, 1000));
+    verb->add_option("--mesh-resolution", options->settings.mesh_resolution,
+                     "Of exact shapes that the other renderer does not know (default 256)")
+        ->check(CLI::Range(1, 4096));
+    verb->footer(
+        "Units stay: metres, watts, and pixels in W/(m^2 sr). A scene that the other renderer "
+        "cannot express is refused (exit code 3).\n"
+        "Mitsuba also follows light from one diffuse surface to another: compare over dark "
+        "receivers. POV-Ray does not scale radiance by n^2 where the eye looks into a medium.\n"
+        "Example:\n  causticbench export ring.json --to mitsuba -o ring "
+        "--set '/floor/bsdf={\"type\":\"diffuse\",\"reflectance\":0.01}'\n"
+        "  mitsuba -m scalar_rgb -D spp=4096 ring/scene.xml");
+    return {verb, [options] { return export_scene(*options); }};
+}
+
+}  // namespace caustics
