@@ -264,8 +264,13 @@ private:
         text_ += " }\n  photons { target reflection on refraction on collect off }\n";
     }
 
-    std::string ini() const {
-        const int root = static_cast<int>(std::lround(std::sqrt(scene_.sampling.sample_count)));
+    std::string ini() {
+        constexpr int finest = 9;
+        int root = static_cast<int>(std::lround(std::sqrt(scene_.sampling.sample_count)));
+        if (root > finest) {
+            root = finest;
+            out_.notes.emplace_back("POV-Ray takes at most 81 rays a pixel");
+        }
         std::string text = fmt::format(
             "Input_File_Name=scene.pov\nOutput_File_Name=scene.exr\nOutput_File_Type=E\n"
             "Output_Alpha=Off\nDisplay=Off\nWidth={}\nHeight={}\n",
