@@ -55,7 +55,7 @@ std::string list_plan(const SweepPlan& plan, const SweepOptions& options) {
 
 std::string dry_run(const SweepPlan& plan, const SweepOptions& options) {
     const SweepStatus status = sweep_status(plan, options, JobStore(options.folder));
-    const ReferenceCache references(options.folder / "references", options.rebuild_references);
+    const ReferenceCache references(options.folder / "references", options.references);
     const std::optional<Cost> cost = status.cost();
     std::string text = fmt::format(
         "trials     {}\nreferences {} to render\ntime       {}\ndisk       {}{:.1f} MB are free\n",

@@ -47,13 +47,14 @@ std::string reference_key(const RunRequest& request, const SceneFile& scene) {
 std::filesystem::path ReferenceCache::file_of(const ReferenceRequest& request) const {
     const std::string name = request.key + ".exr";
     const std::filesystem::path kept = request.kept_folder / name;
-    const bool keeps = std::filesystem::exists(kept) ||
-                       (rebuild_ && std::filesystem::is_directory(request.kept_folder));
+    const bool keeps =
+        std::filesystem::exists(kept) ||
+        (policy_ == ReferencePolicy::rebuild && std::filesystem::is_directory(request.kept_folder));
     return keeps ? kept : own_folder_ / name;
 }
 
 bool ReferenceCache::must_render(const ReferenceRequest& request) const {
-    if (rebuild_ && !rendered_.contains(request.key)) return true;
+    if (policy_ == ReferencePolicy::rebuild && !rendered_.contains(request.key)) return true;
     return !std::filesystem::exists(file_of(request));
 }
 
@@ -64,7 +65,8 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
             fmt::format("{}: changed while the sweep runs", request.request.scene_file.string()));
     const Scene scene(file.desc);
     std::optional<SmallerReference> begun;
-    if (!rebuild_) begun = find_smaller({request.kept_folder, own_folder_}, request.request, file);
+    if (policy_ == ReferencePolicy::extend)
+        begun = find_smaller({request.kept_folder, own_folder_}, request.request, file);
     Stopwatch stopwatch;
     const RunResult result = run(
         scene, begun ? remainder(request.request, *begun) : request.request, options, stopwatch);

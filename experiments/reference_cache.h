@@ -29,17 +29,20 @@ struct Reference {
     std::optional<double> standard_error;  ///< sqrt(mean s^2) / mean(r) of the caustic layer
 };
 
+/// What is done about references that are there: used; rendered anew; or used, and one that differs only in
+/// having fewer samples taken as the beginning of one that is not there (reference_extension.h).
+enum class ReferencePolicy { keep, rebuild, extend };
+
 /// References as files KEY.exr: looked for in the folder kept beside the sweep files, then in the
 /// sweep's own, else rendered and written there.
 class ReferenceCache {
 public:
-    ReferenceCache(std::filesystem::path own_folder, bool rebuild)
-        : own_folder_(std::move(own_folder)), rebuild_(rebuild) {}
+    ReferenceCache(std::filesystem::path own_folder, ReferencePolicy policy)
+        : own_folder_(std::move(own_folder)), policy_(policy) {}
 
     /// Whether it has to be rendered before get().
     bool must_render(const ReferenceRequest& request) const;
-    /// Renders it and writes its file; one that differs only in having fewer samples is extended
-    /// (reference_extension.h), except by `rebuild`. `options` brings threads and progress.
+    /// Renders it and writes its file. `options` brings threads and progress.
     void render(const ReferenceRequest& request, const RunOptions& options) const;
     /// Takes note that it was rendered, for `rebuild`; here or in another process.
     void note_rendered(const ReferenceRequest& request) { rendered_.insert(request.key); }
@@ -50,7 +53,7 @@ private:
     std::filesystem::path file_of(const ReferenceRequest& request) const;
 
     std::filesystem::path own_folder_;
-    bool rebuild_;
+    ReferencePolicy policy_;
     std::set<std::string> rendered_;
     std::shared_ptr<const Reference> last_;
 };

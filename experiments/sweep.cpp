@@ -57,7 +57,7 @@ public:
           options_(options),
           lock_(options.folder),
           store_(options.folder),
-          references_(options.folder / "references", options.rebuild_references) {
+          references_(options.folder / "references", options.references) {
         store_.prepare();
         remove_leftovers(options.folder);
         remove_leftovers(figures_folder());
@@ -135,7 +135,7 @@ private:
     void render_references() {
         std::vector<const ReferenceRequest*> missing = status_.references(references_);
         // With everything done, `--references rebuild` still remakes what the trials stand on.
-        if (options_.rebuild_references && status_.todo.empty()) {
+        if (options_.references == ReferencePolicy::rebuild && status_.todo.empty()) {
             SweepStatus all = status_;
             all.todo = all.share;
             missing = all.references(references_);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "experiments/reference_cache.h"
 #include "experiments/sweep_plan.h"
 #include "experiments/sweep_selection.h"
 #include "experiments/trial_runner.h"
@@ -11,12 +12,12 @@ namespace caustics {
 
 struct SweepOptions {
     std::filesystem::path folder;
-    Shard shard;                      ///< the part of the plan to run
-    bool force = false;               ///< run trials again that are done
-    bool rerun_failed = false;        ///< run trials again that failed or took too long
-    bool fail_fast = false;           ///< stop at the first failure
-    bool rebuild_references = false;  ///< render references anew
-    bool only_references = false;     ///< render what the trials need, and stop
+    Shard shard;                ///< the part of the plan to run
+    bool force = false;         ///< run trials again that are done
+    bool rerun_failed = false;  ///< run trials again that failed or took too long
+    bool fail_fast = false;     ///< stop at the first failure
+    ReferencePolicy references = ReferencePolicy::keep;
+    bool only_references = false;  ///< render what the trials need, and stop
     TrialSettings trials;
 };
 

@@ -37,7 +37,8 @@ SweepOptions options_of(const SweepFlags& flags) {
     options.force = flags.force;
     options.rerun_failed = !flags.rerun.empty();
     options.fail_fast = flags.fail_fast;
-    options.rebuild_references = flags.references == "rebuild";
+    if (flags.references == "rebuild") options.references = ReferencePolicy::rebuild;
+    if (flags.references == "extend") options.references = ReferencePolicy::extend;
     options.only_references = flags.references == "only";
     options.trials.jobs = flags.jobs;
     options.trials.threads = flags.machine.threads;
@@ -96,9 +97,10 @@ Verb add_sweep(CLI::App& app) {
     verb->add_option("--jobs", flags->jobs, "Trials at a time (default 1, so that times hold)")
         ->check(CLI::Range(1, 4096));
     verb->add_option("--references", flags->references,
-                     "keep: use the references that are there; rebuild: render them anew; only: "
+                     "keep: use the references that are there; rebuild: render them anew; extend: "
+                     "begin those missing with the samples of smaller ones that are there; only: "
                      "render those missing and run no trial")
-        ->check(CLI::IsMember({"keep", "rebuild", "only"}));
+        ->check(CLI::IsMember({"keep", "rebuild", "extend", "only"}));
     flags->machine.add_to(*verb, "as the sweep file says, or 1");
     verb->footer(
         "Each trial runs in a process of its own; what it leaves behind is whole or absent. Trials "

@@ -38,7 +38,7 @@ double total(const Film& film) {
 
 TEST(ReferenceExtension, BeginsWithTheSamplesThatAreThere) {
     const support::TemporaryFolder folder;
-    ReferenceCache cache(std::string(folder / "references"), false);
+    ReferenceCache cache(std::string(folder / "references"), ReferencePolicy::extend);
     const Reference small = rendered(cache, request(20'000));
     EXPECT_EQ(small.film.metadata.count("extends"), 0U);
     const Reference large = rendered(cache, request(80'000));
@@ -48,7 +48,7 @@ TEST(ReferenceExtension, BeginsWithTheSamplesThatAreThere) {
     EXPECT_EQ(samples_of(rest.method), 60'000U);
     EXPECT_NE(rest.seed, 1U);
     const support::TemporaryFolder other("alone");
-    ReferenceCache alone(std::string(other / "references"), false);
+    ReferenceCache alone(std::string(other / "references"), ReferencePolicy::extend);
     ReferenceRequest three_quarters = request(60'000, rest.seed);
     const Reference added = rendered(alone, three_quarters);
     for (std::size_t i = 0; i < large.film.pixel_count(); ++i)
@@ -65,7 +65,7 @@ TEST(ReferenceExtension, BeginsWithTheSamplesThatAreThere) {
 
 TEST(ReferenceExtension, TakesTheLargestOfTheSameKindOnly) {
     const support::TemporaryFolder folder;
-    ReferenceCache cache(std::string(folder / "references"), false);
+    ReferenceCache cache(std::string(folder / "references"), ReferencePolicy::extend);
     const Reference first = rendered(cache, request(1'000));
     const Reference second = rendered(cache, request(3'000));
     rendered(cache, request(50'000));
@@ -83,13 +83,16 @@ TEST(ReferenceExtension, TakesTheLargestOfTheSameKindOnly) {
     EXPECT_FALSE(find_smaller(folders, request(10'000).request, changed));
 }
 
-TEST(ReferenceExtension, RebuildStartsAnew) {
+TEST(ReferenceExtension, IsOnlyDoneWhenAskedFor) {
     const support::TemporaryFolder folder;
     const std::string references = folder / "references";
-    ReferenceCache cache(references, false);
+    ReferenceCache cache(references, ReferencePolicy::extend);
     rendered(cache, request(1'000));
-    ReferenceCache anew(references, true);
-    EXPECT_EQ(rendered(anew, request(4'000)).film.metadata.count("extends"), 0U);
+    for (const ReferencePolicy policy : {ReferencePolicy::keep, ReferencePolicy::rebuild}) {
+        ReferenceCache anew(references, policy);
+        const std::uint64_t paths = policy == ReferencePolicy::keep ? 4'000 : 5'000;
+        EXPECT_EQ(rendered(anew, request(paths)).film.metadata.count("extends"), 0U);
+    }
 }
 
 }  // namespace

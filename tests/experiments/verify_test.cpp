@@ -16,11 +16,7 @@ GalleryScene scene_named(const std::string& name) {
 }
 
 Series beams() {
-    return {"beamtree",
-            {{16, {"mesh_resolution=16"}}, {32, {"mesh_resolution=32"}}},
-            2,
-            0.1,
-            0,
+    return {"beamtree", {{16, {"mesh_resolution=16"}}, {32, {"mesh_resolution=32"}}}, 2, 0.1, 0,
             {}};
 }
 
@@ -45,7 +41,8 @@ TEST(Gallery, TheQuadratureIsGoodToAMillionth) {
     for (const double r : {0.01, 0.3, 1.0, 2.5})
         EXPECT_NEAR(light.irradiance(r) / (4 * 3 / std::pow(r * r + 9, 1.5)), 1, 1e-7) << r;
     // Both sides of the axis count: a ray to -r lights the place as one to r does.
-    const Meridian crossed{[](double u) { return Landing{-3 * std::tan(u), 1}; }, light.flux, 0, 1.2};
+    const Meridian crossed{[](double u) { return Landing{-3 * std::tan(u), 1}; }, light.flux, 0,
+                           1.2};
     EXPECT_NEAR(crossed.irradiance(0.3), light.irradiance(0.3), 1e-9);
 }
 
