@@ -70,7 +70,7 @@ constexpr Column columns_of_all[] = {
     {"trees", "/counters/trees"},
     {"trees_binned", "/method/resolved/trees_binned"},
     {"nodes", "/counters/nodes"},
-    {"height", "/counters/height"},
+    {"tree_height", "/counters/height"},
     {"casters_with_face_normals", "/method/resolved/casters_with_face_normals"},
     {"flux_share_captured", "/method/resolved/flux_share_captured"},
     {"camera_rays", "/counters/camera_rays"},

@@ -19,7 +19,7 @@ TEST(RecordsCsv, BeginsWithTheColumnsOfTheContract) {
         "reference,reference_stderr,config_hash,code_version,";
     const std::string header = csv_line(record_columns({"nearest", "alpha", "photons"}));
     EXPECT_EQ(header.substr(0, contract.size()), contract);
-    for (const char* name : {",trees,", ",trees_binned,", ",nodes,", ",height,",
+    for (const char* name : {",trees,", ",trees_binned,", ",nodes,", ",tree_height,",
                              ",casters_with_face_normals,", ",flux_share_captured,"})
         EXPECT_NE(header.find(name), std::string::npos) << name;
     EXPECT_EQ(header.substr(header.size() - 9), ",photons\n") << "swept keys come last, once";

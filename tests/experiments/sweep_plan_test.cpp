@@ -189,5 +189,17 @@ TEST_F(SweepPlans, NameThePlaceOfAMistakeInTheSweepFileToo) {
     }
 }
 
+// Those that the project brings along, README's tiny.json among them.
+TEST_F(SweepPlans, EveryShippedSweepFileCanBePlanned) {
+    std::size_t files = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(CAUSTICS_SOURCE_DIR "/experiments/sweeps")) {
+        if (entry.path().extension() != ".json") continue;
+        ++files;
+        EXPECT_NO_THROW(EXPECT_FALSE(read_plan({entry.path()}).trials.empty())) << entry.path();
+    }
+    EXPECT_GE(files, 20U);
+}
+
 }  // namespace
 }  // namespace caustics
