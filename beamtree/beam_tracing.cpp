@@ -122,23 +122,18 @@ private:
     }
 
     void trace_piece(const MeshPiece& piece, const Origin& origin, int splits) {
+        const auto between = [&](const MeshPoint& p, const MeshPoint& q, float t) {
+            return bender_.between(p, q, t);
+        };
         const CutPiece<MeshPoint> lit = cut_piece(
             piece, bisections,
-            [&](const MeshPoint& p) { return sends_on(p, origin.facing, origin.event); },
-            [&](const MeshPoint& p, const MeshPoint& q, float t) {
-                return bender_.between(p, q, t);
-            });
+            [&](const MeshPoint& p) { return sends_on(p, origin.facing, origin.event); }, between);
         std::array<const MeshPoint*, 4> all;
         for (std::size_t i = 0; i < lit.count; ++i) all[i] = &lit.corners[i];
         const Corners corners(all.data(), lit.count);
         if (splits > 0 && (part_widely(corners, origin.event, splits == most_splits) ||
                            deceives(piece, origin))) {
-            const auto& [a, b, c] = piece;
-            const MeshPoint ab = bender_.between(a, b, 0.5F);
-            const MeshPoint bc = bender_.between(b, c, 0.5F);
-            const MeshPoint ca = bender_.between(c, a, 0.5F);
-            for (const MeshPiece& part : {MeshPiece{a, ab, ca}, MeshPiece{ab, b, bc},
-                                          MeshPiece{ca, bc, c}, MeshPiece{ab, bc, ca}})
+            for (const MeshPiece& part : quarters(piece, between))
                 trace_piece(part, origin, splits - 1);
         } else if (!corners.empty()) {
             add_beam(corners, origin);

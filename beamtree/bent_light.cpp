@@ -88,10 +88,14 @@ Spectrum LightBender::flux(const PieceCorners& corners, Event event) const {
     return sum;
 }
 
+bool weights_differ(const std::array<float, 3>& weights) {
+    const auto [least, most] = std::minmax({weights[0], weights[1], weights[2]});
+    return most > 1.5F * least;
+}
+
 bool weights_differ(const PieceCorners& corners, Event event) {
     const auto weight = [&](std::size_t i) { return corners[i]->bent.weight[event].mean(); };
-    const auto [least, most] = std::minmax({weight(0), weight(1), weight(2)});
-    return most > 1.5F * least;
+    return weights_differ({weight(0), weight(1), weight(2)});
 }
 
 }  // namespace caustics

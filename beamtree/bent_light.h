@@ -57,7 +57,9 @@ private:
     const LightSample& light_;
 };
 
-/// Whether the weights of the corners differ by more than half of the least.
+/// Whether three corners' weights differ by more than half of the least, so that their mean does not tell that
+/// of what lies between.
+bool weights_differ(const std::array<float, 3>& weights);
 bool weights_differ(const PieceCorners& corners, Event event);
 
 }  // namespace caustics

@@ -12,6 +12,17 @@ struct CutPiece {
     std::size_t count = 0;
 };
 
+/// The quarters of a triangle, by the middles of its edges. `between` as below.
+template <typename Point, typename Between>
+std::array<std::array<Point, 3>, 4> quarters(const std::array<Point, 3>& piece,
+                                             const Between& between) {
+    const auto& [a, b, c] = piece;
+    const Point ab = between(a, b, 0.5F);
+    const Point bc = between(b, c, 0.5F);
+    const Point ca = between(c, a, 0.5F);
+    return {{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}};
+}
+
 /// The last point from `good` towards `bad` at which `holds` is true, and one just behind it, found by
 /// bisection. `between` makes the point (1 - t) a + t b.
 template <typename Point, typename Holds, typename Between>

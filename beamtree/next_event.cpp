@@ -2,17 +2,16 @@
 
 #include <algorithm>
 
+#include "beamtree/cut_edge.h"
 #include "beamtree/cut_piece.h"
 
 namespace caustics {
 namespace {
 
-// How often a polygon is quartered, and an edge halved to find where light does another thing.
+// How often a polygon is quartered.
 constexpr int most_splits = 3;
-constexpr int bisections = 14;
 constexpr float widest_cosine = 0.5F;
-// Corners whose weights differ by more than this do not tell the mean; then this many parts of a side do.
-constexpr float most_varied = 1.5F;
+// Where corners' weights do not tell the mean, this many parts of a side do.
 constexpr int parts = 5;
 
 /// A corner of a beam to be.
@@ -148,55 +147,10 @@ private:
     }
 
     void quarter(std::uint32_t beam, const Path& path, const Piece& piece, int splits) {
-        const auto& [a, b, c] = piece;
-        const PathPoint ab = path.between(a, b, 0.5F);
-        const PathPoint bc = path.between(b, c, 0.5F);
-        const PathPoint ca = path.between(c, a, 0.5F);
-        for (const Piece& part :
-             {Piece{a, ab, ca}, Piece{ab, b, bc}, Piece{ca, bc, c}, Piece{ab, bc, ca}})
-            cut(beam, path, part, splits - 1);
-    }
-
-    static bool goes_on(const PathPoint& p) { return p.alive && p.next.goes_on(); }
-    static bool alike(const PathPoint& a, const PathPoint& b) {
-        if (!goes_on(a) || !goes_on(b)) return goes_on(a) == goes_on(b);
-        for (const Event event : events)
-            if (is_black(a.next.weight[event]) != is_black(b.next.weight[event])) return false;
-        return same_piece(a.next, b.next);
-    }
-
-    /// An edge of a piece, from corner to corner, where they do different things.
-    struct CutEdge {
-        bool is_cut = false;
-        bool hides_another = false;  ///< a third thing between
-        PathPoint last;              ///< that does as the first corner
-        PathPoint first;             ///< that does as the second one
-    };
-
-    // Neighbours find the same points, because both begin at the same end.
-    static CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b) {
-        CutEdge edge;
-        if (alike(a, b)) return edge;
-        const auto search = [&path](const PathPoint& from, const PathPoint& to) {
-            return last_and_next(
-                from, to, bisections, [&](const PathPoint& p) { return alike(p, from); },
-                [&](const PathPoint& p, const PathPoint& q, float t) {
-                    return path.between(p, q, t);
-                });
+        const auto between = [&path](const PathPoint& p, const PathPoint& q, float t) {
+            return path.between(p, q, t);
         };
-        const Vec3& p = a.origin.position;
-        const Vec3& q = b.origin.position;
-        const bool forward = std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
-        const PathPoint& low = forward ? a : b;
-        const PathPoint& high = forward ? b : a;
-        auto [last, next] = search(low, high);
-        edge.is_cut = true;
-        edge.hides_another = !alike(next, high);
-        if (edge.hides_another) next = search(high, low)[0];
-        next.origin.vertex = RayOrigin::no_vertex;
-        edge.last = forward ? last : next;
-        edge.first = forward ? next : last;
-        return edge;
+        for (const Piece& part : quarters(piece, between)) cut(beam, path, part, splits - 1);
     }
 
     // What becomes of a piece whose corners do different things.
@@ -270,13 +224,11 @@ private:
         std::array<Spectrum, 3> weights;
         for (std::size_t i = 0; i < 3; ++i)
             weights[i] = corners[i].origin->weight * corners[i].landing->weight[event];
-        const auto [least, most] =
-            std::minmax({weights[0].mean(), weights[1].mean(), weights[2].mean()});
         const std::array<const RayOrigin*, 3> at = {corners[0].origin, corners[1].origin,
                                                     corners[2].origin};
         const float whole = static_cast<float>(
             measure(set_.light, at[0]->position, at[1]->position, at[2]->position));
-        if (most <= most_varied * least)
+        if (!weights_differ({weights[0].mean(), weights[1].mean(), weights[2].mean()}))
             return (weights[0] + weights[1] + weights[2]) * (whole / 3);
         const Path path(scene_, surface_, level_, parent);
         Spectrum sum = black();

@@ -42,12 +42,8 @@ Score score(const GalleryScene& gallery, const Series& series, const Effort& eff
     const Method method = parse_method(series.method, parameters_node(effort.parameters));
     const auto built = build(scene, method, options);
     const std::vector<ReceiverPoint> points = receiver_points(scene, gallery, series.radius);
-    std::vector<Estimate> found(points.size());
     const auto context = built->make_context();
-    if (gallery.points.front().wo.isZero(0))
-        built->irradiance(points, found, *context);
-    else
-        built->radiance(points, found, *context);
+    const std::vector<Estimate> found = answers(*built, gallery, points, *context);
     double squares = 0, sum = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
         const double miss =
@@ -67,6 +63,16 @@ std::vector<ReceiverPoint> receiver_points(const Scene& scene, const GalleryScen
     for (const KnownPoint& known : gallery.points)
         points.push_back(receiver_at(scene, known, points.size(), radius));
     return points;
+}
+
+std::vector<Estimate> answers(const CausticEstimator& method, const GalleryScene& gallery,
+                              const std::vector<ReceiverPoint>& points, QueryContext& context) {
+    std::vector<Estimate> found(points.size());
+    if (gallery.points.front().wo.isZero(0))
+        method.irradiance(points, found, context);
+    else
+        method.radiance(points, found, context);
+    return found;
 }
 
 double SeriesOutcome::fall() const {

@@ -36,6 +36,11 @@ struct SeriesOutcome {
 std::vector<ReceiverPoint> receiver_points(const Scene& scene, const GalleryScene& gallery,
                                            double radius);
 
+/// What a built method answers at those points: the irradiance, or where the gallery names viewers the
+/// radiance.
+std::vector<Estimate> answers(const CausticEstimator& method, const GalleryScene& gallery,
+                              const std::vector<ReceiverPoint>& points, QueryContext& context);
+
 /// Runs one method on one scene at growing effort. What it refuses (UnsupportedScene) is told.
 SeriesOutcome run_series(const GalleryScene& scene, const Series& series,
                          const RunOptions& options);

@@ -14,6 +14,7 @@
 #include "experiments/caustic_survey.h"
 #include "experiments/light_audit.h"
 #include "experiments/methods.h"
+#include "experiments/metrics.h"
 #include "experiments/step_progress.h"
 
 namespace caustics {
@@ -95,17 +96,7 @@ struct CellLight {
     std::vector<double> error = std::vector<double>(columns * rows + 1, 0.0);
 };
 
-using Pixels = std::vector<bool>;
-
-/// The pixels that `lighttrace` reaches; all for other methods.
-Pixels reached(const Film& film) {
-    Pixels pixels(film.pixel_count(), true);
-    if (const auto* unreached = film.find("unreached.Y"))
-        for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = (*unreached)[i] == 0;
-    return pixels;
-}
-
-CellLight cell_light(const std::vector<Film>& films, const Pixels& counted) {
+CellLight cell_light(const std::vector<Film>& films, const PixelMask& counted) {
     CellLight light;
     const auto n = static_cast<double>(films.size());
     std::vector<std::vector<double>> means;
@@ -235,24 +226,21 @@ private:
         progress.begin("reference");
         const std::vector<Film> truth = films_of(reference);
         progress.end("done");
-        const Pixels counted = reached(truth.front());
-        const auto share = static_cast<double>(std::ranges::count(counted, true)) /
-                           static_cast<double>(counted.size());
+        const PixelMask counted = reached_pixels(truth.front(), truth.front());
         add("reference", Verdict::told,
             fmt::format("{}, {} seeds, {:.0f} % of the pixels reached", reference, seeds,
-                        100 * share));
+                        100 * fraction(counted)));
         for (const std::string& name : served_) {
             if (name == reference) continue;
             progress.begin(name);
-            compare(name, truth, counted);
+            compare(name, truth);
             progress.end("done");
         }
     }
 
-    void compare(const std::string& name, const std::vector<Film>& truth, Pixels counted) {
+    void compare(const std::string& name, const std::vector<Film>& truth) {
         const std::vector<Film> films = films_of(name);
-        const Pixels own = reached(films.front());
-        for (std::size_t i = 0; i < counted.size(); ++i) counted[i] = counted[i] && own[i];
+        const PixelMask counted = reached_pixels(films.front(), truth.front());
         const CellLight known = cell_light(truth, counted);
         const Gap first = gap(name, cell_light(films, counted), known);
         if (first.holds || is_reference(name)) {

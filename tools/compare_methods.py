@@ -19,9 +19,10 @@ import sys
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 import records
+from curves import along
+from estimate_cells import STAGES
 from report_files import report, write
 
-STAGES = ("precompute_cpu_s", "balance_cpu_s", "render_cpu_s")  # empty where a method has no such stage
 RESAMPLINGS = 400
 STEPS = 5  # times and errors asked for, a scene
 # Student's t for a two-sided 95 % interval, by degrees of freedom; beyond the list the normal's.
@@ -145,14 +146,6 @@ def front(points):
         if not curve or error < curve[-1][1]:
             curve.append((seconds, error))
     return curve
-
-
-def along(curve, x):
-    """The curve's second number where the first is x, as a power between neighbours; None outside of it."""
-    for (x0, y0), (x1, y1) in zip(curve, curve[1:]):
-        if min(x0, x1) <= x <= max(x0, x1) and x1 != x0:
-            return math.exp(math.log(y0) + math.log(x / x0) / math.log(x1 / x0) * math.log(y1 / y0))
-    return None
 
 
 def equal_time(curve, seconds):

@@ -14,6 +14,7 @@ import sys
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 import records
+from curves import along
 from estimate_cells import Estimate
 from report_files import report, write
 
@@ -94,16 +95,8 @@ def equal_time(curves_by_scene):
         yield "| method | " + " | ".join(f"{time:g} s" for time in TIMES) + " |"
         yield "|---|" + "---|" * len(TIMES)
         for name, curve in curves.items():
-            values = [at(curve, time) for time in TIMES]
+            values = [along(curve, time) for time in TIMES]
             yield f"| {name} | " + " | ".join("–" if value is None else f"{value:.3f}" for value in values) + " |"
-
-
-def at(curve, time):
-    """The error at a time, between its neighbours on the curve, or None."""
-    for (x0, y0), (x1, y1) in zip(curve, curve[1:]):
-        if x0 <= time <= x1 and x1 > x0:
-            return math.exp(math.log(y0) + math.log(time / x0) / math.log(x1 / x0) * math.log(y1 / y0))
-    return None
 
 
 def sampling(cells):

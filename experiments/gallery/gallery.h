@@ -51,4 +51,7 @@ std::vector<GalleryScene> mirrors();
 std::vector<GalleryScene> lenses();
 std::vector<GalleryScene> laws();
 
+/// Still water that absorbs `sigma` [1/m], on a floor under a point light.
+GalleryScene still_water(const std::string& name, const std::string& answer, double sigma);
+
 }  // namespace caustics

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "experiments/gallery/meridian.h"
 #include "experiments/gallery/parts.h"
 
 namespace caustics {
@@ -10,8 +9,6 @@ namespace caustics {
 using namespace gallery_parts;
 
 namespace {
-
-constexpr int asked = 60;
 
 // A lossless ball in a room whose walls all emit L: radiance is L along every ray, through the ball as
 // well, so that a wall point is lit through it by pi L times the ball's form factor,
@@ -50,34 +47,6 @@ GalleryScene furnace() {
     scene.series = {path_trace(0.05, 100), light_trace(0.25, 0.05), photon_map(0.08)};
     for (Series& each : scene.series)
         for (Effort& effort : each.efforts) effort.parameters.emplace_back("max_bounces=100");
-    return scene;
-}
-
-// Still water that absorbs sigma: times exp(-sigma d) on the d metres to the floor [Beer].
-GalleryScene beer() {
-    static constexpr double n = 1.333, intensity = 10, sigma = 0.8;
-    GalleryScene scene{"beer", "flat water times exp(-sigma d)", {}, {}, {}};
-    scene.make = [](int) {
-        SceneDesc desc;
-        desc.shapes = {square("floor", -1, 5, true, grey()),
-                       square("water", 0, 3, true, glass(n, sigma))};
-        desc.point_lights = {point_light({0, 0, 2}, intensity)};
-        return desc;
-    };
-    const auto land = [](double u) -> std::optional<Landing> {
-        PlaneRay ray{{0, 2}, {std::sin(u), -std::cos(u)}};
-        ray.reach_plane(0);
-        ray.refract({0, 1}, n);
-        const Vec2d entry = ray.origin;
-        ray.reach_plane(-1);
-        return Landing{ray.origin.x(), ray.share * std::exp(-sigma * (ray.origin - entry).norm())};
-    };
-    const Meridian light{land, [](double u) { return 2 * pi_d * intensity * std::sin(u); }, 0,
-                         0.95};
-    for (const Vec2d& p : spread_over_ring(asked, 0.1, 1.5))
-        scene.points.push_back(
-            {{p.x(), p.y(), -1}, Vec3d::UnitZ(), Vec3d::Zero(), light.irradiance(p.norm())});
-    scene.series = usual_series(0.1, 2, 0.05);
     return scene;
 }
 
@@ -149,7 +118,10 @@ GalleryScene nearest_photons() {
 
 }  // namespace
 
-std::vector<GalleryScene> laws() { return {furnace(), beer(), schlick_floor(), nearest_photons()}; }
+std::vector<GalleryScene> laws() {
+    return {furnace(), still_water("beer", "flat water times exp(-sigma d)", 0.8), schlick_floor(),
+            nearest_photons()};
+}
 
 std::vector<GalleryScene> gallery() {
     std::vector<GalleryScene> all = mirrors();

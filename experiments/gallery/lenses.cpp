@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "experiments/gallery/meridian.h"
 #include "experiments/gallery/parts.h"
 
 namespace caustics {
@@ -9,7 +8,6 @@ using namespace gallery_parts;
 
 namespace {
 
-constexpr int asked = 60;
 const Vec2d up(0, 1);
 
 // Rays of a point light on the axis at the height z, by their angle to the axis.
@@ -24,15 +22,6 @@ std::function<double(double)> of_angle(double intensity) {
 }
 std::function<double(double)> of_ring(double irradiance) {
     return [irradiance](double rho) { return 2 * pi_d * irradiance * rho; };
-}
-
-std::vector<KnownPoint> known_on_floor(const Meridian& light, double z, double inner,
-                                       double outer) {
-    std::vector<KnownPoint> points;
-    for (const Vec2d& p : spread_over_ring(asked, inner, outer))
-        points.push_back(
-            {{p.x(), p.y(), z}, Vec3d::UnitZ(), Vec3d::Zero(), light.irradiance(p.norm())});
-    return points;
 }
 
 // Paths of these events alone, so that what is reflected to and fro inside counts for nobody.
@@ -62,31 +51,9 @@ GalleryScene slab() {
         ray.reach_plane(0);
         return Landing{ray.origin.x(), ray.share};
     };
-    scene.points = known_on_floor({land, of_angle(intensity), 0, 1.2}, 0, 0.1, 1.5);
+    scene.points = known_on_ring({land, of_angle(intensity), 0, 1.2}, 0, true, 0.1, 1.5);
     scene.series = usual_series(0.1, 2, 0.05);
     allow_events(scene, "2");
-    return scene;
-}
-
-// Still water, n = 1.333, one metre deep, under a light two metres above it.
-GalleryScene flat_water() {
-    static constexpr double n = 1.333, intensity = 10;
-    GalleryScene scene{"flat_water", "one refraction by a plane", {}, {}, {}};
-    scene.make = [](int) {
-        SceneDesc desc;
-        desc.shapes = {square("floor", -1, 5, true, grey()), square("water", 0, 3, true, glass(n))};
-        desc.point_lights = {point_light({0, 0, 2}, intensity)};
-        return desc;
-    };
-    const auto land = [](double u) -> std::optional<Landing> {
-        PlaneRay ray = from_light(2, u);
-        ray.reach_plane(0);
-        ray.refract(up, n);
-        ray.reach_plane(-1);
-        return Landing{ray.origin.x(), ray.share};
-    };
-    scene.points = known_on_floor({land, of_angle(intensity), 0, 0.95}, -1, 0.1, 1.5);
-    scene.series = usual_series(0.1, 2, 0.05);
     return scene;
 }
 
@@ -147,7 +114,7 @@ GalleryScene ball_lens() {
         return Landing{ray.origin.x(), ray.share};
     };
     const double edge = std::asin(radius / (light_z - centre));
-    scene.points = known_on_floor({land, of_angle(intensity), 0, edge}, 0, 0.01, 0.06);
+    scene.points = known_on_ring({land, of_angle(intensity), 0, edge}, 0, true, 0.01, 0.06);
     // What is asked for lies in a spot that the innermost polygons light: they have to be small.
     scene.series = usual_series(0.005, 2, 0.05, 64);
     allow_events(scene, "2");
@@ -181,7 +148,7 @@ GalleryScene plano_convex_lens() {
         ray.reach_plane(0);
         return Landing{ray.origin.x(), ray.share};
     };
-    scene.points = known_on_floor({land, of_ring(irradiance), 0, aperture}, 0, 0.03, 0.18);
+    scene.points = known_on_ring({land, of_ring(irradiance), 0, aperture}, 0, true, 0.03, 0.18);
     scene.series = usual_series(0.01, 2, 0.05);
     allow_events(scene, "2");
     return scene;
@@ -229,8 +196,38 @@ GalleryScene prism() {
 
 }  // namespace
 
+// n = 1.333, one metre deep, under a light two metres above it: Snell and Fresnel, and exp(-sigma d) on
+// the d metres to the floor [Beer].
+GalleryScene still_water(const std::string& name, const std::string& answer, double sigma) {
+    static constexpr double n = 1.333, intensity = 10;
+    GalleryScene scene{name, answer, {}, {}, {}};
+    scene.make = [sigma](int) {
+        SceneDesc desc;
+        desc.shapes = {square("floor", -1, 5, true, grey()),
+                       square("water", 0, 3, true, glass(n, sigma))};
+        desc.point_lights = {point_light({0, 0, 2}, intensity)};
+        return desc;
+    };
+    const auto land = [sigma](double u) -> std::optional<Landing> {
+        PlaneRay ray = from_light(2, u);
+        ray.reach_plane(0);
+        ray.refract(up, n);
+        const Vec2d entry = ray.origin;
+        ray.reach_plane(-1);
+        return Landing{ray.origin.x(), ray.share * std::exp(-sigma * (ray.origin - entry).norm())};
+    };
+    scene.points = known_on_ring({land, of_angle(intensity), 0, 0.95}, -1, true, 0.1, 1.5);
+    scene.series = usual_series(0.1, 2, 0.05);
+    return scene;
+}
+
 std::vector<GalleryScene> lenses() {
-    return {slab(), flat_water(), sine_water(), ball_lens(), plano_convex_lens(), prism()};
+    return {slab(),
+            still_water("flat_water", "one refraction by a plane", 0),
+            sine_water(),
+            ball_lens(),
+            plano_convex_lens(),
+            prism()};
 }
 
 }  // namespace caustics

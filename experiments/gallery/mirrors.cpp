@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "experiments/gallery/meridian.h"
 #include "experiments/gallery/parts.h"
 
 namespace caustics {
@@ -8,8 +7,6 @@ namespace caustics {
 using namespace gallery_parts;
 
 namespace {
-
-constexpr int asked = 60;
 
 // A point light under a horizontal mirror shines on the floor from its image S' = (0, 0, 3):
 //   E = I cos / d^2 = I 3 / (r^2 + 9)^(3/2).
@@ -60,9 +57,7 @@ GalleryScene parabolic_mirror() {
     const Meridian light{
         [](double rho) { return Landing{rho * (f - h) / (f - rho * rho / (4 * f)), 1}; },
         [](double rho) { return irradiance * 2 * pi_d * rho; }, inner, outer};
-    for (const Vec2d& p : spread_over_ring(asked, 0.25, 0.35))
-        scene.points.push_back(
-            {{p.x(), p.y(), h}, -Vec3d::UnitZ(), Vec3d::Zero(), light.irradiance(p.norm())});
+    scene.points = known_on_ring(light, h, false, 0.25, 0.35);
     scene.series = usual_series(0.01, 2, 0.02);
     return scene;
 }
@@ -97,9 +92,7 @@ GalleryScene elliptic_mirror() {
     };
     const Meridian light{land, [](double u) { return intensity * 2 * pi_d * std::sin(u); },
                          angle_of(highest), angle_of(lowest)};
-    for (const Vec2d& p : spread_over_ring(asked, 0.9, 1.8))
-        scene.points.push_back(
-            {{p.x(), p.y(), h}, -Vec3d::UnitZ(), Vec3d::Zero(), light.irradiance(p.norm())});
+    scene.points = known_on_ring(light, h, false, 0.9, 1.8);
     scene.series = usual_series(0.12, 2, 0.03);
     return scene;
 }

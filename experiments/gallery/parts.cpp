@@ -133,6 +133,15 @@ std::vector<Vec2d> spread_over_ring(int count, double inner, double outer) {
     return points;
 }
 
+std::vector<KnownPoint> known_on_ring(const Meridian& light, double z, bool up, double inner,
+                                      double outer) {
+    const Vec3d normal = up ? Vec3d::UnitZ() : Vec3d(-Vec3d::UnitZ());
+    std::vector<KnownPoint> points;
+    for (const Vec2d& p : spread_over_ring(asked, inner, outer))
+        points.push_back({{p.x(), p.y(), z}, normal, Vec3d::Zero(), light.irradiance(p.norm())});
+    return points;
+}
+
 Series light_trace(double radius, double tolerance, std::uint64_t paths) {
     Series series{"lighttrace", {}, 2, tolerance, radius, {}};
     for (int step = 0; step < 3; ++step, paths *= 4)

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/gallery/gallery.h"
+#include "experiments/gallery/meridian.h"
 
 namespace caustics::gallery_parts {
 
@@ -39,6 +40,12 @@ TriangleMesh joined(TriangleMesh first, const TriangleMesh& second);
 std::vector<Vec2d> spread(int count, const Vec2d& centre, double half);
 /// The same by area over the ring between two radii.
 std::vector<Vec2d> spread_over_ring(int count, double inner, double outer);
+
+/// At how many points most scenes are asked.
+inline constexpr int asked = 60;
+/// So many points at the height z, on a ring of a receiver that faces up or down.
+std::vector<KnownPoint> known_on_ring(const Meridian& light, double z, bool up, double inner,
+                                      double outer);
 
 /// The usual series. `radius`: discs of `lighttrace`, small against what the light varies over.
 Series light_trace(double radius, double tolerance, std::uint64_t paths = 100'000);

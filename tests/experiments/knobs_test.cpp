@@ -7,6 +7,7 @@
 
 #include "experiments/methods.h"
 #include "experiments/verify_gallery.h"
+#include "tests/experiments/named_scene.h"
 
 // Every parameter of every method moves something, and the way that theory says.
 
@@ -38,12 +39,6 @@ struct Answer {
     }
 };
 
-GalleryScene scene_named(const std::string& name) {
-    for (GalleryScene& scene : gallery())
-        if (scene.name == name) return scene;
-    throw std::logic_error("no such scene in the gallery");
-}
-
 Answer ask(const std::string& scene_name, const std::string& method,
            const std::vector<std::string>& parameters, double radius = 0) {
     const GalleryScene gallery = scene_named(scene_name);
@@ -51,12 +46,8 @@ Answer ask(const std::string& scene_name, const std::string& method,
     const auto built =
         build(scene, parse_method(method, parameters_node(parameters)), RunOptions{});
     const std::vector<ReceiverPoint> points = receiver_points(scene, gallery, radius);
-    std::vector<Estimate> found(points.size());
     const auto context = built->make_context();
-    if (gallery.points.front().wo.isZero(0))
-        built->irradiance(points, found, *context);
-    else
-        built->radiance(points, found, *context);
+    const std::vector<Estimate> found = answers(*built, gallery, points, *context);
     Answer answer;
     for (std::size_t i = 0; i < found.size(); ++i) {
         answer.values.push_back(static_cast<double>(found[i].value.mean()) /

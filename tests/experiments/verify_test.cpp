@@ -5,15 +5,10 @@
 #include "experiments/gallery/meridian.h"
 #include "experiments/light_audit.h"
 #include "experiments/verify_gallery.h"
+#include "tests/experiments/named_scene.h"
 
 namespace caustics {
 namespace {
-
-GalleryScene scene_named(const std::string& name) {
-    for (GalleryScene& scene : gallery())
-        if (scene.name == name) return scene;
-    throw std::logic_error("no such scene in the gallery");
-}
 
 Series beams() {
     return {"beamtree", {{16, {"mesh_resolution=16"}}, {32, {"mesh_resolution=32"}}}, 2, 0.1, 0,
