@@ -1,10 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <string>
+
+#include "tests/support/test_name.h"
 
 namespace caustics::support {
 
@@ -31,14 +32,6 @@ public:
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
 private:
-    static std::string test_name() {
-        const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
-        std::string name = std::string(test->test_suite_name()) + "-" + test->name();
-        for (char& c : name)
-            if (c == '/') c = '-';
-        return name;
-    }
-
     std::filesystem::path path_;
 };
 
