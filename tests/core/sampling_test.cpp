@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
+#include "core/frame.h"
 #include "core/rng.h"
 #include "tests/support/statistics.h"
 
@@ -106,6 +108,22 @@ TEST(Sampling, ConesAreUniformBySolidAngle) {
     }
 }
 
+// About an axis of its own, and the density is 1 over the solid angle told.
+TEST(Sampling, DirectionsOfAConeAreUniformAboutItsAxis) {
+    const Vec3 axis = Vec3(-0.3F, 0.9F, 0.2F).normalized();
+    const Frame about(axis);
+    for (const float one_minus_cos : {0.01F, 0.4F, 2.0F}) {
+        const DirectionCone cone{axis, one_minus_cos};
+        EXPECT_GT(p_value_of([&](float u0, float u1, UniformPairs& pairs) {
+                      const Vec3 w = about.to_local(cone.sample(u0, u1));
+                      const double solid_angle = 2 * pi_d * (1 - static_cast<double>(w.z()));
+                      pairs.add(solid_angle / cone.solid_angle(), w.x(), w.y());
+                  }),
+                  1e-3)
+            << one_minus_cos;
+    }
+}
+
 TEST(Sampling, NarrowConesKeepTheirWidth) {
     const Vec3 axis = Vec3(1, -2, 0.5F).normalized();
     Rng rng(4, Stage::test, 0);
@@ -146,6 +164,27 @@ TEST(Sampling, PickFollowsTheShares) {
     EXPECT_EQ(pick(cumulative, 0.7499F), 2U);
     EXPECT_EQ(pick(cumulative, 0.75F), 3U);
     EXPECT_EQ(pick(cumulative, 0.99999994F), 3U);
+}
+
+// Each index as often as its share, and what is left of u uniform again.
+TEST(Sampling, PickAndStretchFollowsTheSharesAndStaysUniform) {
+    const std::vector<double> cumulative = {0.25, 0.25, 0.75, 0.8, 1};
+    constexpr std::size_t cells = 10;
+    std::vector<double> counts(cumulative.size() * cells), expected;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        const std::size_t index = i / cells;
+        const double low = index == 0 ? 0 : cumulative[index - 1];
+        expected.push_back(draws * (cumulative[index] - low) / cells);
+    }
+    Rng rng(6, Stage::test, 0);
+    for (int i = 0; i < draws; ++i) {
+        double u = rng.next_fine();
+        const std::size_t index = pick_and_stretch(cumulative, u);
+        counts[index * cells + static_cast<std::size_t>(std::min(u, 0.999999) * cells)] += 1;
+    }
+    EXPECT_EQ(std::accumulate(counts.begin() + cells, counts.begin() + 2 * cells, 0.0), 0)
+        << "an empty share";
+    EXPECT_GT(support::chi_square_p_value(counts, expected), 1e-3);
 }
 
 }  // namespace

@@ -118,6 +118,38 @@ TEST(AreaSampler, PicksTrianglesByArea) {
     EXPECT_NEAR(centroid_z.mean(), 19.0 / 3, 4 * centroid_z.standard_error());
 }
 
+// Of a triangle's area the share (1 - a)^2 lies beyond the line of weight a at the first corner, and the
+// points of that line are even.
+TEST(AreaSampler, IsUniformByAreaOnEveryTriangle) {
+    constexpr std::size_t cells = 12;
+    constexpr int draws = 100'000;
+    Shape shape;
+    shape.primitive = Primitive::mesh;
+    shape.mesh.positions = {{0, 0, 0}, {3, 0, 0}, {1, 2, 0}, {0, 0, 5}, {0, 2, 5}, {0, 1, 6}};
+    shape.mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+    const AreaSampler sampler(shape);
+    std::vector<double> counts, expected;
+    for (const double area : {3.0, 1.0}) {
+        counts.resize(counts.size() + cells * cells);
+        expected.resize(counts.size(), draws * area / (4 * cells * cells));
+    }
+    Rng rng(3, Stage::test, 0);
+    for (int i = 0; i < draws; ++i) {
+        const float u0 = rng.next();
+        const Vec3d p = sampler.sample(shape, u0, rng.next()).position.cast<double>();
+        const bool first = p.z() < 2;
+        // Weights of the second and the third corner.
+        const double c = first ? p.y() / 2 : p.z() - 5;
+        const double b = first ? (p.x() - c) / 3 : (p.y() - c) / 2;
+        const auto cell = [](double u) {
+            return static_cast<std::size_t>(std::clamp(u, 0.0, 0.999999) * cells);
+        };
+        const std::size_t at = cell((b + c) * (b + c)) * cells + cell(c / (b + c));
+        counts[(first ? 0 : cells * cells) + at] += 1;
+    }
+    EXPECT_GT(support::chi_square_p_value(counts, expected), 1e-3);
+}
+
 TEST(AreaSampler, MeshAreasApproachTheExactOnes) {
     const Shape mesh = support::mesh("ball", tessellate_sphere(64), placed({2, 2, 2}), {});
     EXPECT_NEAR(AreaSampler(mesh).area(), 16 * pi_d, 0.01 * 16 * pi_d);
