@@ -29,23 +29,45 @@ private:
           found_(found),
           nearest_bound_(query.max_squared_distance),
           bound_(with_margin(nearest_bound_)),
-          trigger_(query.nearest) {
+          trigger_(0) {
         found.count = 0;
-        limit_trigger();
+        put_off_shrinking(usual_trigger());
     }
 
     bool run() {
         if (tree_.bucket_count == 0) return true;
         Pending at{{0, 0, 0}, 0, root_of_search()};
-        for (;;) {
-            const uint64_t leaf = descend(at);
-            scan(tree_.buckets + leaf * bucket_bytes, static_cast<uint32_t>(leaf * bucket_photons));
-            if (found_.count >= trigger_ && !shrink()) return false;
-            do {
-                if (pending_count_ == 0) return finish();
-                at = pending_[--pending_count_];
-            } while (at.squared_distance > bound_);
+        uint64_t leaf = descend(at);
+        for (bool more = true; more;) {
+            // The next bucket is looked for before this one is scanned, so that it comes meanwhile.
+            const uint64_t scanned = leaf;
+            more = take_pending(at);
+            if (more) leaf = descend(at);
+            fetch(leaf);
+            scan(tree_.buckets + scanned * bucket_bytes,
+                 static_cast<uint32_t>(scanned * bucket_photons));
+            if (found_.count < trigger_) continue;
+            if (!shrink()) return false;
+            if (!more || at.squared_distance <= bound_) continue;
+            more = take_pending(at);
+            if (more) leaf = descend(at);
         }
+        return finish();
+    }
+
+    /// The subtree put off last, of those within the bound. False when there is none.
+    bool take_pending(Pending& taken) {
+        while (pending_count_ > 0) {
+            taken = pending_[--pending_count_];
+            if (taken.squared_distance <= bound_) return true;
+        }
+        return false;
+    }
+
+    void fetch(uint64_t leaf) const {
+        const unsigned char* const bucket = tree_.buckets + leaf * bucket_bytes;
+        for (size_t i = 0; i < 3 * sizeof(float) * bucket_photons; i += 64)
+            __builtin_prefetch(bucket + i);
     }
 
     /// Where the point lies as seen from a plane. The plane's lowest two bits hold its axis: its place
@@ -145,15 +167,13 @@ private:
             if (kth.value < nearest_bound_) nearest_bound_ = kth.value;
             bound_ = with_margin(nearest_bound_);
             CandidateLoops<Lanes>::keep_not_above(found_, bound_);
-            trigger_ = found_.count + found_.count / 2 + 2 * bucket_photons;
-            limit_trigger();
+            put_off_shrinking(found_.count + found_.count / 2 + 2 * bucket_photons);
             return found_.count < trigger_;
         }
         bound_ = CandidateLoops<Lanes>::shrink(found_, nearest, nearest + nearest / 8, bound_);
         if (found_.count > nearest + nearest / 8)
             query_.drop_ties(query_.tie_context, found_, nearest);
-        trigger_ = nearest + nearest / 2 + bucket_photons;
-        limit_trigger();
+        put_off_shrinking(usual_trigger());
         return true;
     }
 
@@ -169,10 +189,13 @@ private:
         return true;
     }
 
+    /// With fewer candidates a better bound spares less than finding it costs.
+    size_t usual_trigger() const { return query_.nearest + query_.nearest / 2 + bucket_photons; }
+
     /// A whole bucket must fit behind the candidates that do not trigger.
-    void limit_trigger() {
-        if (trigger_ > found_.capacity - bucket_photons)
-            trigger_ = found_.capacity - bucket_photons;
+    void put_off_shrinking(size_t trigger) {
+        const size_t most = found_.capacity - bucket_photons;
+        trigger_ = trigger < most ? trigger : most;
     }
 
     /// Enlarged by more than rounding can take off.
@@ -195,7 +218,7 @@ private:
     Candidates& found_;
     float nearest_bound_;  ///< of the squared distance of the N nearest
     float bound_;          ///< of the squared distance of what is collected
-    size_t trigger_;
+    size_t trigger_;       ///< so many candidates are worth shrinking
     Pending pending_[64];
     size_t pending_count_ = 0;
 };
