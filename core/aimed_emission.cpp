@@ -1,5 +1,7 @@
 #include "core/aimed_emission.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/frame.h"
@@ -28,15 +30,27 @@ SegmentEnd facing_point(const BoundingSphere& sphere, const Vec3& direction, Rng
     return {sphere.centre + sphere.radius * normal, normal};
 }
 
+EmissionCone plain(const AimedCone& aim) {
+    const auto& [s, t, n] = aim.frame;
+    return {aim.cone.one_minus_cos,
+            {s.x(), s.y(), s.z()},
+            {t.x(), t.y(), t.z()},
+            {n.x(), n.y(), n.z()}};
+}
+
 }  // namespace
 
-AimedEmission::AimedEmission(const Scene& scene) : scene_(scene), sources_(aimed_sources(scene)) {
+AimedEmission::AimedEmission(const Scene& scene, Isa isa)
+    : scene_(scene), kernels_(emission_kernels(isa)), sources_(aimed_sources(scene)) {
     const auto total = static_cast<double>(total_power().mean());
     double sum = 0;
     for (const AimedSource& source : sources_) {
         const double share = static_cast<double>(source.power.mean()) / total;
         cumulative_.push_back(sum += share);
         flux_.push_back(source.power / static_cast<float>(share));
+        first_cone_.push_back(static_cast<std::uint32_t>(cones_.size()));
+        for (const AimedCone& aim : source.cones) cones_.push_back(plain(aim));
+        cones_.resize(cones_.size() + source.discs.size());
     }
 }
 
@@ -46,36 +60,64 @@ Spectrum AimedEmission::total_power() const {
     return total;
 }
 
+// Picks a source and one of its regions; x becomes what is left of it.
+std::uint32_t AimedEmission::choose(double& x, std::uint32_t& cone) const {
+    const std::size_t source = pick_and_stretch(cumulative_, x);
+    const std::size_t region = pick_and_stretch(sources_[source].cumulative, x);
+    cone = first_cone_[source] + static_cast<std::uint32_t>(region);
+    return static_cast<std::uint32_t>(source);
+}
+
 std::optional<LightParticle> AimedEmission::emit(Rng& rng) const {
-    const double x = rng.next_fine();
-    const double y = rng.next_fine();
-    return emit({x, y}, rng);
-}
-
-std::optional<LightParticle> AimedEmission::emit(const Vec2d& point, Rng& rng) const {
     if (sources_.empty()) return {};
-    double x = point.x();
-    const std::size_t index = pick_and_stretch(cumulative_, x);
-    const AimedSource& source = sources_[index];
-    const std::size_t region = pick_and_stretch(source.cumulative, x);
-    const Vec2 disc = concentric_disc(static_cast<float>(x), static_cast<float>(point.y()));
-    if (source.cones.empty()) {
-        const std::optional<Ray> ray = emit_directional(source, region, disc, rng);
-        if (!ray) return {};
-        return LightParticle{*ray, flux_[index]};
-    }
-    const AimedCone& aim = source.cones[region];
-    const Vec3 direction = aim.frame.to_world(cap_from_disc(aim.cone.one_minus_cos, disc));
-    if (!kept_in_union(source, aim, direction, rng)) return {};
-    if (const auto* light = std::get_if<PointLight>(&scene_.lights()[source.light]))
-        return LightParticle{Ray{light->position, direction}, flux_[index]};
-    const std::optional<Ray> ray = emit_area(source, direction, rng);
-    if (!ray) return {};
-    return LightParticle{*ray, flux_[index]};
+    double x = rng.next_fine();
+    const double y = rng.next_fine();
+    Aim aim;
+    aim.source = choose(x, aim.cone);
+    float* const w = aim.direction.data();
+    kernels_.aim({1, &x, &y, cones_.data(), &aim.cone},
+                 {{&aim.disc.x(), &aim.disc.y()}, {w, w + 1, w + 2}});
+    return send(aim, rng);
 }
 
-std::optional<Ray> AimedEmission::emit_area(const AimedSource& source, const Vec3& direction,
-                                            Rng& rng) const {
+void AimedEmission::emit(const EmissionSamples& samples,
+                         std::vector<LightPathStart>& starts) const {
+    if (sources_.empty()) return;
+    constexpr std::size_t most = EmissionSamples::most;
+    std::array<double, most> x;
+    std::array<std::uint32_t, most> source, cone;
+    alignas(64) std::array<std::array<float, most>, 5> to;
+    std::ranges::copy(samples.x(), x.begin());
+    for (std::size_t i = 0; i < samples.size(); ++i) source[i] = choose(x[i], cone[i]);
+    auto& [u, v, wx, wy, wz] = to;
+    kernels_.aim({samples.size(), x.data(), samples.y().data(), cones_.data(), cone.data()},
+                 {{u.data(), v.data()}, {wx.data(), wy.data(), wz.data()}});
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        Rng rng = samples.rng(i);
+        const auto particle =
+            send({source[i], cone[i], Vec2(u[i], v[i]), Vec3(wx[i], wy[i], wz[i])}, rng);
+        if (particle) starts.push_back({*particle, rng, samples.path(i)});
+    }
+}
+
+std::optional<LightParticle> AimedEmission::send(const Aim& aim, Rng& rng) const {
+    const AimedSource& source = sources_[aim.source];
+    const std::uint32_t region = aim.cone - first_cone_[aim.source];
+    std::optional<Ray> ray;
+    if (source.cones.empty()) {
+        ray = send_through(source, source.discs[region], aim.disc, rng);
+    } else if (kept_in_union(source, source.cones[region], aim.direction, rng)) {
+        if (const auto* light = std::get_if<PointLight>(&scene_.lights()[source.light]))
+            ray = Ray{light->position, aim.direction};
+        else
+            ray = send_from_area(source, aim.direction, rng);
+    }
+    if (!ray) return {};
+    return LightParticle{*ray, flux_[aim.source]};
+}
+
+std::optional<Ray> AimedEmission::send_from_area(const AimedSource& source, const Vec3& direction,
+                                                 Rng& rng) const {
     const auto& light = std::get<AreaLight>(scene_.lights()[source.light]);
     const float offset = scene_.offset(light.shape);
     if (source.facing_sphere) {
@@ -92,10 +134,9 @@ std::optional<Ray> AimedEmission::emit_area(const AimedSource& source, const Vec
     return spawn_ray({sample.position, sample.normal, offset}, direction);
 }
 
-std::optional<Ray> AimedEmission::emit_directional(const AimedSource& source, std::size_t region,
-                                                   const Vec2& at, Rng& rng) const {
+std::optional<Ray> AimedEmission::send_through(const AimedSource& source, const AimedDisc& disc,
+                                               const Vec2& at, Rng& rng) const {
     const Vec3& along = std::get<DirectionalLight>(scene_.lights()[source.light]).direction;
-    const AimedDisc& disc = source.discs[region];
     const Vec3 point =
         disc.centre + disc.radius * (source.across.s * at.x() + source.across.t * at.y());
     if (source.discs.size() > 1) {

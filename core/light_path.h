@@ -83,6 +83,7 @@ std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle&
 struct LightPathStart {
     LightParticle particle;
     Rng rng;
+    std::uint64_t path = 0;  ///< its number
 };
 
 /// trace_light_path for many particles side by side, one segment of all of them after the other.

@@ -3,27 +3,16 @@
 #include <array>
 #include <cstdint>
 
+#include "core/philox.h"
+
 namespace caustics {
 
-/// Philox4x32-10, the counter-based generator of Salmon et al., "Parallel Random Numbers: As Easy
-/// as 1, 2, 3" (SC'11): four random words as a pure function of a counter and a key.
-inline std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
-                                               std::array<std::uint32_t, 2> key) {
-    constexpr std::uint64_t multiplier0 = 0xD2511F53U;
-    constexpr std::uint64_t multiplier1 = 0xCD9E8D57U;
-    constexpr std::uint32_t weyl0 = 0x9E3779B9U;
-    constexpr std::uint32_t weyl1 = 0xBB67AE85U;
-    for (int round = 0; round < 10; ++round) {
-        const std::uint64_t product0 = multiplier0 * counter[0];
-        const std::uint64_t product1 = multiplier1 * counter[2];
-        counter = {static_cast<std::uint32_t>(product1 >> 32U) ^ counter[1] ^ key[0],
-                   static_cast<std::uint32_t>(product1),
-                   static_cast<std::uint32_t>(product0 >> 32U) ^ counter[3] ^ key[1],
-                   static_cast<std::uint32_t>(product0)};
-        key[0] += weyl0;
-        key[1] += weyl1;
-    }
-    return counter;
+/// The four random words of a counter and a key.
+inline std::array<std::uint32_t, 4> philox4x32(const std::array<std::uint32_t, 4>& counter,
+                                               const std::array<std::uint32_t, 2>& key) {
+    std::uint32_t words[4] = {counter[0], counter[1], counter[2], counter[3]};
+    philox4x32(words, key[0], key[1]);
+    return {words[0], words[1], words[2], words[3]};
 }
 
 /// What a stream of random numbers is for; streams of different stages never coincide.
@@ -49,6 +38,14 @@ public:
         : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)},
           counter_{0, static_cast<std::uint32_t>(stage), static_cast<std::uint32_t>(path),
                    static_cast<std::uint32_t>(path >> 32U)} {}
+    /// The same stream after `used` of its first four words, which are known already.
+    Rng(std::uint64_t seed, Stage stage, std::uint64_t path,
+        const std::array<std::uint32_t, 4>& first_words, unsigned used)
+        : Rng(seed, stage, path) {
+        counter_[0] = 1;
+        words_ = first_words;
+        used_ = used;
+    }
 
     /// Uniform in [0, 1), 24 bits.
     float next() { return static_cast<float>(next_word() >> 8U) * 0x1p-24F; }

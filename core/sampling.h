@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/frame.h"
+#include "core/square_maps.h"
 #include "core/vec.h"
 
 namespace caustics {
@@ -49,29 +50,11 @@ struct DirectionCone {
     }
 };
 
-/// The concentric map of the square onto the unit disc [Shirley and Chiu 1997]: equal areas stay
-/// equal and neighbours stay neighbours, so that strata of the square are compact on the disc.
+/// The concentric map of the square onto the unit disc.
 inline Vec2 concentric_disc(float u0, float u1) {
-    const float a = 2 * u0 - 1;
-    const float b = 2 * u1 - 1;
-    const bool wide = std::abs(a) > std::abs(b);
-    const float r = wide ? a : b;
-    if (r == 0) return Vec2::Zero();
-    // Within a quarter of pi the Taylor series are good to 3e-8.
-    const float angle = pi / 4 * (wide ? b : a) / r;
-    const float x2 = angle * angle;
-    const float sine =
-        angle * (1 - x2 * (1.0F / 6 - x2 * (1.0F / 120 - x2 * (1.0F / 5040 - x2 / 362880))));
-    const float cosine = 1 - x2 * (0.5F - x2 * (1.0F / 24 - x2 * (1.0F / 720 - x2 / 40320)));
-    return {r * (wide ? cosine : sine), r * (wide ? sine : cosine)};
-}
-
-/// The equal-area map of the unit disc onto the directions within an angle of +z, given as 1 - cos
-/// (Lambert's azimuthal projection).
-inline Vec3 cap_from_disc(float one_minus_cos, const Vec2& disc) {
-    const float height = one_minus_cos * disc.squaredNorm();
-    const float scale = std::sqrt(one_minus_cos * (2 - height));
-    return {scale * disc.x(), scale * disc.y(), 1 - height};
+    Vec2 disc;
+    map_to_disc(u0, u1, disc.x(), disc.y());
+    return disc;
 }
 
 /// Uniform point of the unit disc.

@@ -44,36 +44,38 @@ public:
         chunk.counts.emitted += last - first;
         Batch batch;
         while (first < last) {
-            const std::uint64_t end = std::min(last, first + paths_at_once);
-            batch.clear();
-            for (std::uint64_t path = first; path < end; ++path) {
-                Rng rng(settings_.seed, settings_.stage, path);
-                const std::optional<LightParticle> particle = emission_.emit(point(path, rng), rng);
-                if (particle) batch.add({*particle, rng}, path);
-            }
+            const std::size_t count = std::min<std::uint64_t>(last - first, EmissionSamples::most);
+            draw(first, count, batch.samples);
+            batch.starts.clear();
+            emission_.emit(batch.samples, batch.starts);
             chunk.counts.aimed += batch.starts.size();
             follow(batch, chunk);
-            first = end;
+            first += count;
         }
     }
 
 private:
-    static constexpr std::uint64_t paths_at_once = 256;
-    /// Paths on their start.
+    /// Paths that are emitted together.
     struct Batch {
+        EmissionSamples samples;
         std::vector<LightPathStart> starts;
-        std::vector<std::uint64_t> paths;  ///< their numbers
         std::vector<std::optional<Deposit>> deposits;
-
-        void clear() {
-            starts.clear();
-            paths.clear();
-        }
-        void add(const LightPathStart& start, std::uint64_t path) {
-            starts.push_back(start);
-            paths.push_back(path);
-        }
     };
+
+    void draw(std::uint64_t first, std::size_t count, EmissionSamples& samples) const {
+        const auto stage = static_cast<std::uint32_t>(settings_.stage);
+        samples.draw({settings_.seed, stage, first, count}, emission_.kernels());
+        if (!settings_.strata) return;
+        const std::uint64_t size = settings_.strata->size();
+        for (std::size_t i = 0; i < count;) {
+            const std::uint64_t stratum = settings_.repeated ? (first + i) % size : first + i;
+            if (stratum >= size) return;
+            const std::size_t run = std::min<std::uint64_t>(count - i, size - stratum);
+            settings_.strata->place(stratum, samples.x().subspan(i, run),
+                                    samples.y().subspan(i, run));
+            i += run;
+        }
+    }
 
     void follow(Batch& batch, PhotonChunk& chunk) const {
         if (settings_.path.interaction == Interaction::split) {
@@ -89,26 +91,16 @@ private:
                     trace_light_path(scene_, batch.starts[i].particle, settings_.path,
                                      batch.starts[i].rng, chunk.counts);
         for (std::size_t i = 0; i < batch.starts.size(); ++i)
-            if (batch.deposits[i]) chunk.add(batch.paths[i], *batch.deposits[i]);
+            if (batch.deposits[i]) chunk.add(batch.starts[i].path, *batch.deposits[i]);
     }
 
     void follow_branches(Batch& batch, PhotonChunk& chunk) const {
-        for (std::size_t i = 0; i < batch.starts.size(); ++i) {
-            LightPathStart& start = batch.starts[i];
+        for (LightPathStart& start : batch.starts) {
             chunk.deposits.clear();
             trace_split_path(scene_, start.particle, settings_.path, start.rng, chunk.counts,
                              chunk.deposits);
-            for (const Deposit& deposit : chunk.deposits) chunk.add(batch.paths[i], deposit);
+            for (const Deposit& deposit : chunk.deposits) chunk.add(start.path, deposit);
         }
-    }
-
-    Vec2d point(std::uint64_t path, Rng& rng) const {
-        const double x = rng.next_fine();
-        const double y = rng.next_fine();
-        if (!settings_.strata) return {x, y};
-        const std::uint64_t stratum = settings_.repeated ? path % settings_.strata->size() : path;
-        if (stratum >= settings_.strata->size()) return {x, y};
-        return settings_.strata->point(stratum, {x, y});
     }
 
     const Scene& scene_;
@@ -157,7 +149,11 @@ class ScenePhotons {
 public:
     ScenePhotons(const Scene& scene, const PhotonMapParams& params, const RunOptions& options,
                  std::vector<Ray>* traced)
-        : scene_(scene), params_(params), options_(options), emission_(scene), traced_(traced) {}
+        : scene_(scene),
+          params_(params),
+          options_(options),
+          emission_(scene, options.isa),
+          traced_(traced) {}
 
     TracedPhotons trace() const {
         if (emission_.empty()) return none();

@@ -61,16 +61,33 @@ StratifiedSquare StratifiedSquare::at_most(std::uint64_t size) {
     return nearest(size >> (2 * bits), bits, false);
 }
 
-Vec2d StratifiedSquare::point(std::uint64_t index, const Vec2d& jitter) const {
-    const std::uint64_t block = index >> (2 * block_bits_);
-    const auto code =
-        static_cast<std::uint32_t>(index & ((std::uint64_t{1} << (2 * block_bits_)) - 1));
-    const std::uint64_t row = block / columns_;
-    const std::uint64_t along = block % columns_;
-    const std::uint64_t column = row % 2 == 0 ? along : columns_ - 1 - along;
-    const auto x = static_cast<double>((column << block_bits_) + even_bits(code));
-    const auto y = static_cast<double>((row << block_bits_) + even_bits(code >> 1U));
-    return (Vec2d(x, y) + jitter).cwiseProduct(stratum_).cwiseMin(1 - 0x1p-53);
+void StratifiedSquare::place(std::uint64_t first, std::span<double> x, std::span<double> y) const {
+    const std::uint64_t in_block = std::uint64_t{1} << (2 * block_bits_);
+    for (std::size_t done = 0; done < x.size();) {
+        const std::uint64_t block = (first + done) / in_block;
+        const std::uint64_t code = (first + done) % in_block;
+        const std::size_t run = std::min<std::uint64_t>(x.size() - done, in_block - code);
+        const std::uint64_t row = block / columns_;
+        const std::uint64_t along = block % columns_;
+        const std::uint64_t column = row % 2 == 0 ? along : columns_ - 1 - along;
+        place_in_block(Vec2d(static_cast<double>(column << block_bits_),
+                             static_cast<double>(row << block_bits_)),
+                       static_cast<std::uint32_t>(code), x.subspan(done, run),
+                       y.subspan(done, run));
+        done += run;
+    }
+}
+
+// From Morton code number `code` on; `corner` is the block's, counted in strata.
+void StratifiedSquare::place_in_block(const Vec2d& corner, std::uint32_t code, std::span<double> x,
+                                      std::span<double> y) const {
+    constexpr double below_one = 1 - 0x1p-53;
+    for (std::uint32_t i = 0; i < x.size(); ++i) {
+        const double column = corner.x() + static_cast<int>(even_bits(code + i));
+        const double row = corner.y() + static_cast<int>(even_bits((code + i) >> 1U));
+        x[i] = std::min((column + x[i]) * stratum_.x(), below_one);
+        y[i] = std::min((row + y[i]) * stratum_.y(), below_one);
+    }
 }
 
 }  // namespace caustics

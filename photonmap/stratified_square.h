@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/vec.h"
 
@@ -18,10 +19,13 @@ public:
 
     /// Number of strata.
     std::uint64_t size() const { return columns_ * rows_ << (2 * block_bits_); }
-    /// The point of stratum number `index` < size() at `jitter`, a point of the unit square.
-    Vec2d point(std::uint64_t index, const Vec2d& jitter) const;
+    /// Moves points of the unit square, one for each of the strata number `first`, `first` + 1, ...
+    /// < size(), to the same places in their strata.
+    void place(std::uint64_t first, std::span<double> x, std::span<double> y) const;
 
 private:
+    void place_in_block(const Vec2d& corner, std::uint32_t code, std::span<double> x,
+                        std::span<double> y) const;
     static StratifiedSquare nearest(std::uint64_t blocks, unsigned block_bits, bool or_more);
     StratifiedSquare(std::uint64_t columns, std::uint64_t rows, unsigned block_bits);
 

@@ -81,7 +81,10 @@ TEST(Sampling, ConcentricDiscIsUniformByArea) {
 TEST(Sampling, CapsFromADiscAreUniformBySolidAngle) {
     for (const float one_minus_cos : {1e-6F, 0.1F, 1.0F, 2.0F})
         EXPECT_GT(p_value_of([=](float u0, float u1, UniformPairs& pairs) {
-                      const Vec3 w = cap_from_disc(one_minus_cos, concentric_disc(u0, u1));
+                      const Vec2 disc = concentric_disc(u0, u1);
+                      float cap[3];
+                      map_to_cap(one_minus_cos, disc.x(), disc.y(), cap);
+                      const Vec3 w(cap[0], cap[1], cap[2]);
                       ASSERT_NEAR(w.norm(), 1, 1e-6F);
                       const double across =
                           static_cast<double>(w.x()) * static_cast<double>(w.x()) +

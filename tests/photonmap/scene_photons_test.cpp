@@ -38,10 +38,11 @@ PhotonMapParams params(const Mode& mode, std::uint64_t photons, std::uint64_t em
 }
 
 TracedPhotons trace(const Scene& scene, const PhotonMapParams& p, std::uint64_t seed = 1,
-                    int threads = 1) {
+                    int threads = 1, Isa isa = widest_isa()) {
     RunOptions options;
     options.seed = seed;
     options.threads = threads;
+    options.isa = isa;
     return trace_scene(scene, p, options);
 }
 
@@ -167,6 +168,22 @@ TEST(ScenePhotons, AreTheSameBitForBitForAnyNumberOfThreads) {
                           0);
             }
         }
+}
+
+TEST(ScenePhotons, AreTheSameBitForBitForEveryInstructionSet) {
+    const Scene scene(crowd_and_lamp());
+    for (const Mode& mode : modes) {
+        const TracedPhotons plain = trace(scene, params(mode, 20'000), 1, 1, Isa::plain);
+        for (const Isa isa : supported_isas()) {
+            const TracedPhotons wide = trace(scene, params(mode, 20'000), 1, 1, isa);
+            ASSERT_EQ(wide.store.size(), plain.store.size());
+            EXPECT_EQ(wide.counts.emitted, plain.counts.emitted);
+            EXPECT_EQ(std::memcmp(wide.store.photons().data(), plain.store.photons().data(),
+                                  plain.store.bytes()),
+                      0)
+                << name(isa);
+        }
+    }
 }
 
 TEST(ScenePhotons, DepthLimitsAreCounted) {
