@@ -66,9 +66,10 @@ private:
         const bool points = !scene_.point_lights.empty() || !scene_.directional_lights.empty();
         xml_.leaf("default",
                   {{"name", "integrator"}, {"value", casters && points ? "ptracer" : "path"}});
-        // Mitsuba counts segments: the specular events, the receiver and the camera.
-        xml_.leaf("default",
-                  {{"name", "max_depth"}, {"value", std::to_string(settings_.max_bounces + 2)}});
+        // Mitsuba counts segments: the specular events, the receiver and the camera. Where nothing is
+        // specular, longer paths would add the light between receivers alone.
+        const int events = casters ? settings_.max_bounces : 0;
+        xml_.leaf("default", {{"name", "max_depth"}, {"value", std::to_string(events + 2)}});
         xml_.leaf("default",
                   {{"name", "spp"}, {"value", std::to_string(scene_.sampling.sample_count)}});
         xml_.open("integrator", {{"type", "$integrator"}});

@@ -132,6 +132,16 @@ TEST(MitsubaScene, TakesPathsWhereNoLightIsAPoint) {
     EXPECT_NE(to_mitsuba(desc, {}).files[0].bytes.find(chosen + "path"), std::string::npos);
 }
 
+TEST(MitsubaScene, TakesPathsAsLongAsTheyCanBe) {
+    SceneDesc desc = small_scene();
+    const auto depth = [&] {
+        return numbers_after(to_mitsuba(desc, {}).files[0].bytes, "name=\"max_depth\" value=\"")[0];
+    };
+    EXPECT_EQ(depth(), 16 + 2);
+    desc.shapes.resize(1);
+    EXPECT_EQ(depth(), 2) << "light between receivers is no part of the picture";
+}
+
 TEST(MeshBytes, AreReadBackAsTheyWere) {
     const support::TemporaryFolder folder;
     TriangleMesh mesh = tessellate_sphere(4);
