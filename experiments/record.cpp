@@ -61,6 +61,7 @@ constexpr Column columns_of_all[] = {
     {"mask_relmse", "/mask_metrics/relmse"},
     {"mask_mean_ratio", "/mask_metrics/mean_ratio"},
     {"mask_fraction", "/mask_fraction"},
+    {"flip", "/flip"},  // which tools/flip_column.py adds
     {"parse_cpu_s", "/seconds/parse/cpu"},
     {"precompute_cpu_s", "/seconds/precompute/cpu"},
     {"balance_cpu_s", "/seconds/balance/cpu"},
