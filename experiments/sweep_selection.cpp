@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
@@ -52,15 +53,17 @@ Shard shard_of_array_task() {
     return {id - first + 1, count};
 }
 
-/// One spelling for a value however it is written: 1e5 as 100000, words without quotes.
+/// One spelling for a value however it is written: 1e5 as 100000, words without quotes, lists
+/// without spaces.
 std::string plain(const std::string& text) {
     double value = 0;
     const char* const end = text.data() + text.size();
     const auto result = std::from_chars(text.data(), end, value);
     if (result.ec == std::errc() && result.ptr == end && std::isfinite(value))
         return fmt::format("{}", value);
-    const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
-    return quoted ? text.substr(1, text.size() - 2) : text;
+    const nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
+    if (parsed.is_string()) return parsed.get<std::string>();
+    return parsed.is_discarded() ? text : parsed.dump();
 }
 
 std::map<std::string, std::string> keys_of(const Trial& trial) {
@@ -125,6 +128,7 @@ Shard parse_shard(const std::string& text) {
 }
 
 void choose(SweepPlan& plan, const std::vector<std::string>& texts) {
+    if (texts.empty()) return;
     const Filters filters = parse_filters(texts);
     require_known(plan, filters);
     plan.filters = texts;

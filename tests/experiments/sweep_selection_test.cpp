@@ -25,7 +25,8 @@ SweepPlan some_plan() {
                     trial.request.method.name = method;
                     trial.request.seed = seed;
                     trial.repeat = repeat;
-                    trial.swept = {{"photons", photons}, {"mode", "\"split\""}};
+                    trial.swept = {
+                        {"photons", photons}, {"mode", "\"split\""}, {"tint", "[0.1,0.2]"}};
                     trial.id = fmt::format("{}-{}-{}-{}", method, photons, seed, repeat);
                     trial.config_hash = hex(fnv1a(trial.id));
                     plan.trials.push_back(trial);
@@ -54,6 +55,7 @@ TEST(Filters, ChooseWhatFitsAllKeysAndOneOfAKeysValues) {
     EXPECT_EQ(chosen({"method=beamtree", "seed=1", "seed=2"}), 12U);
     EXPECT_EQ(chosen({"photons=1e5", "repeat=3"}), 10U) << "numbers by value";
     EXPECT_EQ(chosen({"mode=split"}), 60U);
+    EXPECT_EQ(chosen({"tint=[0.1, 0.2]"}), 60U);
     EXPECT_EQ(chosen({"trial=beamtree-10-1-1"}), 1U);
 }
 
