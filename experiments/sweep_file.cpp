@@ -11,6 +11,14 @@ namespace caustics {
 namespace {
 
 constexpr std::int64_t most = 1'000'000'000;
+constexpr std::size_t most_trials = 1'000'000;  ///< a plan is held in memory
+
+/// Of a product of lists, before it is formed.
+void require_few(double trials, const JsonNode& node) {
+    if (trials > static_cast<double>(most_trials))
+        node.fail(fmt::format("makes {:.3g} trials, more than {} (split the sweep file)", trials,
+                              most_trials));
+}
 
 std::vector<JsonNode> list(const JsonNode& node) {
     std::vector<JsonNode> elements = node.as_array();
@@ -33,6 +41,14 @@ std::vector<std::filesystem::path> read_scenes(const JsonNode& node) {
         scenes.push_back(file);
     }
     return scenes;
+}
+
+/// Of two axes for the same value, one would change nothing.
+void require_own_pointer(const std::vector<SweepFile::Axis>& axes, const std::string& pointer,
+                         const JsonNode& node) {
+    const auto same = std::ranges::find(axes, pointer, &SweepFile::Axis::pointer);
+    if (same != axes.end())
+        node.fail(fmt::format("{} is what \"{}\" sets already", pointer, same->name));
 }
 
 SweepFile::Axis read_axis(const std::string& name, const JsonNode& node) {
@@ -79,6 +95,8 @@ std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
         for (const auto& [key, value] : params->others()) {
             const std::vector<JsonNode> choices =
                 value.is_array() ? list(value) : std::vector<JsonNode>{value};
+            require_few(static_cast<double>(cases.size()) * static_cast<double>(choices.size()),
+                        *params);
             std::vector<SweepFile::MethodCase> product;
             for (const SweepFile::MethodCase& so_far : cases)
                 for (const JsonNode& choice : choices) {
@@ -109,6 +127,15 @@ SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
     return reference;
 }
 
+double count_trials(const SweepFile& sweep) {
+    double trials = sweep.repeats;
+    for (const SweepFile::Axis& axis : sweep.axes)
+        trials *= static_cast<double>(axis.values.size());
+    for (const std::size_t factor : {sweep.scenes.size(), sweep.methods.size(), sweep.seeds.size()})
+        trials *= static_cast<double>(factor);
+    return trials;
+}
+
 }  // namespace
 
 SweepFile read_sweep_file(const std::filesystem::path& file) {
@@ -118,7 +145,11 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     node.at("version").as_integer_in(1, 1);
     sweep.scenes = read_scenes(node.at("scenes"));
     if (const std::optional<JsonNode> set = node.find("set"))
-        for (const auto& [name, axis] : set->others()) sweep.axes.push_back(read_axis(name, axis));
+        for (const auto& [name, node_of_axis] : set->others()) {
+            SweepFile::Axis axis = read_axis(name, node_of_axis);
+            require_own_pointer(sweep.axes, axis.pointer, node_of_axis.at("pointer"));
+            sweep.axes.push_back(std::move(axis));
+        }
     for (const JsonNode& method : list(node.at("methods")))
         for (SweepFile::MethodCase& each : read_method(method))
             sweep.methods.push_back(std::move(each));
@@ -135,6 +166,7 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     if (const std::optional<JsonNode> reference = node.find("reference"))
         sweep.reference = read_reference(*reference, sweep.spp);
     node.finish();
+    require_few(count_trials(sweep), node);
     return sweep;
 }
 

@@ -31,7 +31,7 @@ struct SweepFile {
 
     std::filesystem::path file;
     std::vector<std::filesystem::path> scenes;
-    std::vector<Axis> axes;
+    std::vector<Axis> axes;  ///< no two with the same pointer
     std::vector<MethodCase> methods;
     std::vector<std::uint64_t> seeds;
     int repeats = 1;

@@ -43,6 +43,8 @@ std::vector<SceneVariant> variants(const SweepFile& sweep) {
             }
         all = std::move(product);
     }
+    // Whatever the columns' names, /water comes before /water/resolution, which is in it.
+    for (SceneVariant& variant : all) std::ranges::sort(variant.overrides);
     return all;
 }
 
@@ -60,8 +62,9 @@ std::string place_of_mistake(const SweepFile& sweep, const SceneVariant& variant
         so_far.push_back(next);
     }
     if (so_far.empty()) return fmt::format("{}: /scenes: ", file);
-    const auto& [name, value] = variant.swept[so_far.size() - 1];
-    return fmt::format("{}: /set/{}: {}: ", file, name, value);
+    const auto& [pointer, value] = so_far.back();
+    const auto axis = std::ranges::find(sweep.axes, pointer, &SweepFile::Axis::pointer);
+    return fmt::format("{}: /set/{}: {}: ", file, axis->name, value);
 }
 
 SceneFile load(const SweepFile& sweep, const SceneVariant& variant) {
@@ -135,14 +138,18 @@ std::string slug(const Trial& trial) {
     return words;
 }
 
-void identify(Trial& trial) {
-    json configuration = {{"record_version", record_version},
-                          {"scene", trial.scene_hash},
-                          {"method", trial.request.method.name},
-                          {"parameters", identity(trial.request.method)},
-                          {"spp", trial.request.samples_per_pixel},
-                          {"reference", trial.reference ? trial.reference->key : ""}};
-    trial.cell = hex(fnv1a(configuration.dump()));
+/// What the trials of a cell share.
+json configuration_of(const Trial& trial) {
+    return {{"record_version", record_version},
+            {"scene", trial.scene_hash},
+            {"method", trial.request.method.name},
+            {"parameters", identity(trial.request.method)},
+            {"spp", trial.request.samples_per_pixel},
+            {"reference", trial.reference ? trial.reference->key : ""}};
+}
+
+/// Names a trial of the cell of that configuration.
+void identify(Trial& trial, json& configuration) {
     configuration["seed"] = trial.request.seed;
     configuration["repeat"] = trial.repeat;
     trial.config_hash = hex(fnv1a(configuration.dump()));
@@ -160,6 +167,7 @@ Trial make_trial(const SweepFile& sweep, const SceneVariant& variant,
     trial.swept = variant.swept;
     trial.swept.insert(trial.swept.end(), method.params.begin(), method.params.end());
     trial.reference = variant.reference;
+    trial.cell = hex(fnv1a(configuration_of(trial).dump()));
     return trial;
 }
 
@@ -168,18 +176,21 @@ void add_trials(const SweepFile& sweep, SweepPlan& plan, std::set<std::string>& 
     std::vector<SceneVariant> scenes = variants(sweep);
     resolve(sweep, scenes, isolation);
     for (const SceneVariant& variant : scenes)
-        for (const SweepFile::MethodCase& method : sweep.methods)
+        for (const SweepFile::MethodCase& method : sweep.methods) {
+            const Trial first = make_trial(sweep, variant, method);
+            json configuration = configuration_of(first);
             for (const std::uint64_t seed : sweep.seeds)
                 for (int repeat = 1; repeat <= sweep.repeats; ++repeat) {
-                    Trial trial = make_trial(sweep, variant, method);
+                    Trial trial = first;
                     trial.request.seed = seed;
                     trial.repeat = repeat;
-                    identify(trial);
+                    identify(trial, configuration);
                     if (known.insert(trial.config_hash).second)
                         plan.trials.push_back(std::move(trial));
                     else
                         ++plan.duplicates;
                 }
+        }
 }
 
 void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {

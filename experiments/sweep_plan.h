@@ -20,7 +20,8 @@ struct ReferenceRequest {
     std::filesystem::path kept_folder;  ///< where references may be kept beside the sweep files
 };
 
-/// One element of the product of a sweep file's lists.
+/// One element of the product of a sweep file's lists. Scene values are set in the order of their
+/// pointers, so that a whole object is set before a value in it.
 struct Trial {
     std::string id;           ///< readable words, then the configuration's hash
     std::string config_hash;  ///< of scene, method, parameters, seed, samples, repeat, reference

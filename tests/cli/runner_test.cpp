@@ -161,7 +161,8 @@ TEST_F(Runner, WarnsOfResultsByOtherCodeAndRunsBrokenOnesAgain) {
 TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
     const std::string file = folder_ / "sweep.json";
     write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [7],
-        "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3]}}}},
+        "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3]}},
+                 "kind": {{"pointer": "/ball/bsdf", "values": [{{"type": "dielectric"}}]}}}},
         "methods": [{{"method": "photonmap", "param": {{"photons": 100, "filter": "cone"}}}}]}})",
                                        scene));
     ASSERT_EQ(sweep(file).exit_code, 0);

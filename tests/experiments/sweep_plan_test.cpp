@@ -139,6 +139,16 @@ TEST_F(SweepPlans, RefuseToSaveTheFilesOfTrialsOverEachOther) {
     EXPECT_NE(reason.find("/methods/0/param: /save: not in a sweep"), std::string::npos) << reason;
 }
 
+TEST_F(SweepPlans, SetAWholeObjectBeforeAValueInIt) {
+    const SweepPlan all = plan(none + R"(, "set": {
+        "a_glass": {"pointer": "/ball/bsdf/int_ior", "values": [1.3, 1.5]},
+        "kind": {"pointer": "/ball/bsdf", "values": [{"type": "dielectric"}]}})");
+    ASSERT_EQ(all.trials.size(), 2U) << "whatever their names, both count";
+    const Overrides expected = {{"/ball/bsdf", R"({"type":"dielectric"})"},
+                                {"/ball/bsdf/int_ior", "1.3"}};
+    EXPECT_EQ(all.trials[0].request.overrides, expected);
+}
+
 TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
     const std::vector<std::pair<std::string, std::string>> cases = {
         {R"("methods": [])", "/methods"},
@@ -149,6 +159,7 @@ TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
         {none + R"(, "version": 2)", "version"},
         {none + R"(, "repeats": 0)", "/repeats"},
         {none + R"(, "spq": 4)", "spq"},
+        {none + R"(, "repeats": 1000000000)", "makes 1e+09 trials, more than 1000000"},
         {R"("methods": [{"method": "photonmpa"}])", "/methods/0/method"},
         {R"("methods": [{"method": "photonmap", "param": {"photons": []}}])", "photons"},
         {R"("methods": [{"method": "photonmap", "param": {"photns": 5}}])", "photns"},
@@ -156,6 +167,9 @@ TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
         {none + R"(, "set": {"a": {"pointer": "/flor/bsdf", "values": [1]}})", "/flor"},
         {none + R"(, "set": {"a": {"pointer": "/floor/bsdf/alhpa", "values": [1]}})", "alhpa"},
         {none + R"(, "set": {"rmse": {"pointer": "/x", "values": [1]}})", "column of every trial"},
+        {none + R"(, "set": {"a": {"pointer": "/ball/radius", "values": [0.3]},
+                             "b": {"pointer": "/ball/radius", "values": [0.4]}})",
+         R"(/set/b/pointer: /ball/radius is what "a" sets already)"},
         {none + R"(, "set": {"A b": {"pointer": "/x", "values": [1]}})", "small letters"},
         {none + R"(, "spp": 5)", "spp"}};
     for (const auto& [members, word] : cases) {
