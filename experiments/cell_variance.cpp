@@ -1,11 +1,13 @@
 #include "experiments/cell_variance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <fstream>
+#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <vector>
 
+#include "core/hash.h"
 #include "experiments/child_process.h"
 #include "experiments/interrupt.h"
 #include "experiments/metrics.h"
@@ -50,78 +52,58 @@ private:
     std::vector<SpectrumSum> squares_;
 };
 
-/// The pictures a variance stands on, one a seed, and how the table knows it.
-struct Cell {
-    std::map<std::uint64_t, std::string> trials;
-    bool as_earlier = true;
-    json earlier;
-};
+/// The trials whose pictures a variance stands on, one a seed.
+using CellTrials = std::map<std::uint64_t, std::string>;
 
-std::string text(const json& row, const char* key) {
-    const auto found = row.find(key);
-    return found != row.end() && found->is_string() ? found->get<std::string>() : std::string();
+std::map<std::string, CellTrials> cells_of(const PlanFile& plan, const DonePictures& done) {
+    std::map<std::string, CellTrials> cells;
+    for (const PlanFile::Entry& trial : plan.trials)
+        if (done.contains(trial.id)) cells[trial.cell].emplace(trial.seed, trial.id);
+    std::erase_if(cells, [](const auto& cell) { return cell.second.size() < 2; });
+    return cells;
 }
 
-/// Looks up what the earlier table says; a line that cannot be read says nothing.
-void look_up(std::map<std::string, Cell>& cells, const std::map<std::string, std::string>& cell_of,
-             const DoneTrials& done, const std::filesystem::path& table) {
-    std::map<std::string, std::size_t> found;
-    std::ifstream in(table);
-    for (std::string line; std::getline(in, line);) {
-        const json row = json::parse(line, nullptr, false);
-        if (!row.is_object() || text(row, "status") != "done") continue;
-        const std::string id = text(row, "trial");
-        const auto place = cell_of.find(id);
-        if (place == cell_of.end()) continue;
-        Cell& cell = cells.at(place->second);
-        ++found[place->second];
-        if (!done.contains(id) || text(row, "finished") != done.at(id)) cell.as_earlier = false;
-        cell.earlier = row.value("variance", json());
-    }
-    std::map<std::string, std::size_t> expected;
-    for (const auto& [id, name] : cell_of)
-        if (done.contains(id)) ++expected[name];
-    for (auto& [name, cell] : cells)
-        if (found[name] != expected[name]) cell.as_earlier = false;
+std::string hash_of(const CellTrials& trials, const DonePictures& done) {
+    std::uint64_t hash = fnv1a("");
+    for (const auto& [seed, id] : trials)
+        hash = fnv1a(fmt::format("{} {}\n", seed, done.at(id)), hash);
+    return hex(hash);
 }
 
-json variances_of(const std::map<std::string, Cell>& cells, const JobStore& store) {
+json variances_of(const std::map<std::string, CellTrials>& cells, const JobStore& store) {
     json result = json::object();
-    for (const auto& [name, cell] : cells) {
-        if (cell.as_earlier) continue;
+    for (const auto& [name, trials] : cells) {
         PictureVariance variance;
-        for (const auto& [seed, id] : cell.trials) variance.add(read_exr(store.image_of(id)));
-        if (const auto mean = variance.mean()) result[name] = *mean;
+        for (const auto& [seed, id] : trials) variance.add(read_exr(store.image_of(id)));
+        const std::optional<double> mean = variance.mean();
+        result[name] = mean ? json(*mean) : json();
     }
     return result;
 }
 
 }  // namespace
 
-std::map<std::string, double> cell_variances(const PlanFile& plan, const JobStore& store,
-                                             const DoneTrials& done,
-                                             const std::filesystem::path& earlier_table) {
-    std::map<std::string, Cell> cells;
-    for (const PlanFile::Entry& trial : plan.trials)
-        if (done.contains(trial.id)) cells[trial.cell].trials.emplace(trial.seed, trial.id);
-    std::erase_if(cells, [](const auto& cell) { return cell.second.trials.size() < 2; });
-    std::map<std::string, std::string> cell_of;
-    for (const PlanFile::Entry& trial : plan.trials)
-        if (cells.contains(trial.cell)) cell_of[trial.id] = trial.cell;
-    look_up(cells, cell_of, done, earlier_table);
-
-    std::map<std::string, double> result;
-    bool all_known = true;
-    for (const auto& [name, cell] : cells) {
-        all_known = all_known && cell.as_earlier;
-        if (cell.as_earlier && cell.earlier.is_number()) result[name] = cell.earlier.get<double>();
+CellVariances cell_variances(const PlanFile& plan, const JobStore& store, const DonePictures& done,
+                             const CellVariances& earlier) {
+    CellVariances all;
+    std::map<std::string, CellTrials> fresh;
+    for (const auto& [name, trials] : cells_of(plan, done)) {
+        const auto known = earlier.find(name);
+        if (known != earlier.end() && known->second.pictures == hash_of(trials, done))
+            all.insert(*known);
+        else
+            fresh.emplace(name, trials);
     }
     // The table of a sweep that was stopped does without.
-    if (all_known || interrupt_requested()) return result;
-    const json fresh = json::parse(
-        run_in_child([&](const ChildProcess::Tell&) { return variances_of(cells, store).dump(); }));
-    for (const auto& [name, value] : fresh.items()) result[name] = value.get<double>();
-    return result;
+    if (fresh.empty() || interrupt_requested()) return all;
+    const json means = json::parse(
+        run_in_child([&](const ChildProcess::Tell&) { return variances_of(fresh, store).dump(); }));
+    for (const auto& [name, trials] : fresh) {
+        CellVariance& variance = all[name];
+        variance.pictures = hash_of(trials, done);
+        if (means.at(name).is_number()) variance.mean = means.at(name).get<double>();
+    }
+    return all;
 }
 
 }  // namespace caustics

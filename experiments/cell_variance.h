@@ -1,7 +1,7 @@
 #pragma once
 
-#include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "experiments/job_store.h"
@@ -9,15 +9,23 @@
 
 namespace caustics {
 
-/// When each done trial ended, by id: tells whether a picture is still the same.
-using DoneTrials = std::map<std::string, std::string>;
+/// How the pictures of a cell vary, one for each seed (repeats show the same picture again).
+struct CellVariance {
+    std::string pictures;  ///< hash of those it was computed from
+    /// Mean over reached pixels and channels of the sample variance of the caustic; empty when no
+    /// pixel is reached.
+    std::optional<double> mean;
+};
 
-/// By cell: the mean over reached pixels and channels of the sample variance of the caustic over the
-/// seeds of the cell's done trials (repeats show the same picture again and are left out). Taken
-/// from the table `records.jsonl` of an earlier run where the same trials made it; else computed
-/// from the pictures, in a child process.
-std::map<std::string, double> cell_variances(const PlanFile& plan, const JobStore& store,
-                                             const DoneTrials& done,
-                                             const std::filesystem::path& earlier_table);
+/// By cell; cells of fewer than two seeds have none.
+using CellVariances = std::map<std::string, CellVariance>;
+
+/// The hash of the picture of each done trial, by id.
+using DonePictures = std::map<std::string, std::string>;
+
+/// Those of a plan's cells: as they were where the pictures are the same, else computed from the
+/// pictures in a child process. Cells to compute are left out once somebody asked to stop.
+CellVariances cell_variances(const PlanFile& plan, const JobStore& store, const DonePictures& done,
+                             const CellVariances& earlier);
 
 }  // namespace caustics

@@ -99,6 +99,24 @@ std::string csv_line(const std::vector<std::string>& cells) {
     return line + '\n';
 }
 
+std::vector<std::string> take_csv_line(std::string_view& text) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    std::size_t i = 0;
+    for (; i < text.size() && (quoted || text[i] != '\n'); ++i) {
+        const bool doubled = quoted && text.substr(i, 2) == "\"\"";
+        if (doubled) ++i;  // stands for one quote
+        if (text[i] == '"' && !doubled)
+            quoted = !quoted;
+        else if (text[i] == ',' && !quoted)
+            cells.emplace_back();
+        else
+            cells.back() += text[i];
+    }
+    text.remove_prefix(std::min(i + 1, text.size()));
+    return cells;
+}
+
 std::size_t NumberTable::column(const std::string& name) const {
     return static_cast<std::size_t>(std::ranges::find(header, name) - header.begin());
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace caustics {
@@ -14,6 +15,8 @@ std::string shortest(float value);
 /// A cell, quoted where its text needs it (RFC 4180).
 std::string csv_cell(const std::string& text);
 std::string csv_line(const std::vector<std::string>& cells);
+/// Takes the first line of a CSV text (RFC 4180) off it: its cells.
+std::vector<std::string> take_csv_line(std::string_view& text);
 
 /// A table of numbers with named columns, as `probe` reads it.
 struct NumberTable {

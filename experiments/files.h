@@ -10,6 +10,10 @@ namespace caustics {
 /// The content of a file. Throws InputError when it cannot be read.
 std::string read_whole_file(const std::filesystem::path& file);
 
+/// Tells a file from what it was: its number, its size, and when it was last written and last
+/// changed in any way (which no program can choose). Empty when it is not there.
+std::string file_stamp(const std::filesystem::path& file);
+
 /// Writes to standard output; throws InputError when that fails (a full disk, a closed pipe).
 void write_stdout(const std::string& text);
 

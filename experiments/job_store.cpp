@@ -53,7 +53,7 @@ void JobStore::prepare() const {
 }
 
 std::optional<nlohmann::json> JobStore::record(const std::string& id) const {
-    const fs::path file = trials_ / id / "record.json";
+    const fs::path file = record_of(id);
     if (!fs::exists(file)) return {};
     nlohmann::json record = nlohmann::json::parse(read_whole_file(file), nullptr, false);
     if (!record.is_object() || record.value("trial", "") != id || !record.contains("status"))

@@ -21,6 +21,9 @@ public:
     /// The record of a finished trial. Throws InputError when it is there but broken.
     std::optional<nlohmann::json> record(const std::string& id) const;
     std::filesystem::path folder_of(const std::string& id) const { return trials_ / id; }
+    std::filesystem::path record_of(const std::string& id) const {
+        return trials_ / id / "record.json";
+    }
     std::filesystem::path image_of(const std::string& id) const {
         return trials_ / id / "image.exr";
     }

@@ -158,16 +158,17 @@ std::vector<json> record_row(const json& record, const std::vector<std::string>&
     return row;
 }
 
-std::string csv_line(const std::vector<json>& row) {
+std::vector<std::string> csv_cells(const std::vector<json>& row) {
     std::vector<std::string> cells;
     for (const json& value : row) cells.push_back(cell(value));
-    return csv_line(cells);
+    return cells;
 }
 
 std::string json_line(const std::vector<json>& row, const std::vector<std::string>& columns) {
-    nlohmann::ordered_json line;
-    for (std::size_t i = 0; i < row.size(); ++i) line[columns[i]] = row[i];
-    return line.dump() + "\n";
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+        line += (i == 0 ? "{" : ",") + json(columns[i]).dump() + ":" + row[i].dump();
+    return line + "}\n";
 }
 
 }  // namespace caustics

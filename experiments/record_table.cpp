@@ -2,10 +2,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/hash.h"
 #include "core/whole_file.h"
 #include "experiments/cell_variance.h"
 #include "experiments/csv.h"
+#include "experiments/files.h"
+#include "experiments/interrupt.h"
 #include "experiments/record.h"
+#include "experiments/table_index.h"
+#include "experiments/trial_rows.h"
 
 namespace caustics {
 
@@ -13,43 +18,82 @@ namespace {
 
 using nlohmann::json;
 
-bool is_done(const json& record) { return record.value("status", "") == "done"; }
+/// A file that is whole or absent, and the checksum of what is in it.
+class SummedFile {
+public:
+    explicit SummedFile(const std::filesystem::path& file) : file_(file) {}
+    void write(const std::string& text) {
+        file_.write(text);
+        sum_ = fnv1a(text, sum_);
+        size_ += text.size();
+    }
+    std::size_t size() const { return size_; }
+    std::string commit() {
+        file_.commit();
+        return hex(sum_);
+    }
 
-DoneTrials done_trials(const JobStore& store, const PlanFile& plan) {
-    DoneTrials done;
+private:
+    WholeFile file_;
+    std::uint64_t sum_ = fnv1a("");
+    std::size_t size_ = 0;
+};
+
+DonePictures done_pictures(const TrialRows& rows, const PlanFile& plan) {
+    DonePictures done;
     for (const PlanFile::Entry& trial : plan.trials) {
-        const std::optional<json> record = store.record(trial.id);
-        if (record && is_done(*record)) done[trial.id] = record->value("finished", "");
+        const std::optional<TableRow> row = rows.row(trial.id);
+        if (row && row->text("status") == "done") done[trial.id] = row->text("picture_hash");
     }
     return done;
+}
+
+/// The record that a row is to be made of; its stamp is of the file before it was read.
+struct RecordNow {
+    std::string stamp;
+    std::optional<json> record;
+};
+
+RecordNow record_now(const JobStore& store, const std::string& trial,
+                     const std::map<std::string, json>& unfinished) {
+    const auto left_nothing = unfinished.find(trial);
+    if (left_nothing != unfinished.end()) return {"", left_nothing->second};
+    std::string stamp = file_stamp(store.record_of(trial));
+    return {stamp, store.record(trial)};
 }
 
 }  // namespace
 
 void write_records(const std::filesystem::path& folder, const JobStore& store, const PlanFile& plan,
                    const std::map<std::string, json>& unfinished,
-                   const std::function<void(const json& record)>& visit) {
-    const std::filesystem::path lines_file = folder / "records.jsonl";
-    const std::map<std::string, double> variance =
-        cell_variances(plan, store, done_trials(store, plan), lines_file);
+                   const std::function<void(const TableRow& row)>& visit) {
+    const TrialRows rows(folder, store);
+    if (unfinished.empty() && rows.are_the_table_of(plan)) return rows.visit_table(visit);
+
+    TableIndex index;
+    index.variances = cell_variances(plan, store, done_pictures(rows, plan), rows.variances());
+    index.complete = unfinished.empty() && !interrupt_requested();
     const std::vector<std::string> columns = record_columns(plan.swept);
-    WholeFile table(folder / "records.csv");
-    WholeFile lines(lines_file);
+    SummedFile table(folder / "records.csv");
+    SummedFile lines(folder / "records.jsonl");
     table.write(csv_line(columns));
     for (const PlanFile::Entry& trial : plan.trials) {
-        std::optional<json> record = store.record(trial.id);
-        const auto left_nothing = unfinished.find(trial.id);
-        if (left_nothing != unfinished.end()) record = left_nothing->second;
-        if (!record) continue;
-        const auto of_cell = variance.find(trial.cell);
-        if (of_cell != variance.end() && is_done(*record)) (*record)["variance"] = of_cell->second;
-        const std::vector<json> row = record_row(*record, columns);
-        table.write(csv_line(row));
+        RecordNow now = record_now(store, trial.id, unfinished);
+        if (!now.record) continue;
+        const auto of_cell = index.variances.find(trial.cell);
+        if (of_cell != index.variances.end() && of_cell->second.mean &&
+            now.record->at("status") == "done")
+            (*now.record)["variance"] = *of_cell->second.mean;
+        index.rows.push_back({trial.id, now.stamp, table.size()});
+        const std::vector<json> row = record_row(*now.record, columns);
+        const std::vector<std::string> cells = csv_cells(row);
+        table.write(csv_line(cells));
         lines.write(json_line(row, columns));
-        visit(*record);
+        visit({columns, cells});
     }
-    table.commit();
-    lines.commit();
+    index.csv = table.commit();
+    index.jsonl = lines.commit();
+    write_table_index(index, folder);
 }
 
 }  // namespace caustics

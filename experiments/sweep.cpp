@@ -82,7 +82,7 @@ public:
         }
         progress_.reset();
         if (options_.only_references) return broken_references_.empty() ? 0 : 1;
-        SweepSummary summary;
+        SweepSummary summary(plan_.swept);
         write_table(&summary);
         const fs::path figures = figures_folder();
         fs::create_directories(figures);
@@ -253,8 +253,8 @@ private:
 
     void write_table(SweepSummary* summary) const {
         write_records(options_.folder, store_, plan_file(plan_), unfinished_,
-                      [&](const json& record) {
-                          if (summary != nullptr) summary->add(record);
+                      [&](const TableRow& row) {
+                          if (summary != nullptr) summary->add(row);
                       });
     }
 

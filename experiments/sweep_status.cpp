@@ -4,31 +4,30 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
 #include "experiments/environment.h"
+#include "experiments/trial_rows.h"
 
 namespace caustics {
 
 namespace {
-
-using nlohmann::json;
 
 bool must_run(const std::string& status, const SweepOptions& options) {
     const bool failed = status == "failed" || status == "timeout";
     return status.empty() || options.force || (options.rerun_failed && failed);
 }
 
-void take_note(SweepStatus& all, const Trial& trial, const json& record, const JobStore& store) {
-    const std::string version = record.value("code_version", "");
+void take_note(SweepStatus& all, const Trial& trial, const TableRow& row, const JobStore& store) {
+    const std::string& version = row.text("code_version");
     if (version != code_version()) ++all.other_code[version];
-    if (all.statuses[trial.id] != "done" || !record.contains("elapsed_s")) return;
+    const std::string& status = all.statuses[trial.id] = row.text("status");
+    const std::optional<double> seconds = row.number("elapsed_s");
+    if (status != "done" || !seconds) return;
     std::error_code none;
     const auto bytes = std::filesystem::file_size(store.image_of(trial.id), none);
-    all.costs.add(trial,
-                  {record.at("elapsed_s").get<double>(), none ? 0 : static_cast<double>(bytes)});
+    all.costs.add(trial, {*seconds, none ? 0 : static_cast<double>(bytes)});
 }
 
 }  // namespace
@@ -74,12 +73,11 @@ std::string SweepStatus::code_warning() const {
 SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,
                          const JobStore& store) {
     SweepStatus all;
+    const TrialRows rows(options.folder, store);
     for (const Trial& trial : plan.trials) {
         try {
-            const std::optional<json> record = store.record(trial.id);
-            if (!record) continue;
-            all.statuses[trial.id] = record->at("status").get<std::string>();
-            take_note(all, trial, *record, store);
+            const std::optional<TableRow> row = rows.row(trial.id);
+            if (row) take_note(all, trial, *row, store);
         } catch (const InputError&) {
             all.broken.push_back(trial.id);
         }

@@ -30,7 +30,7 @@ struct SweepStatus {
     std::string code_warning() const;
 };
 
-/// Reads every record once.
+/// Looks at every trial once (TrialRows).
 SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options, const JobStore& store);
 
 }  // namespace caustics

@@ -4,51 +4,35 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <vector>
 
 #include "experiments/progress.h"
 
 namespace caustics {
 
-namespace {
-
-using nlohmann::json;
-
-std::optional<double> number(const json& record, const char* pointer) {
-    const json::json_pointer place(pointer);
-    if (!record.contains(place) || !record.at(place).is_number()) return {};
-    return record.at(place).get<double>();
-}
-
-std::string words_of(const json& record) {
-    std::string words = record.at("method").at("name").get<std::string>();
-    for (const auto& [key, value] : record.at("swept").items())
-        words += fmt::format(", {} {}", key,
-                             value.is_string() ? value.get<std::string>() : value.dump());
+std::string SweepSummary::words_of(const TableRow& row) const {
+    std::string words = row.text("method");
+    for (const std::string& key : swept_)
+        if (const std::string& value = row.text(key); !value.empty())
+            words += fmt::format(", {} {}", key, value);
     return words;
 }
 
-}  // namespace
-
-void SweepSummary::widen(Range& range, const json& record, const char* pointer) const {
-    const std::optional<double> value = number(record, pointer);
+void SweepSummary::Range::take_in(std::optional<double> value) {
     if (!value) return;
-    range.low = std::min(range.low, *value);
-    range.high = std::max(range.high, *value);
+    low = std::min(low, *value);
+    high = std::max(high, *value);
 }
 
-void SweepSummary::add(const json& record) {
-    ++statuses_[record.at("status").get<std::string>()];
-    widen(seconds_, record, "/seconds/total/wall");
-    widen(memory_, record, "/memory/peak_rss_bytes");
-    widen(reference_error_, record, "/reference/stderr");
-    if (record.at("method").at("name") != "none") widen(energy_, record, "/metrics/mean_ratio");
-    const std::optional<double> rmse = number(record, "/metrics/rmse");
+void SweepSummary::add(const TableRow& row) {
+    ++statuses_[row.text("status")];
+    seconds_.take_in(row.number("total_s"));
+    memory_.take_in(row.number("peak_rss_bytes"));
+    reference_error_.take_in(row.number("reference_stderr"));
+    if (row.text("method") != "none") energy_.take_in(row.number("mean_ratio"));
+    const std::optional<double> rmse = row.number("rmse");
     if (!rmse) return;
-    Best& best = best_of_scene_[record.at("scene").at("name").get<std::string>()];
-    if (*rmse < best.rmse) best = {*rmse, words_of(record)};
+    Best& best = best_of_scene_[row.text("scene")];
+    if (*rmse < best.rmse) best = {*rmse, words_of(row)};
 }
 
 std::string SweepSummary::Range::text() const {

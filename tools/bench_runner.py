@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Measures what the runner adds to a sweep's trials: time of a trivial trial beside that of `causticbench --version`,
-memory of the runner as trials go by, and the time of a finished sweep started again.
+memory of the runner as trials go by, and the time of a finished sweep started again, listed and merged.
 
 Usage: bench_runner.py [--trials N] [--program PATH] [-o DIR]     writes DIR/runner.json and runner.md (results/bench)
 """
@@ -64,6 +64,12 @@ def watched(command, folder, trials):
     return {"wall_s": wall, "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}, memory
 
 
+def forgetful(command, folder):
+    """As timed(), with every record to read."""
+    (folder / ".table").unlink()
+    return timed(command)
+
+
 def measure(program, trials):
     version = [timed([program, "--version"]) for _ in range(11)]
     with tempfile.TemporaryDirectory(prefix="bench-runner-") as scratch:
@@ -71,13 +77,18 @@ def measure(program, trials):
         sweep, trials = write_sweep(folder, trials)
         command = [program, "sweep", str(sweep), "-o", str(folder / "out")]
         run, memory = watched(command, folder, trials)
-        again = [timed(command) for _ in range(3)]
+        finished = {
+            "started again": [timed(command) for _ in range(3)],
+            "started again without `.table`": [forgetful(command, folder / "out") for _ in range(3)],
+            "`--list`": [timed(command + ["--list"]) for _ in range(3)],
+            "`--dry-run`": [timed(command + ["--dry-run"]) for _ in range(3)],
+            "`merge` into another folder": [timed([program, "merge", str(folder / "out"), "-o", str(folder / "all")])]}
     median = lambda runs: {key: statistics.median(one[key] for one in runs) for key in runs[0]}
-    version, again = median(version), median(again)
+    version, finished = median(version), {name: median(runs) for name, runs in finished.items()}
     per_trial = {key: value / trials for key, value in run.items()}
     return {"trials": trials, "version": version, "sweep": run, "per_trial": per_trial,
             "per_trial_over_version": {key: per_trial[key] / version[key] for key in version},
-            "memory": memory, "restart": again, "processors": len(os.sched_getaffinity(0)),
+            "memory": memory, "finished": finished, "processors": len(os.sched_getaffinity(0)),
             "load": os.getloadavg()[0]}
 
 
@@ -86,7 +97,7 @@ def report(result, command):
     growth = (memory[-1]["bytes"] - memory[0]["bytes"]) / (memory[-1]["trials"] - memory[0]["trials"])
     rows = [("`causticbench --version`", result["version"]), ("one of the trials", result["per_trial"]),
             ("... over `--version`", result["per_trial_over_version"]),
-            ("the finished sweep started again", result["restart"])]
+            *((f"a finished sweep: {name}", values) for name, values in result["finished"].items())]
     table = "\n".join(f"| {name} | {values['wall_s']:.3f} | {values['cpu_s']:.3f} |" for name, values in rows)
     return f"""# What the runner costs
 

@@ -25,6 +25,17 @@ TEST(Cells, AreQuotedWhereTheyMustBe) {
     EXPECT_EQ(csv_line({"a", "b,c", "d\"e", ""}), "a,\"b,c\",\"d\"\"e\",\n");
 }
 
+TEST(Cells, AreReadAsTheyWereWritten) {
+    const std::vector<std::string> first = {"a", "b,c", "d\"e\"", "", "\"", "two\nlines"};
+    const std::vector<std::string> second = {""};
+    const std::string written = csv_line(first) + csv_line(second) + "x,y";
+    std::string_view text = written;
+    EXPECT_EQ(take_csv_line(text), first);
+    EXPECT_EQ(take_csv_line(text), second);
+    EXPECT_EQ(take_csv_line(text), (std::vector<std::string>{"x", "y"})) << "without an end";
+    EXPECT_TRUE(text.empty());
+}
+
 class NumberTables : public testing::Test {
 protected:
     NumberTable read(const std::string& text) {
