@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace caustics {
 
@@ -18,5 +19,9 @@ public:
 private:
     int file_ = -1;
 };
+
+/// "process 12 on host" where another process holds the lock of a folder; else empty. Needs no
+/// leave to write there.
+std::string runner_at_work_on(const std::filesystem::path& folder);
 
 }  // namespace caustics

@@ -10,9 +10,11 @@
 
 #include "core/error.h"
 #include "experiments/files.h"
+#include "experiments/folder_lock.h"
 #include "experiments/job_store.h"
 #include "experiments/plan_file.h"
 #include "experiments/record_table.h"
+#include "experiments/trial_rows.h"
 
 namespace caustics {
 
@@ -54,6 +56,9 @@ std::string all(const Origins& origins) {
 std::vector<PlanFile> read_plans(const std::vector<fs::path>& folders) {
     std::vector<PlanFile> plans;
     for (const fs::path& folder : folders) {
+        if (const std::string runner = runner_at_work_on(folder); !runner.empty())
+            throw InputError(fmt::format("{}: a runner still works on it ({}); wait for it",
+                                         folder.string(), runner));
         plans.push_back(read_plan_of(folder));
         if (plans.back().trials != plans[0].trials)
             throw InputError(
@@ -66,16 +71,17 @@ std::vector<PlanFile> read_plans(const std::vector<fs::path>& folders) {
 
 void take_in(Survey& survey, const PlanFile& plan, const fs::path& folder) {
     const JobStore store(folder);
+    const TrialRows rows(folder, store);
     for (const PlanFile::Entry& trial : plan.trials) {
-        const std::optional<json> record = store.record(trial.id);
-        if (!record) continue;
+        const std::optional<TableRow> row = rows.row(trial.id);
+        if (!row) continue;
         const auto [place, is_new] = survey.folder_of.emplace(trial.id, folder);
         if (!is_new)
             throw InputError(fmt::format("{}: is in {} and in {}", trial.id, place->second.string(),
                                          folder.string()));
-        survey.code.emplace(record->at("code_version").get<std::string>(), folder.string());
-        survey.isa.emplace(record->at("isa").get<std::string>(), folder.string());
-        survey.cpu.emplace(record->value(json::json_pointer("/machine/cpu"), ""), folder.string());
+        survey.code.emplace(row->text("code_version"), folder.string());
+        survey.isa.emplace(row->text("isa"), folder.string());
+        survey.cpu.emplace(row->text("cpu"), folder.string());
     }
 }
 
@@ -141,7 +147,7 @@ void write_merged(const std::vector<fs::path>& folders, const PlanFile& plan, co
                [&](const fs::path& file) { return figures.contains(file.filename().string()); });
     write_plan(plan, target);
     write_whole_file(target / "environment.json", environments(folders));
-    write_records(target, JobStore(target), plan, {}, [](const json&) {});
+    write_records(target, JobStore(target), plan, {}, [](const TableRow&) {});
 }
 
 }  // namespace

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "core/error.h"
+#include "experiments/child_process.h"
 #include "experiments/files.h"
+#include "experiments/folder_lock.h"
 #include "experiments/job_store.h"
 #include "experiments/plan_file.h"
 #include "tests/support/temporary_folder.h"
@@ -113,6 +117,20 @@ TEST_F(Merges, RefuseFoldersThatDoNotBelongTogether) {
     EXPECT_NE(error().find("not the plan of"), std::string::npos) << error();
     fs::remove(two_ / "plan.json");
     EXPECT_NE(error().find("no results of a sweep"), std::string::npos) << error();
+}
+
+TEST_F(Merges, WaitForRunnersToEnd) {
+    const fs::path sign = folder_ / "locked";
+    const ChildProcess runner([&](const ChildProcess::Tell&) -> std::string {
+        const FolderLock lock(two_);
+        write_whole_file(sign, "");
+        while (true) pause();
+    });
+    while (!fs::exists(sign)) usleep(1000);
+    EXPECT_NE(error().find(fmt::format("{}: a runner still works on it (process {} on ",
+                                       two_.string(), runner.id())),
+              std::string::npos)
+        << error();
 }
 
 TEST_F(Merges, OverwriteNothing) {
