@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "experiments/progress.h"
 #include "experiments/sweep_status.h"
 
@@ -13,14 +15,16 @@ namespace fs = std::filesystem;
 
 constexpr double megabyte = 1e6;
 
-std::string trials_text(const SweepStatus& status, const SweepOptions& options) {
+std::string trials_text(const SweepStatus& status, const SweepOptions& options,
+                        std::size_t duplicates) {
     std::string text = fmt::format("{} planned", status.share.size());
     if (options.shard.count > 1)
         text += fmt::format(" in shard {}/{}", options.shard.index, options.shard.count);
     for (const char* each : {"done", "unsupported", "failed", "timeout"})
         if (const std::size_t count = status.count(each); count > 0)
             text += fmt::format(", {} {}", count, each);
-    return text + fmt::format("; {} to run", status.todo.size());
+    text += fmt::format("; {} to run", status.todo.size());
+    return text + (duplicates > 0 ? fmt::format(" ({} more are named twice)", duplicates) : "");
 }
 
 std::string time_text(const SweepStatus& status, const SweepOptions& options,
@@ -43,9 +47,10 @@ double free_bytes(fs::path folder) {
 
 std::string list_plan(const SweepPlan& plan, const SweepOptions& options) {
     const SweepStatus status = sweep_status(plan, options, JobStore(options.folder));
+    const std::set<const Trial*> share(status.share.begin(), status.share.end());
     std::string text;
     for (const Trial& trial : plan.trials) {
-        if (std::ranges::find(status.share, &trial) == status.share.end()) continue;
+        if (!share.contains(&trial)) continue;
         const auto found = status.statuses.find(trial.id);
         text += fmt::format("{:<12} {}\n", found == status.statuses.end() ? "todo" : found->second,
                             trial.id);
@@ -59,7 +64,7 @@ std::string dry_run(const SweepPlan& plan, const SweepOptions& options) {
     const std::optional<Cost> cost = status.cost();
     std::string text = fmt::format(
         "trials     {}\nreferences {} to render\ntime       {}\ndisk       {}{:.1f} MB are free\n",
-        trials_text(status, options), status.references(references).size(),
+        trials_text(status, options, plan.duplicates), status.references(references).size(),
         time_text(status, options, cost),
         cost ? fmt::format("pictures of about {:.1f} MB, ", cost->bytes / megabyte) : "",
         free_bytes(options.folder) / megabyte);
