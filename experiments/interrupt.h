@@ -2,7 +2,7 @@
 
 namespace caustics {
 
-/// From now on the first SIGINT or SIGTERM only asks the program to stop; the second one ends it.
+/// From now on SIGINT or SIGTERM only asks the program to stop; another, a second later, ends it.
 void catch_interrupts();
 /// Whether somebody asked.
 bool interrupt_requested();

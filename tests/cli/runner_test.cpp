@@ -113,6 +113,8 @@ TEST_F(Runner, DropsTheTrialAtWorkWhenAskedToStop) {
     support::Program program(arguments(write_sweep(endless)));
     wait_for(program, "environment.json");
     program.signal(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    program.signal(SIGTERM);  // as timeout(1) does
     EXPECT_EQ(program.wait().exit_code, 130);
     EXPECT_TRUE(fs::is_empty(fs::path(out_) / "trials"));
 }
