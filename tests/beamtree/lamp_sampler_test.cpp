@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "beamtree/beam_tree.h"
 #include "beamtree/light_sample.h"
+#include "core/exact_shape.h"
+#include "core/rng.h"
 #include "core/tessellate.h"
 #include "tests/support/build_scene.h"
+#include "tests/support/statistics.h"
 
 namespace caustics {
 namespace {
@@ -62,6 +67,41 @@ double true_irradiance(const Scene& scene, const Vec3& point, const Vec3& normal
                                    normal.dot(towards) / std::pow(distance, 4.0F));
     }
     return sum * light.sampler.area() * static_cast<double>(light.radiance.mean()) / (side * side);
+}
+
+// Points of the lamp's square, 32 x 32 cells of even area, come as often as the weight that they bring says,
+// and the weights' inverses make up the whole.
+TEST(LampSampler, SamplesFollowTheDensityThatTheirWeightsTell) {
+    constexpr std::size_t side = 32;
+    constexpr int draws = 200'000;
+    for (const Shape& lamp :
+         {support::sphere("ball", {0.3, 0, 0.6}, 0.2, support::diffuse(0)), cylinder()}) {
+        const Scene scene(lamp_below_a_mirror(lamp));
+        const auto& light = std::get<AreaLight>(scene.lights()[0]);
+        const LampSampler sampler(scene, light);
+        const Shape& shape = scene.shapes()[light.shape];
+        const Transform to_local = shape.to_world.inverse();
+        std::vector<double> counts(side * side), density(side * side);
+        Rng rng(1, Stage::test, 0);
+        for (int i = 0; i < draws; ++i) {
+            const float u0 = rng.next();
+            const LampSampler::Sample sample = sampler.sample(u0, rng.next());
+            Vec2d uv = exact_uv(shape, to_local * sample.position.cast<double>()).cast<double>();
+            if (shape.primitive == Primitive::sphere) uv.y() = (1 - std::cos(pi_d * uv.y())) / 2;
+            const auto cell = [](double u) {
+                return static_cast<std::size_t>(std::clamp(u, 0.0, 0.999999) * side);
+            };
+            const std::size_t at = cell(uv.x()) * side + cell(uv.y());
+            counts[at] += 1;
+            density[at] += 1 / static_cast<double>(sample.weight);
+        }
+        std::vector<double> expected;
+        for (std::size_t i = 0; i < counts.size(); ++i)
+            expected.push_back(counts[i] > 0 ? draws / double{side * side} * density[i] / counts[i]
+                                             : 0);
+        EXPECT_NEAR(std::accumulate(expected.begin(), expected.end(), 0.0), draws, 0.01 * draws);
+        EXPECT_GT(support::chi_square_p_value(counts, expected), 1e-3) << lamp.name;
+    }
 }
 
 // Sixteen points of a lamp tell what it shines onto a caster: right on average, and nearly right each
