@@ -69,6 +69,7 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
         if (set.path.size() <= 1 && !sees(scene_, ray.start, set.light)) continue;
         double density = refined_density(set, hit, point.position)
                              .value_or(hit.flux_share / std::max(hit.area, least_area));
+        density *= hit.coverage;
         // The caustic polygon lies on the test's plane; the receiver's is turned against it.
         density *= std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction) /
                                                 hit.plane_normal.dot(ray.direction)));

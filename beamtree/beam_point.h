@@ -48,6 +48,7 @@ struct BeamHit {
     Vec3 weights;             ///< barycentric, of the triangle's corners: where the light left
     double area = 0;          ///< of the caustic polygon [m^2], see test_beam
     double flux_share = 1;    ///< of the beam's flux that falls on it
+    double coverage = 1;      ///< of a square round the point; 1 where the point itself is asked
 };
 
 /// Does the point that the plane goes through lie inside the beam? Writes up to two hits (a polygon

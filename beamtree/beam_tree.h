@@ -28,6 +28,10 @@ struct BeamTreeParams : BeamParams {
     Tree hierarchy = Tree::quadtree;  ///< where the bound is two_slice and nothing is said: binned
     Leaf leaf = Leaf::n;              ///< with two_slice always k
     Intensity intensity = Intensity::area;
+    /// Side of the square round each point, on the tree's planes, over which its irradiance is averaged
+    /// exactly [m]; 0: at the point alone. Only with the bound two_slice; beams that spread too far for
+    /// a fixed plane, and polygons that the plane cuts, are asked at the point.
+    float footprint = 0;
 };
 
 /// Throws InputError for what cannot be used or is not built yet.

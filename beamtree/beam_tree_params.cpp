@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "beamtree/beam_tree.h"
 
 namespace caustics {
@@ -46,6 +48,15 @@ void read_tree(const JsonNode& node, BeamTreeParams& params) {
     }
 }
 
+void read_footprint(const JsonNode& footprint, BeamTreeParams& params) {
+    params.footprint = static_cast<float>(footprint.as_number());
+    const float area = params.footprint * params.footprint;
+    if (!(params.footprint > 0 && area > 0 && std::isfinite(area)))
+        footprint.fail("must be a length above 0 [m] (leave it out to ask at points)");
+    if (params.bound != Bound::two_slice)
+        footprint.fail("only the bound \"two_slice\" averages over squares of its planes");
+}
+
 }  // namespace
 
 void read(const JsonNode& node, BeamTreeParams& params) {
@@ -54,6 +65,7 @@ void read(const JsonNode& node, BeamTreeParams& params) {
     if (const auto intensity = node.find("intensity"))
         params.intensity =
             intensity->as_choice({"area", "refined"}) == 0 ? Intensity::area : Intensity::refined;
+    if (const auto footprint = node.find("footprint")) read_footprint(*footprint, params);
     read_beam_params(node, params);
     node.finish();
 }

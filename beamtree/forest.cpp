@@ -64,13 +64,15 @@ Hierarchy quadtree_of(const TracedScene& traced, const TreePlan& plan) {
     return quadtree(set, in_their_set(plan.beams), traced.caster(set.caster).mesh.patches);
 }
 
-SliceTree slice_tree(const Scene& scene, const TracedScene& traced, const TreePlan& plan, Isa isa) {
-    if (!plan.regular) return {{traced.sets, plan.beams, *plan.normal, scene.bounds()}, isa};
+SliceTree slice_tree(const Scene& scene, const TracedScene& traced, const TreePlan& plan,
+                     float footprint, Isa isa) {
+    SlicedBeams beams{traced.sets, plan.beams, *plan.normal, scene.bounds(), footprint};
+    if (!plan.regular) return {std::move(beams), isa};
     const Hierarchy hierarchy = quadtree_of(traced, plan);
-    std::vector<BeamNumber> beams;
+    beams.beams.clear();
     for (const std::uint32_t beam : hierarchy.order)
-        beams.push_back({plan.beams.front().set, beam});
-    return {{traced.sets, std::move(beams), *plan.normal, scene.bounds()}, hierarchy, isa};
+        beams.beams.push_back({plan.beams.front().set, beam});
+    return {std::move(beams), hierarchy, isa};
 }
 
 ConeTree cone_tree(const Scene& scene, const TracedScene& traced, const TreePlan& plan,
@@ -97,7 +99,7 @@ Forest::Forest(const Scene& scene, const TracedScene& traced, const BeamTreePara
     std::vector<std::optional<SliceTree>> slices(plans.size());
     parallel_for(options.threads, plans.size(), [&](std::size_t i, std::size_t) {
         if (plans[i].sliced)
-            slices[i].emplace(slice_tree(scene, traced, plans[i], options.isa));
+            slices[i].emplace(slice_tree(scene, traced, plans[i], params.footprint, options.isa));
         else
             cones[i].emplace(cone_tree(scene, traced, plans[i], params));
     });

@@ -21,8 +21,8 @@ SliceBox box_of(const SlicedTriangle& triangle) {
 
 class Widener {
 public:
-    Widener(const Hierarchy& from, std::span<const SlicedTriangle> triangles)
-        : from_(from), triangles_(triangles) {
+    Widener(const Hierarchy& from, std::span<const SlicedTriangle> triangles, float reach)
+        : from_(from), triangles_(triangles), reach_(reach) {
         SliceBox all;
         for (const SlicedTriangle& triangle : triangles) {
             all.extend(box_of(triangle));
@@ -49,7 +49,12 @@ private:
     struct Made {
         std::uint32_t reference;
         SliceBox box;
+        float begun_from = infinity;
     };
+
+    static std::uint32_t reference(std::size_t number, std::uint32_t taken) {
+        return static_cast<std::uint32_t>(number) | (taken - 1) << slice_count_shift;
+    }
 
     std::uint32_t size(std::uint32_t node) const {
         const Hierarchy::Node& n = from_.nodes[node];
@@ -59,16 +64,19 @@ private:
     Made make(std::uint32_t node, std::uint32_t depth) {
         made_.height = std::max(made_.height, depth);
         if (size(node) <= slice_width) return make_leaf(node);
-        const auto index = static_cast<std::uint32_t>(made_.nodes.size());
+        const std::size_t index = made_.nodes.size();
         made_.nodes.emplace_back();
         SliceNode wide{};
-        Made made{index, {}};
-        for (const std::uint32_t child : children_of(node)) {
-            const Made below = make(child, depth + 1);
+        const std::vector<std::uint32_t> children = children_of(node);
+        const auto taken = static_cast<std::uint32_t>(children.size());
+        Made made{reference(index, taken), {}};
+        for (std::uint32_t i = 0; i < taken; ++i) {
+            const Made below = make(children[i], depth + 1);
             made.box.extend(below.box);
-            add(below, wide);
+            made.begun_from = std::min(made.begun_from, below.begun_from);
+            put(below, wide, i);
         }
-        for (std::uint32_t i = wide.count; i < slice_width; ++i)
+        for (std::uint32_t i = taken; i < slice_width; ++i)
             for (int axis = 0; axis < 2; ++axis) {
                 wide.low[axis][i] = infinity;
                 wide.high[axis][i] = -infinity;
@@ -98,26 +106,26 @@ private:
         }
     }
 
-    void add(const Made& child, SliceNode& wide) const {
-        const std::uint32_t i = wide.count++;
+    void put(const Made& child, SliceNode& wide, std::uint32_t i) const {
         for (int axis = 0; axis < 2; ++axis) {
             const float low = child.box.low(axis, 0);
             const float high = child.box.high(axis, 0);
-            wide.low[axis][i] = low - margin_;
+            wide.low[axis][i] = low - margin_ - reach_;
             wide.low_growth[axis][i] = child.box.low(axis, 1) - low;
-            wide.high[axis][i] = high + margin_;
+            wide.high[axis][i] = high + margin_ + reach_;
             wide.high_growth[axis][i] = child.box.high(axis, 1) - high;
         }
+        wide.begun_from[i] = child.begun_from;
         wide.child[i] = child.reference;
     }
 
     Made make_leaf(std::uint32_t node) {
         const std::uint32_t first = first_of_[from_.nodes[node].first_beam];
+        const std::uint32_t taken = size(node);
         SliceLeaf leaf{};
-        leaf.count = size(node);
         std::fill_n(leaf.slack, slice_width, -infinity);
-        Made made{static_cast<std::uint32_t>(made_.leaves.size()) | slice_leaf_bit, {}};
-        for (std::uint32_t i = 0; i < leaf.count; ++i) {
+        Made made{reference(made_.leaves.size(), taken) | slice_leaf_bit, {}};
+        for (std::uint32_t i = 0; i < taken; ++i) {
             const SlicedTriangle& triangle = triangles_[first + i];
             const SliceBox box = box_of(triangle);
             made.box.extend(box);
@@ -132,9 +140,12 @@ private:
                 width = std::max({width, box.size(axis, 0), box.size(axis, 1)});
             }
             made_.travel += std::hypot(leaf.growth[0][0][i], leaf.growth[0][1][i]);
-            // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin.
-            leaf.slack[i] = margin_ * (5 * width + 4 * margin_);
+            // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin; and
+            // moving the point by the reach adds the reach times both extents of the edge.
+            leaf.slack[i] = margin_ * (5 * width + 4 * (margin_ + reach_)) + 2 * reach_ * width;
+            leaf.begun_from[i] = triangle.begun_from;
             leaf.whole_from[i] = triangle.whole_from;
+            made.begun_from = std::min(made.begun_from, triangle.begun_from);
             leaf.beam[i] = triangle.beam;
         }
         for (const int plane : {0, 1})
@@ -146,14 +157,16 @@ private:
     const Hierarchy& from_;
     std::span<const SlicedTriangle> triangles_;
     std::vector<std::uint32_t> first_of_;  ///< triangles of the beams in their order, and the end
+    float reach_;
     float margin_ = 0;
     SliceNodes made_;
 };
 
 }  // namespace
 
-SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles) {
-    return Widener(hierarchy, triangles).run();
+SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles,
+                 float reach) {
+    return Widener(hierarchy, triangles, reach).run();
 }
 
 }  // namespace caustics

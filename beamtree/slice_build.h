@@ -12,7 +12,8 @@ namespace caustics {
 /// A triangle of a beam as a leaf holds it.
 struct SlicedTriangle {
     std::array<RaySlices, 3> corners;
-    float whole_from = 0;    ///< share of the way down from which all its rays have begun
+    float begun_from = 0;    ///< share of the way down from which one of its rays has begun
+    float whole_from = 0;    ///< and from which all have
     std::uint32_t beam = 0;  ///< as the tree numbers them
 };
 
@@ -27,7 +28,9 @@ struct SliceNodes {
 };
 
 /// Makes a hierarchy eight wide by opening the child with most triangles again and again.
-/// `triangles` are in the order of the hierarchy's beams; those of one beam side by side.
-SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles);
+/// `triangles` are in the order of the hierarchy's beams; those of one beam side by side. A walk finds
+/// what comes within `reach` of a point along either axis [m].
+SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles,
+                 float reach);
 
 }  // namespace caustics

@@ -12,8 +12,11 @@ namespace caustics {
 /// share t of the way from the upper plane to the lower one a quantity is top + t * growth.
 constexpr size_t slice_width = 8;
 
-/// Which child: a node, or with this bit a leaf.
+/// Which child: the number of a node, or with this bit of a leaf; and how many places of it are
+/// taken, less one.
 constexpr uint32_t slice_leaf_bit = 1U << 31;
+constexpr uint32_t slice_count_shift = 28;
+constexpr uint32_t slice_number_mask = (1U << slice_count_shift) - 1;
 
 /// Boxes that hold the children's beams at every height between the planes. Places that are not
 /// taken have boxes that hold nothing.
@@ -22,8 +25,8 @@ struct alignas(64) SliceNode {
     float low_growth[2][slice_width];
     float high[2][slice_width];
     float high_growth[2][slice_width];
+    float begun_from[slice_width];  ///< share above which none of the child's rays has begun
     uint32_t child[slice_width];
-    uint32_t count;
 };
 
 /// Triangles of beams: where the rays of their corners meet the planes.
@@ -33,11 +36,11 @@ struct alignas(64) SliceLeaf {
     /// Twice an area: edges that pass the point on the wrong side by less may be rounding. Negative
     /// in places that are not taken.
     float slack[slice_width];
-    /// The share t from which on all three rays have begun. Above it the triangle is clipped, which
-    /// this test leaves to the exact one.
+    /// The shares t from which on one of the three rays has begun, and all. Between the two the
+    /// triangle is clipped, which this test leaves to the exact one.
+    float begun_from[slice_width];
     float whole_from[slice_width];
     uint32_t beam[slice_width];  ///< as the tree numbers them
-    uint32_t count;
 };
 
 struct SliceView {

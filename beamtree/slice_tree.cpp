@@ -6,11 +6,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "beamtree/beam_square.h"
 #include "beamtree/slice_build.h"
 #include "beamtree/slice_hierarchy.h"
 
 namespace caustics {
 namespace {
+
+constexpr float rounding = 1e-6F;  // more than a share is rounded by
 
 WalkSlices walk_for([[maybe_unused]] Isa isa) {
 #ifdef CAUSTICS_X86_KERNELS
@@ -80,12 +83,16 @@ public:
             SlicedTriangle triangle;
             const std::array<std::uint32_t, 3> corners = {beam.corners[0], beam.corners[1 + i],
                                                           beam.corners[2 + i]};
+            double highest = frame_.bottom();
             double lowest = frame_.top();
             for (std::size_t c = 0; c < 3; ++c) {
                 triangle.corners[c] = slices_[number.set][corners[c]];
-                lowest = std::min(lowest, frame_.height(set.rays[corners[c]].position));
+                const double height = frame_.height(set.rays[corners[c]].position);
+                highest = std::max(highest, height);
+                lowest = std::min(lowest, height);
             }
-            triangle.whole_from = static_cast<float>(frame_.share(lowest)) + 1e-6F;
+            triangle.begun_from = static_cast<float>(frame_.share(highest)) - rounding;
+            triangle.whole_from = static_cast<float>(frame_.share(lowest)) + rounding;
             triangle.beam = place;
             triangles.push_back(triangle);
         }
@@ -123,14 +130,17 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa)
     : SliceTree(std::move(beams), &hierarchy, isa) {}
 
 SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa)
-    : frame_(frame_of(beams)), plane_(Vec3::Zero(), beams.normal), walk_(walk_for(isa)) {
+    : frame_(frame_of(beams)),
+      half_footprint_(static_cast<double>(beams.footprint) / 2),
+      plane_(Vec3::Zero(), beams.normal),
+      walk_(walk_for(isa)) {
     const Slicer slicer(beams, frame_);
     const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer);
     std::vector<SlicedTriangle> triangles;
     triangles.reserve(beams.beams.size());
     for (std::uint32_t place = 0; place < beams.beams.size(); ++place)
         slicer.add_triangles(beams.beams[place], place, triangles);
-    SliceNodes made = widen(hierarchy, triangles);
+    SliceNodes made = widen(hierarchy, triangles, beams.footprint / 2);
     nodes_ = std::move(made.nodes);
     leaves_ = std::move(made.leaves);
     root_ = made.root;
@@ -227,8 +237,12 @@ void SliceTree::find(const Group& group, std::span<const BeamSet> sets,
             last = candidate;
             const BeamNumber& number = beams_[candidate.beam];
             plane.move_to(*group.position[candidate.point]);
-            find_in_beam(sets[number.set], number, plane, hits[group.number[candidate.point]],
-                         counts);
+            std::vector<BeamHit>& found_here = hits[group.number[candidate.point]];
+            if (half_footprint_ > 0)
+                find_on_square(sets[number.set], number, plane, {frame_, half_footprint_},
+                               found_here, counts);
+            else
+                find_in_beam(sets[number.set], number, plane, found_here, counts);
         }
     }
     counts.cone_point_tests += walk.tests;

@@ -18,6 +18,7 @@ struct SlicedBeams {
     std::vector<BeamNumber> beams;  ///< at least one; all of their rays come down to the planes
     Vec3 normal;                    ///< of the planes, against the light
     Box receivers;                  ///< where receiver points can be
+    float footprint = 0;            ///< side of the squares round points that are asked for [m]
 };
 
 /// A tree of beams, each node bounded by its rays' boxes on two planes across the normal: above all
@@ -57,6 +58,7 @@ private:
 
     std::vector<BeamNumber> beams_;  ///< in the order of the leaves
     SliceFrame frame_;
+    double half_footprint_;
     TestPlane plane_;  ///< the direction of all planes
     WalkSlices walk_;
     std::vector<SliceNode> nodes_;

@@ -17,15 +17,16 @@ void walk_slices(const SliceView& tree, SliceWalk& walk) {
     const size_t room = walk.found_room - slice_width * walk.point_count;
     while (stacked > 0 && count <= room) {
         const uint32_t next = stack[--stacked];
+        const uint32_t taken = (next >> slice_count_shift) % slice_width + 1;
         if ((next & slice_leaf_bit) == 0) {
-            const SliceNode& node = tree.nodes[next];
-            tests += node.count;
+            const SliceNode& node = tree.nodes[next & slice_number_mask];
+            tests += taken;
             for (uint32_t met = eight.meets(node); met != 0; met &= met - 1)
                 stack[stacked++] = node.child[__builtin_ctz(met)];
             continue;
         }
-        const SliceLeaf& leaf = tree.leaves[next & ~slice_leaf_bit];
-        tests += static_cast<uint64_t>(leaf.count) * walk.point_count;
+        const SliceLeaf& leaf = tree.leaves[next & slice_number_mask];
+        tests += static_cast<uint64_t>(taken) * walk.point_count;
         for (uint32_t point = 0; point < walk.point_count; ++point)
             for (uint32_t held = Eight::may_hold(leaf, walk.points[point]); held != 0;
                  held &= held - 1)

@@ -17,7 +17,8 @@ public:
     }
 
     uint32_t meets(const SliceNode& node) const {
-        return bits(_mm256_and_ps(meets(node, 0), meets(node, 1)));
+        const __m256 begun = not_above(_mm256_load_ps(node.begun_from), most_share_);
+        return bits(_mm256_and_ps(begun, _mm256_and_ps(meets(node, 0), meets(node, 1))));
     }
 
     static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point) {
@@ -39,7 +40,8 @@ public:
         const __m256 most = _mm256_max_ps(_mm256_max_ps(a, b), c);
         const __m256 holds = _mm256_or_ps(not_above(minus, least), not_above(most, slack));
         const __m256 cut = _mm256_cmp_ps(share, _mm256_load_ps(leaf.whole_from), _CMP_LT_OQ);
-        return bits(_mm256_or_ps(holds, cut));
+        const __m256 begun = not_above(_mm256_load_ps(leaf.begun_from), share);
+        return bits(_mm256_and_ps(begun, _mm256_or_ps(holds, cut)));
     }
 
 private:

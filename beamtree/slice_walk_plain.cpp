@@ -14,7 +14,7 @@ public:
     uint32_t meets(const SliceNode& node) const {
         uint32_t bits = 0;
         for (unsigned i = 0; i < slice_width; ++i) {
-            bool meets = true;
+            bool meets = node.begun_from[i] <= walk_.most_share;
             for (unsigned axis = 0; axis < 2; ++axis) {
                 const auto at = [&](const float(&top)[2][slice_width],
                                     const float(&growth)[2][slice_width],
@@ -45,7 +45,9 @@ public:
             const float c = x[2] * y[0] - y[2] * x[0];
             const float slack = leaf.slack[i];
             const bool holds = -slack <= least(least(a, b), c) || most(most(a, b), c) <= slack;
-            bits |= (holds || point.share < leaf.whole_from[i] ? 1U : 0U) << i;
+            const bool cut = point.share < leaf.whole_from[i];
+            const bool begun = leaf.begun_from[i] <= point.share;
+            bits |= (begun && (holds || cut) ? 1U : 0U) << i;
         }
         return bits;
     }

@@ -73,6 +73,7 @@ json describe_params(const BeamTreeParams& p) {
         {"mesh_resolution", p.mesh_resolution},
         {"max_bounces", p.max_bounces}};
     if (p.bound == Bound::hybrid) all["spread_threshold"] = p.spread_threshold;
+    if (p.footprint > 0) all["footprint"] = p.footprint;
     return all;
 }
 

@@ -62,6 +62,17 @@ TEST(BeamTreeParams, TwoSliceBringsWhatFitsIt) {
               std::string::npos);
 }
 
+TEST(BeamTreeParams, AveragesOverSquaresOfTheSlicesPlanes) {
+    EXPECT_EQ(params(R"({"bound": "two_slice"})").footprint, 0);
+    EXPECT_EQ(params(R"({"bound": "two_slice", "footprint": 0.5})").footprint, 0.5F);
+    EXPECT_NE(error(R"({"footprint": 0.5})").find("two_slice"), std::string::npos);
+    for (const char* const value : {"0", "-1", "1e30", "1e-30"})
+        EXPECT_NE(error(R"({"bound": "two_slice", "footprint": )" + std::string(value) + "}")
+                      .find("above 0"),
+                  std::string::npos)
+            << value;
+}
+
 TEST(BeamTreeParams, NameTheAlternatives) {
     EXPECT_NE(error(R"({"bound": "tripple"})").find("sphere_swept"), std::string::npos);
     EXPECT_NE(error(R"({"intensity": "fine"})").find("refined"), std::string::npos);

@@ -164,6 +164,25 @@ TEST(SliceTree, GivesThePapersLightWhereTheNormalsAreOne) {
     EXPECT_LT(2 * first->counters.at("beam_point_tests"), paper.counters.at("beam_point_tests"));
 }
 
+// High waves send light sideways to other waves. Its beams begin at all depths along their tree's
+// axis, and those that begin below a point are left out: exact tests would be dozens a hit.
+TEST(SliceTree, LeavesOutBeamsThatBeginBelowThePoint) {
+    SineHeightfield high = waves();
+    for (SineWave& wave : high.waves) wave.amplitude *= 3;
+    SceneDesc desc = pool_desc(1);
+    desc.shapes[0] = support::mesh("water", tessellate_heightfield(high, 48), Transform::Identity(),
+                                   support::glass(1.333F));
+    const Scene scene(std::move(desc));
+    BeamTreeParams params = params_of(Bound::two_slice);
+    params.max_bounces = 16;
+    const Answer slices = ask(scene, params, {}, -1, 2000);
+    const auto hits = slices.counters.at("beam_point_hits");
+    EXPECT_LT(slices.counters.at("beam_point_tests"), 6 * hits);
+    params.bound = Bound::sphere_swept;
+    params.leaf = BeamTreeParams::Leaf::k;
+    EXPECT_EQ(slices.irradiance, ask(scene, params, {}, -1, 2000).irradiance);
+}
+
 // Lights share a tree, unless it follows the quadtree of the mesh.
 TEST(SliceTree, HoldsTheBeamsOfAllLights) {
     SceneDesc desc = pool_desc(8);

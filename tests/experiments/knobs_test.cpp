@@ -210,8 +210,8 @@ TEST(Knobs, AreAllTurnedAbove) {
           "filter", "max_bounces", "emission", "interaction", "tree", "tables", "passes", "save",
           "load"}},  // these three: photonmap/progressive_test, kept_photons_test
         {"beamtree",
-         {"bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity", "polygons",
-          "light_samples", "mesh_resolution", "max_bounces"}},
+         {"bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity", "footprint",
+          "polygons", "light_samples", "mesh_resolution", "max_bounces"}},
         {"causticpolygons",
          {"polygons", "light_samples", "mesh_resolution", "max_bounces", "receiver_resolution"}},
         {"illuminationmap", {"emitted", "resolution", "max_bounces"}},

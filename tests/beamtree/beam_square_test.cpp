@@ -1,0 +1,122 @@
+#include "beamtree/beam_square.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "beamtree/beam_tree.h"
+#include "tests/beamtree/beam_scenes.h"
+
+namespace caustics {
+namespace {
+
+BeamTreeParams averaged(float footprint, Intensity intensity = Intensity::area) {
+    BeamTreeParams params;
+    params.bound = Bound::two_slice;
+    params.leaf = BeamTreeParams::Leaf::k;
+    params.hierarchy = BeamTreeParams::Tree::binned;
+    params.max_bounces = 1;
+    params.footprint = footprint;
+    params.intensity = intensity;
+    return params;
+}
+
+// Waves three times as high as elsewhere: the caustic on the floor is folded.
+SceneDesc folded_pool() {
+    SineHeightfield high = waves();
+    for (SineWave& wave : high.waves) wave.amplitude *= 3;
+    SceneDesc desc = pool_desc(1);
+    desc.shapes[0] = support::mesh("water", tessellate_heightfield(high, 32), Transform::Identity(),
+                                   support::glass(1.333F));
+    return desc;
+}
+
+/// Irradiance round points of the floor, one a row.
+std::vector<double> irradiance(const Scene& scene, const BeamTreeParams& params,
+                               const std::vector<Vec2>& at) {
+    std::vector<ReceiverPoint> points;
+    for (const Vec2& p : at)
+        points.push_back(support::probe(scene, 1, {p.x(), p.y(), -1}, Vec3d::UnitZ(), 0));
+    std::vector<double> found;
+    for (const Estimate& one : support::irradiance(*build(scene, params, {}), points))
+        found.push_back(static_cast<double>(one.value.mean()));
+    return found;
+}
+
+// Middles of the squares that make up one with this half side, `count` along each side.
+std::vector<Vec2> middles(int count, float half, const Vec2& centre = Vec2::Zero()) {
+    std::vector<Vec2> all;
+    const float step = 2 * half / static_cast<float>(count);
+    for (int j = 0; j < count; ++j)
+        for (int i = 0; i < count; ++i)
+            all.push_back(centre + Vec2((static_cast<float>(i) + 0.5F) * step - half,
+                                        (static_cast<float>(j) + 0.5F) * step - half));
+    return all;
+}
+
+double sum(const std::vector<double>& values) {
+    double total = 0;
+    for (const double value : values) total += value;
+    return total;
+}
+
+// Squares that tile the floor get all of the light, folds and all: no sampling, no noise.
+TEST(BeamSquare, GetsAllOfTheFlux) {
+    for (const PolygonKind kind : {PolygonKind::triangle, PolygonKind::quad}) {
+        const Scene scene(folded_pool());
+        BeamTreeParams params = averaged(0.1F);
+        params.polygons = kind;
+        double sent = 0;
+        for (const BeamSet& set :
+             trace_all_beams(scene, caster_meshes(scene, 2, kind), sample_lights(scene, 1, 1), {}))
+            for (const Beam& beam : set.beams)
+                sent += set.refracted ? static_cast<double>(beam.flux.mean()) : 0.0;
+        const double landed = 0.01 * sum(irradiance(scene, params, middles(40, 2)));
+        EXPECT_NEAR(landed / sent, 1, 1e-5);
+    }
+}
+
+// The mean over a square is that of its parts, to the rounding of floats.
+TEST(BeamSquare, IsTheMeanOfItsParts) {
+    const Scene scene(folded_pool());
+    const std::vector<Vec2> large = middles(8, 0.8F);
+    const auto whole = irradiance(scene, averaged(0.2F), large);
+    int lit = 0;
+    for (std::size_t i = 0; i < large.size(); ++i) {
+        const auto parts = irradiance(scene, averaged(0.05F), middles(4, 0.1F, large[i]));
+        EXPECT_NEAR(whole[i], sum(parts) / 16, 2e-5 * whole[i] + 1e-6);
+        lit += whole[i] > 0 ? 1 : 0;
+    }
+    EXPECT_GT(lit, 50);
+}
+
+// Points of a square taken at random agree with it in the mean.
+TEST(BeamSquare, IsTheMeanOfItsPoints) {
+    const Scene scene(pool_desc(32));
+    const Vec2 centre(0.1F, -0.2F);
+    Rng rng(7, Stage::test, 0);
+    std::vector<Vec2> random;
+    for (int i = 0; i < 4000; ++i)
+        random.push_back(centre + 0.3F * Vec2(rng.next() - 0.5F, rng.next() - 0.5F));
+    for (const Intensity intensity : {Intensity::area, Intensity::refined}) {
+        const auto points = irradiance(scene, averaged(0, intensity), random);
+        const double mean = sum(points) / 4000;
+        double variance = 0;
+        for (const double value : points) variance += (value - mean) * (value - mean) / 3999 / 4000;
+        const double square = irradiance(scene, averaged(0.3F, intensity), {centre})[0];
+        EXPECT_NEAR(square, mean, 4 * std::sqrt(variance));
+        EXPECT_LT(std::sqrt(variance), 0.01 * mean);
+    }
+}
+
+// Where the light is even over it, a small square is a point.
+TEST(BeamSquare, BecomesAPointAsItShrinks) {
+    const Scene scene(pool_desc(32));
+    const std::vector<Vec2> at = middles(10, 0.5F, Vec2(0.0031F, 0.0017F));
+    const auto points = irradiance(scene, averaged(0, Intensity::refined), at);
+    const auto squares = irradiance(scene, averaged(1e-4F, Intensity::refined), at);
+    for (std::size_t i = 0; i < at.size(); ++i) EXPECT_NEAR(squares[i] / points[i], 1, 1e-2);
+}
+
+}  // namespace
+}  // namespace caustics
