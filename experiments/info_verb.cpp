@@ -7,6 +7,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/transport_digest.h"
+#include "experiments/beam_picture.h"
 #include "experiments/cli_options.h"
 #include "experiments/files.h"
 #include "experiments/interrupt.h"
@@ -98,16 +99,42 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
 struct InfoOptions {
     SceneOptions scene;  ///< or a photon map
     std::string map_scene;
+    bool beams = false;
+    std::vector<std::string> params;  ///< of `beamtree`, for its beams
     std::string output;
     double dot = 1;
 };
 
+RunOptions drawing_options(const Scene& scene) {
+    RunOptions run;
+    run.threads = available_threads();
+    run.samples_per_pixel = scene.sampling().sample_count;
+    run.adaptive = false;
+    run.progress = [](double) { throw_if_interrupted(); };
+    return run;
+}
+
+void require_png(const std::string& output, const char* what) {
+    if (std::filesystem::path(output).extension() != ".png")
+        throw InputError(fmt::format("-o {}: {} are drawn as .png", output, what));
+    require_writable_place(output);
+}
+
 void info_on_scene(const InfoOptions& options) {
-    if (!options.map_scene.empty() || !options.output.empty())
+    if (!options.map_scene.empty())
         throw InputError(
-            fmt::format("{} is no photon map: --scene and -o are for these", options.scene.file));
+            fmt::format("{} is no photon map: --scene is for these", options.scene.file));
+    if (options.beams == options.output.empty() || (!options.beams && !options.params.empty()))
+        throw InputError("--beams and -o belong together, for a scene; --param is for them");
+    if (options.beams) require_png(options.output, "beams");
     const SceneFile file = options.scene.load();
     const Scene scene(file.desc);
+    if (options.beams) {
+        const Method method = parse_method("beamtree", parameters_node(options.params));
+        write_png(
+            draw_beams(scene, std::get<BeamTreeParams>(method.params), drawing_options(scene)),
+            options.output);
+    }
     write_stdout(describe_scene(options.scene, file, scene));
 }
 
@@ -116,22 +143,16 @@ void draw(const InfoOptions& options, SavedPhotons saved) {
     const Scene scene(file.desc);
     require_transport(saved.origin, scene, options.scene.file);
     if (options.output.empty()) return;
-    RunOptions run;
-    run.threads = available_threads();
-    run.samples_per_pixel = scene.sampling().sample_count;
-    run.adaptive = false;
-    run.progress = [](double) { throw_if_interrupted(); };
-    write_png(draw_photons(scene, std::move(saved.photons), options.dot, run), options.output);
+    write_png(draw_photons(scene, std::move(saved.photons), options.dot, drawing_options(scene)),
+              options.output);
 }
 
 void info_on_map(const InfoOptions& options) {
     if (options.map_scene.empty() && !(options.output.empty() && options.scene.sets.empty()))
         throw InputError("-o and --set need --scene: the scene that the photons are drawn in");
-    if (!options.output.empty()) {
-        if (std::filesystem::path(options.output).extension() != ".png")
-            throw InputError(fmt::format("-o {}: photons are drawn as .png", options.output));
-        require_writable_place(options.output);
-    }
+    if (options.beams || !options.params.empty())
+        throw InputError("--beams and --param are for scenes");
+    if (!options.output.empty()) require_png(options.output, "photons");
     SavedPhotons saved = load_photon_map(options.scene.file);
     const std::string text = describe_map(options.scene.file, saved);
     if (!options.map_scene.empty()) draw(options, std::move(saved));
@@ -152,12 +173,18 @@ Verb add_info(CLI::App& app) {
     verb->add_option(
             "-o,--output", options->output,
             "Picture (.png) of a photon map's photons as dots, through the scene's camera; "
-            "as bright as the logarithm of their number, over the dim scene")
+            "as bright as the logarithm of their number, over the dim scene; or of a scene's beams")
         ->type_name("FILE");
+    verb->add_flag("--beams", options->beams,
+                   "Draw the caustic polygons of `beamtree` over its picture: orange, blue where "
+                   "they are turned over, white between the two, where the caustic is");
+    add_repeatable(*verb, "--param", options->params,
+                   "With --beams: parameter of `beamtree`, key=value. Repeatable");
     verb->add_option("--dot", options->dot, "Radius of the dots in pixels (default 1)")
         ->check(CLI::Range(0.1, 100.0));
     verb->footer(
         "Example:\n  causticbench info pool.json --set /water/resolution=64\n"
+        "  causticbench info pool.json --beams --set /water/resolution=32 -o beams.png\n"
         "  causticbench info pool.photons --scene pool.json -o photons.png");
     return {verb, [options] {
                 if (is_photon_map(options->scene.file))

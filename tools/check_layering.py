@@ -22,10 +22,12 @@ LAYERS = {
     "tests/bench": ["core", "photonmap", "beamtree", "tests/support"],
     "tests": ["core", "photonmap", "beamtree", "experiments", "tests/support"],
 }
-# The one file that names all methods, and what tells of a photon map's file.
+# The one file that names all methods, what tells of a photon map's file, and what draws beams.
 EXCEPTIONS = {
     "experiments/methods.h": ["photonmap", "beamtree"],
     "experiments/methods.cpp": ["photonmap", "beamtree"],
+    "experiments/beam_picture.h": ["beamtree"],
+    "experiments/beam_picture.cpp": ["beamtree"],
     "experiments/map_info.h": ["photonmap"],
     "experiments/map_info.cpp": ["photonmap"],
 }

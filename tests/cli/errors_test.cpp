@@ -95,6 +95,8 @@ const std::vector<Broken> broken_scenes = {
 const std::vector<Broken> broken_commands = {
     {"NoVerb", {}, {"no verb", "render, probe, sweep, compare, info"}},
     {"UnknownVerb", {"rendr", "SCENE"}, {"unknown verb \"rendr\"", "render, probe"}},
+    {"BeamsWithoutPicture", {"info", "SCENE", "--beams"}, {"--beams and -o"}},
+    {"BeamsAsExr", {"info", "SCENE", "--beams", "-o", "beams.exr"}, {"beams.exr", ".png"}},
     {"UnknownOption", render_good({"--metod", "none"}), {"--metod", "--method"}},
     {"MissingMethod", render_good({}), {"--method"}},
     {"UnknownMethod", render_good({"--method", "photons"}), {"photons", "photonmap"}},

@@ -101,6 +101,16 @@ TEST(Info, TellsWhatTheSceneHolds) {
         EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
 }
 
+TEST(Info, DrawsBeams) {
+    const support::TemporaryFolder folder;
+    const std::string drawing = folder / "beams.png";
+    const ProgramResult result =
+        causticbench({"info", scene, "--beams", "--param", "mesh_resolution=8", "-o", drawing});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("exact sphere"), std::string::npos);
+    EXPECT_TRUE(fs::exists(drawing));
+}
+
 TEST(PhotonMaps, AreSavedLoadedDescribedAndDrawn) {
     const support::TemporaryFolder folder;
     const std::string map = folder / "ball.photons";
