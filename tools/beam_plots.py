@@ -4,7 +4,7 @@ import matplotlib
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
 
-from beam_report import AXES, BOUNDS, by_resolution, resolved, sweep_time, thresholds
+from beam_report import AXES, BOUNDS, GROWING, by_resolution, resolved, sweep_time, thresholds
 from beam_trials import microseconds, select
 from plot_panels import COLOURS, LINES, MARKERS
 from record_plots import GREY, PAGE, STYLE, few_ticks, svg
@@ -42,7 +42,7 @@ def draw_thresholds(ax, cells, quantity):
     hybrid = thresholds(cells)
     ax.plot([float(cell.value("spread_threshold")) for cell in hybrid], [quantity(cell) for cell in hybrid],
             LINES[0], marker=MARKERS[0], color=COLOURS[0], label="hybrid")
-    for bound, colour, line in zip(BOUNDS, COLOURS[1:], ("--", "-.", ":")):
+    for bound, colour, line in zip(BOUNDS, COLOURS[1:], ("--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))):
         ax.axhline(quantity(select(cells, bound=bound)[0]), linestyle=line, color=colour, label=bound)
     ax.set_ylim(bottom=0)
 
@@ -52,7 +52,7 @@ def heights(cells):
     matplotlib.rcdefaults()
     with matplotlib.rc_context(STYLE):
         figure, axes = panels(2)
-        for bound, colour, marker in zip(("hybrid", "sphere_swept"), COLOURS, MARKERS):
+        for bound, colour, marker in zip(GROWING, COLOURS, MARKERS):
             group = resolved(by_resolution(select(cells, bound=bound)))
             eye = [select(cells, method="none", resolution=cell.value("resolution"))[0] for cell in group]
             x = [cell.counters["height"] for cell in group]

@@ -8,7 +8,8 @@ PAPER = (1_293_973, 68_648, 12_960)
 COUNTS = ("cone_point_tests", "beam_point_tests", "beam_point_hits")
 COUNT_HEADING = ["cone-point tests", "beam-point tests", "successes"]
 POINT_HEADING = ["cone-point tests a point", "beam-point tests a point", "successes a point"]
-BOUNDS = ("single", "double", "sphere_swept")
+BOUNDS = ("single", "double", "sphere_swept", "two_slice")
+GROWING = ("hybrid", "sphere_swept", "two_slice")  # with the mesh
 
 
 def table(heading, rows):
@@ -68,7 +69,7 @@ def thresholds(cells):
 def heights(cells):
     """Cost a point over the tree's height, and the exponents of its growth."""
     rows, fits = [], []
-    for bound in ("hybrid", "sphere_swept"):
+    for bound in GROWING:
         group = by_resolution(select(cells, bound=bound))
         for cell in group:
             eye_pass = select(cells, method="none", resolution=cell.value("resolution"))[0]

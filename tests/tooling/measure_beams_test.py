@@ -47,7 +47,7 @@ class Tables(unittest.TestCase):
         cells = [cell(parameters={"bound": bound}, counters=tests) for bound in beam_report.BOUNDS]
         cells += [cell(parameters={"bound": "hybrid", "spread_threshold": t}, counters=tests) for t in ("10", "5")]
         rows = beam_report.bounds(cells + [cell("none", render=0.9)]).splitlines()
-        self.assertEqual([row.split("|")[2].strip() for row in rows[5:]], ["5°", "10°"])
+        self.assertEqual([row.split("|")[2].strip() for row in rows[6:]], ["5°", "10°"])
         self.assertIn("| 5 | 5 | 5 | 100.00 | 500 | 1.00 |", rows[2])
 
     def test_watts_cost_grows_with_each_number(self):
