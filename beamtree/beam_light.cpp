@@ -26,6 +26,10 @@ struct ArrivingRay {
     Vec3 direction;    ///< unit, the way the light goes
 };
 
+bool is_bent_once_by_exact_shape(const Scene& scene, const BeamSet& set) {
+    return set.path.size() <= 1 && scene.shapes()[set.caster].primitive != Primitive::mesh;
+}
+
 ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     const Beam& beam = set.beams[hit.beam];
     const auto rays = set.triangle(beam, hit.triangle);
@@ -48,6 +52,22 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
 
 }  // namespace
 
+BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
+    : scene_(scene), sets_(sets), searches_(sets.size()) {
+    for (std::size_t i = 0; i < sets.size(); ++i)
+        if (!sets[i].spreads.empty() && is_bent_once_by_exact_shape(scene, sets[i]))
+            searches_[i].emplace(scene, sets[i]);
+}
+
+std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit,
+                                                       const Vec3& point) const {
+    // Of a square round the point its middle is not what is asked for.
+    if (!searches_[hit.set] || hit.coverage != 1) return {};
+    const BeamSet& set = sets_[hit.set];
+    return searches_[hit.set]->find(set.triangle(set.beams[hit.beam], hit.triangle), hit.weights,
+                                    point);
+}
+
 template <typename Weight>
 Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                         const Weight& weight) const {
@@ -60,21 +80,30 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
     for (const BeamHit& hit : hits) {
         const BeamSet& set = sets_[hit.set];
         const Beam& beam = set.beams[hit.beam];
-        const ArrivingRay ray = arriving_ray(set, hit);
+        const std::optional<SpecularPoint> exact = specular_point(hit, point.position);
+        const ArrivingRay ray =
+            exact ? ArrivingRay{{exact->position, exact->normal, beam.offset}, exact->direction}
+                  : arriving_ray(set, hit);
         if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
         const Spectrum factor = weight(Vec3(-ray.direction));
         if (is_black(factor)) continue;
         if (scene_.occluded(receiver, ray.start)) continue;
         // Of light after several events the earlier legs were seen to be free when it was traced.
         if (set.path.size() <= 1 && !sees(scene_, ray.start, set.light)) continue;
+        const double cosine =
+            std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction)));
+        const Spectrum left = transmittance(set.absorption[beam.inside ? 1 : 0],
+                                            (point.position - ray.start.position).norm());
+        if (exact) {
+            sum +=
+                (factor * exact->weight * left).template cast<double>() * exact->density * cosine;
+            continue;
+        }
         double density = refined_density(set, hit, point.position)
                              .value_or(hit.flux_share / std::max(hit.area, least_area));
         density *= hit.coverage;
         // The caustic polygon lies on the test's plane; the receiver's is turned against it.
-        density *= std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction) /
-                                                hit.plane_normal.dot(ray.direction)));
-        const Spectrum left = transmittance(set.absorption[beam.inside ? 1 : 0],
-                                            (point.position - ray.start.position).norm());
+        density *= cosine / std::abs(static_cast<double>(hit.plane_normal.dot(ray.direction)));
         sum += (factor * beam.flux * left).template cast<double>() * density;
     }
     return sum.cast<float>();
