@@ -78,20 +78,27 @@ private:
     }
 
     void follow(Batch& batch, PhotonChunk& chunk) const {
-        if (settings_.path.interaction == Interaction::split) {
+        if (settings_.path.interaction == Interaction::split)
             follow_branches(batch, chunk);
-            return;
-        }
-        batch.deposits.resize(batch.starts.size());
-        if (settings_.strata)  // neighbours in the square start side by side
-            trace_light_paths(scene_, batch.starts, settings_.path, chunk.counts, batch.deposits);
+        else if (settings_.strata)
+            follow_together(batch, chunk);
         else
-            for (std::size_t i = 0; i < batch.starts.size(); ++i)
-                batch.deposits[i] =
-                    trace_light_path(scene_, batch.starts[i].particle, settings_.path,
-                                     batch.starts[i].rng, chunk.counts);
+            follow_alone(batch, chunk);
+    }
+
+    // Neighbours in the square start side by side.
+    void follow_together(Batch& batch, PhotonChunk& chunk) const {
+        batch.deposits.resize(batch.starts.size());
+        trace_light_paths(scene_, batch.starts, settings_.path, chunk.counts, batch.deposits);
         for (std::size_t i = 0; i < batch.starts.size(); ++i)
             if (batch.deposits[i]) chunk.add(batch.starts[i].path, *batch.deposits[i]);
+    }
+
+    void follow_alone(Batch& batch, PhotonChunk& chunk) const {
+        for (LightPathStart& start : batch.starts)
+            if (const auto deposit = trace_light_path(scene_, start.particle, settings_.path,
+                                                      start.rng, chunk.counts))
+                chunk.add(start.path, *deposit);
     }
 
     void follow_branches(Batch& batch, PhotonChunk& chunk) const {
