@@ -75,8 +75,10 @@ std::optional<LightParticle> AimedEmission::emit(Rng& rng) const {
     Aim aim;
     aim.source = choose(x, aim.cone);
     float* const w = aim.direction.data();
-    kernels_.aim({1, &x, &y, cones_.data(), &aim.cone},
-                 {{&aim.disc.x(), &aim.disc.y()}, {w, w + 1, w + 2}});
+    // Nothing to put side by side; all kernels give the same bits.
+    emission_kernels(Isa::plain)
+        .aim({1, &x, &y, cones_.data(), &aim.cone},
+             {{&aim.disc.x(), &aim.disc.y()}, {w, w + 1, w + 2}});
     return send(aim, rng);
 }
 

@@ -42,6 +42,22 @@ public:
 
     void trace(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const override {
         chunk.counts.emitted += last - first;
+        if (settings_.strata)
+            trace_together(first, last, chunk);
+        else
+            for (; first < last; ++first) trace_alone(first, chunk);
+    }
+
+private:
+    /// Paths that are emitted together.
+    struct Batch {
+        EmissionSamples samples;
+        std::vector<LightPathStart> starts;
+        std::vector<std::optional<Deposit>> deposits;
+    };
+
+    // Neighbours in the square start side by side.
+    void trace_together(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const {
         Batch batch;
         while (first < last) {
             const std::size_t count = std::min<std::uint64_t>(last - first, EmissionSamples::most);
@@ -54,18 +70,23 @@ public:
         }
     }
 
-private:
-    /// Paths that are emitted together.
-    struct Batch {
-        EmissionSamples samples;
-        std::vector<LightPathStart> starts;
-        std::vector<std::optional<Deposit>> deposits;
-    };
+    // What random paths hit is nowhere near: their rays wait for memory, and emission is done meanwhile.
+    void trace_alone(std::uint64_t path, PhotonChunk& chunk) const {
+        Rng rng(settings_.seed, settings_.stage, path);
+        const auto particle = emission_.emit(rng);
+        if (!particle) return;
+        ++chunk.counts.aimed;
+        if (splits()) {
+            follow_branches(*particle, path, rng, chunk);
+        } else if (const auto deposit =
+                       trace_light_path(scene_, *particle, settings_.path, rng, chunk.counts)) {
+            chunk.add(path, *deposit);
+        }
+    }
 
     void draw(std::uint64_t first, std::size_t count, EmissionSamples& samples) const {
         const auto stage = static_cast<std::uint32_t>(settings_.stage);
         samples.draw({settings_.seed, stage, first, count}, emission_.kernels());
-        if (!settings_.strata) return;
         const std::uint64_t size = settings_.strata->size();
         for (std::size_t i = 0; i < count;) {
             const std::uint64_t stratum = settings_.repeated ? (first + i) % size : first + i;
@@ -78,37 +99,25 @@ private:
     }
 
     void follow(Batch& batch, PhotonChunk& chunk) const {
-        if (settings_.path.interaction == Interaction::split)
-            follow_branches(batch, chunk);
-        else if (settings_.strata)
-            follow_together(batch, chunk);
-        else
-            follow_alone(batch, chunk);
-    }
-
-    // Neighbours in the square start side by side.
-    void follow_together(Batch& batch, PhotonChunk& chunk) const {
+        if (splits()) {
+            for (LightPathStart& start : batch.starts)
+                follow_branches(start.particle, start.path, start.rng, chunk);
+            return;
+        }
         batch.deposits.resize(batch.starts.size());
         trace_light_paths(scene_, batch.starts, settings_.path, chunk.counts, batch.deposits);
         for (std::size_t i = 0; i < batch.starts.size(); ++i)
             if (batch.deposits[i]) chunk.add(batch.starts[i].path, *batch.deposits[i]);
     }
 
-    void follow_alone(Batch& batch, PhotonChunk& chunk) const {
-        for (LightPathStart& start : batch.starts)
-            if (const auto deposit = trace_light_path(scene_, start.particle, settings_.path,
-                                                      start.rng, chunk.counts))
-                chunk.add(start.path, *deposit);
+    void follow_branches(const LightParticle& particle, std::uint64_t path, Rng& rng,
+                         PhotonChunk& chunk) const {
+        chunk.deposits.clear();
+        trace_split_path(scene_, particle, settings_.path, rng, chunk.counts, chunk.deposits);
+        for (const Deposit& deposit : chunk.deposits) chunk.add(path, deposit);
     }
 
-    void follow_branches(Batch& batch, PhotonChunk& chunk) const {
-        for (LightPathStart& start : batch.starts) {
-            chunk.deposits.clear();
-            trace_split_path(scene_, start.particle, settings_.path, start.rng, chunk.counts,
-                             chunk.deposits);
-            for (const Deposit& deposit : chunk.deposits) chunk.add(start.path, deposit);
-        }
-    }
+    bool splits() const { return settings_.path.interaction == Interaction::split; }
 
     const Scene& scene_;
     const AimedEmission& emission_;
