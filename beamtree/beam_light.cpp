@@ -59,13 +59,12 @@ BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
             searches_[i].emplace(scene, sets[i]);
 }
 
-std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit,
+std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit, const VertexRay& guess,
                                                        const Vec3& point) const {
     // Of a square round the point its middle is not what is asked for.
     if (!searches_[hit.set] || hit.coverage != 1) return {};
     const BeamSet& set = sets_[hit.set];
-    return searches_[hit.set]->find(set.triangle(set.beams[hit.beam], hit.triangle), hit.weights,
-                                    point);
+    return searches_[hit.set]->find(set.triangle(set.beams[hit.beam], hit.triangle), guess, point);
 }
 
 template <typename Weight>
@@ -80,10 +79,9 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
     for (const BeamHit& hit : hits) {
         const BeamSet& set = sets_[hit.set];
         const Beam& beam = set.beams[hit.beam];
-        const std::optional<SpecularPoint> exact = specular_point(hit, point.position);
-        const ArrivingRay ray =
-            exact ? ArrivingRay{{exact->position, exact->normal, beam.offset}, exact->direction}
-                  : arriving_ray(set, hit);
+        ArrivingRay ray = arriving_ray(set, hit);
+        const auto exact = specular_point(hit, {ray.start.position, ray.direction}, point.position);
+        if (exact) ray = {{exact->position, exact->normal, beam.offset}, exact->direction};
         if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
         const Spectrum factor = weight(Vec3(-ray.direction));
         if (is_black(factor)) continue;

@@ -28,7 +28,8 @@ public:
     Spectrum radiance(const ReceiverPoint& point, std::vector<BeamHit>& hits) const;
 
 private:
-    std::optional<SpecularPoint> specular_point(const BeamHit& hit, const Vec3& point) const;
+    std::optional<SpecularPoint> specular_point(const BeamHit& hit, const VertexRay& guess,
+                                                const Vec3& point) const;
     template <typename Weight>
     Spectrum sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                  const Weight& weight) const;

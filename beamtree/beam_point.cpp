@@ -13,12 +13,6 @@ namespace {
 // Rays flatter than this to the plane count as going along it.
 constexpr double least_steepness = 1e-4;
 
-// How much more steeply the light may go down in one corner than in another for the caustic polygon
-// to count as evenly lit.
-constexpr double most_uneven = 2;
-
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// A ray as the plane sees it.
 struct RayOnPlane {
     const VertexRay* ray;

@@ -7,11 +7,6 @@
 namespace caustics {
 namespace {
 
-// As in beam_point: how much more steeply light may go down in one corner of an evenly lit polygon.
-constexpr double most_uneven = 2;
-
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 using Triangle = std::array<Vec2d, 3>;
 
 double area_of(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]) / 2; }

@@ -8,8 +8,6 @@
 namespace caustics {
 namespace {
 
-// The light goes down to a plane evenly when no corner's goes down more than this times as steeply as another's.
-constexpr double most_uneven = 2;
 // Corners' spreads between which the light is taken as smooth differ by no more than this.
 constexpr double most_varied = 4;
 

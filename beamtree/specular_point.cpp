@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "beamtree/beam_point.h"
 #include "core/exact_shape.h"
 
 namespace caustics {
@@ -43,8 +44,6 @@ double relative_index(const Bsdf& bsdf, bool from_front) {
     const double ratio = static_cast<double>(glass.int_ior) / static_cast<double>(glass.ext_ior);
     return from_front ? ratio : 1 / ratio;
 }
-
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 
@@ -103,6 +102,12 @@ private:
 struct SpecularSearch::Derivatives {
     Eigen::Matrix2d miss;
     std::array<Vec3d, 2> position;
+};
+
+/// What becomes of a whole triangle.
+struct SpecularSearch::Image {
+    bool turned;   ///< over on its way
+    double reach;  ///< its longest side, in the shape's frame
 };
 
 SpecularSearch::SpecularSearch(const Scene& scene, const BeamSet& set)
@@ -170,46 +175,42 @@ SpecularPoint SpecularSearch::made(const Sheet& sheet, const Exit& exit,
     return point;
 }
 
-std::optional<SpecularPoint> SpecularSearch::find(const std::array<const VertexRay*, 3>& triangle,
-                                                  const Vec3& weights, const Vec3& point) const {
-    Vec3d position = Vec3d::Zero();
-    Vec3d direction = Vec3d::Zero();
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto weight = static_cast<double>(weights[static_cast<Eigen::Index>(i)]);
-        position += weight * triangle[i]->position.cast<double>();
-        direction += weight * triangle[i]->direction.cast<double>();
-    }
-    const Vec3d guess = on_surface(shape_, to_local_ * position);
-    const Sheet sheet(point.cast<double>(), direction.normalized(), guess,
-                      exact_normal(shape_, guess));
-
-    // How the triangle is turned over on its way, and how large it is.
+// How the triangle lies on the surface and arrives at the sheet, which its light has to come to.
+std::optional<SpecularSearch::Image> SpecularSearch::image(
+    const Sheet& sheet, const std::array<const VertexRay*, 3>& triangle) const {
     std::array<Vec2d, 3> from;
     std::array<Vec2d, 3> to;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3d d = triangle[i]->direction.cast<double>();
-        if (!(sheet.direction().dot(d) > 0)) return {};
-        from[i] = sheet.coordinates(to_local_ * triangle[i]->position.cast<double>());
-        to[i] = sheet.miss(triangle[i]->position.cast<double>(), d);
+        const Vec3d position = triangle[i]->position.cast<double>();
+        const Vec3d direction = triangle[i]->direction.cast<double>();
+        if (!(sheet.direction().dot(direction) > 0)) return {};
+        from[i] = sheet.coordinates(to_local_ * position);
+        to[i] = sheet.miss(position, direction);
     }
-    const bool turned = (cross(from[1] - from[0], from[2] - from[0]) > 0) !=
-                        (cross(to[1] - to[0], to[2] - to[0]) > 0);
-    const double reach = std::max(
-        {(from[1] - from[0]).norm(), (from[2] - from[1]).norm(), (from[0] - from[2]).norm()});
+    return Image{(cross(from[1] - from[0], from[2] - from[0]) > 0) !=
+                     (cross(to[1] - to[0], to[2] - to[0]) > 0),
+                 std::max({(from[1] - from[0]).norm(), (from[2] - from[1]).norm(),
+                           (from[0] - from[2]).norm()})};
+}
 
-    const auto start = exit_at(guess);
-    if (!start) return {};
+std::optional<SpecularPoint> SpecularSearch::find(const std::array<const VertexRay*, 3>& triangle,
+                                                  const VertexRay& guess, const Vec3& point) const {
+    const Vec3d beside = on_surface(shape_, to_local_ * guess.position.cast<double>());
+    const Sheet sheet(point.cast<double>(), guess.direction.cast<double>().normalized(), beside,
+                      exact_normal(shape_, beside));
+    const auto start = exit_at(beside);
+    const auto whole = image(sheet, triangle);
+    if (!start || !whole) return {};
     Vec2d at = Vec2d::Zero();
-    for (int step = 0; step < most_steps && at.norm() <= reach; ++step) {
+    for (int step = 0; step < most_steps && at.norm() <= whole->reach; ++step) {
         const auto exit = exit_at(sheet.place(at));
         if (!exit || exit->from_front() != start->from_front()) return {};
         const auto found = derivatives(sheet, at);
         if (!found) return {};
-        const double determinant = found->miss.determinant();
         const double way = sheet.way(exit->position, exit->direction);
         const Vec2d miss = sheet.miss(exit->position, exit->direction);
         if (miss.norm() <= tolerance * way) {
-            if ((determinant < 0) != turned) return {};
+            if ((found->miss.determinant() < 0) != whole->turned) return {};
             return made(sheet, *exit, *found);
         }
         at -= found->miss.inverse() * miss;

@@ -25,19 +25,22 @@ public:
     /// Scene and set outlive this; the set's light has met one caster.
     SpecularSearch(const Scene& scene, const BeamSet& set);
 
-    /// By Newton's method from the place with these barycentric weights of a beam's triangle, whose light
+    /// By Newton's method from the place and direction of `guess`, the ray of a beam's triangle whose light
     /// comes to the point by [CC95 eq. 11]. Empty where it does not converge nearby, or comes to a ray of
     /// the other side of a caustic.
     std::optional<SpecularPoint> find(const std::array<const VertexRay*, 3>& triangle,
-                                      const Vec3& weights, const Vec3& point) const;
+                                      const VertexRay& guess, const Vec3& point) const;
 
 private:
     struct Exit;
     struct Derivatives;
+    struct Image;
     class Sheet;
 
     std::optional<Exit> exit_at(const Vec3d& local) const;
     std::optional<Derivatives> derivatives(const Sheet& sheet, const Vec2d& at) const;
+    std::optional<Image> image(const Sheet& sheet,
+                               const std::array<const VertexRay*, 3>& triangle) const;
     SpecularPoint made(const Sheet& sheet, const Exit& exit, const Derivatives& found) const;
 
     const Shape& shape_;
