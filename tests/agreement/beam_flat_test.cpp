@@ -10,7 +10,7 @@
 namespace caustics {
 namespace {
 
-// Every choice of the beam tree against formulas, point by point, within the 0.5 %.
+// Every choice of the beam tree against formulas, point by point, within 0.5 %.
 std::vector<BeamTreeParams> all_params() {
     std::vector<BeamTreeParams> all;
     for (const auto leaf : {BeamTreeParams::Leaf::n, BeamTreeParams::Leaf::k})

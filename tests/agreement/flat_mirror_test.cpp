@@ -88,7 +88,7 @@ std::vector<ReceiverPoint> inside_points(const Scene& scene, std::size_t count, 
     return points;
 }
 
-// The mean of estimate / truth over 500 points, and its scatter, against the bounds.
+// The mean of estimate / truth over 500 points, and its scatter, against its bounds.
 // With N nearest of a Poisson process (N-1)/(pi r_N^2) has relative deviation 1/sqrt(N-2): 500
 // points tell it to 1/sqrt(1000) = 3 %, so 20 % is 6 sigma. Their mean is sure to
 // 1/sqrt(500 (N-2)) = 0.32 % while the discs do not overlap, so 1 % is 3 sigma.

@@ -6,40 +6,15 @@
 #include "core/tessellate.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
-#include "tests/support/fresnel.h"
+#include "tests/support/flat_pool.h"
 #include "tests/support/statistics.h"
 
 namespace caustics {
 namespace {
 
-// A point light of intensity I at height H above the water, the floor at depth D. A ray of angle
-// a in air and b in water, sin a = n sin b, lands at r = H tan a + D tan b, and the flux
-// I (1 - R(a)) sin a da dphi of its neighbourhood on r dr dphi:
-//   E(r) = I (1 - R) sin a / (r dr/da),  dr/da = H / cos^2 a + D cos a / (n cos^3 b),
-//   E(0) = I 4n / (n + 1)^2 / (H + D / n)^2.
-constexpr double height = 2;
-constexpr double depth = 1;
-constexpr double index = 1.333;
-constexpr double intensity = 10;
+using namespace support::flat_pool;
+
 constexpr double half_surface = 6;
-
-double landing_radius(double a) {
-    return height * std::tan(a) + depth * std::tan(std::asin(std::sin(a) / index));
-}
-
-double floor_irradiance(double r) {
-    if (r == 0) return intensity * 4 * index / std::pow((index + 1) * (height + depth / index), 2);
-    double low = 0;
-    double high = pi_d / 2 - 1e-9;
-    for (int i = 0; i < 200; ++i) {
-        const double middle = (low + high) / 2;
-        (landing_radius(middle) < r ? low : high) = middle;
-    }
-    const double cos_a = std::cos(low);
-    const double cos_b = support::refracted_cosine(cos_a, index);
-    const double slope = height / (cos_a * cos_a) + depth * cos_a / (index * std::pow(cos_b, 3));
-    return intensity * (1 - support::fresnel(cos_a, index)) * std::sin(low) / (r * slope);
-}
 
 enum Shapes : std::size_t { floor_shape, water_shape };
 
@@ -80,7 +55,7 @@ std::vector<ReceiverPoint> ring(const Scene& scene, double r, int count, float r
     return points;
 }
 
-// The 2 %. A ring of 60 discs of 200 photons is sure to 1/sqrt(198 * 60) = 0.9 % and less
+// Within 2 %. A ring of 60 discs of 200 photons is sure to 1/sqrt(198 * 60) = 0.9 % and less
 // where they overlap; in the middle a ring of radius 0.15 stands for the centre.
 void expect_photon_map_is_right(const Scene& scene) {
     PhotonMapParams params;

@@ -78,7 +78,7 @@ std::vector<Case> all_cases() {
             {"pool, area light", pool(true)}};
 }
 
-// Flux of the map by its own counts against flux of particles sent without aim: the 1 %.
+// Flux of the map by its own counts against flux of particles sent without aim, within 1 %.
 // 200,000 photons and as many unaimed arrivals are sure to 0.3 % and better.
 TEST(PhotonMap, StoresTheReferencesFlux) {
     for (Case& one : all_cases()) {

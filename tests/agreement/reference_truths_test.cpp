@@ -8,7 +8,7 @@
 #include "core/reference/path_trace.h"
 #include "core/renderer.h"
 #include "tests/support/build_scene.h"
-#include "tests/support/fresnel.h"
+#include "tests/support/flat_pool.h"
 #include "tests/support/picture_agreement.h"
 
 namespace caustics {
@@ -16,9 +16,9 @@ namespace {
 
 // The references' pictures against closed forms, pixel by pixel, sure enough in the mean to tell 1 %.
 
-constexpr double index = 1.333;
 constexpr double albedo = 0.5;
-constexpr double depth = 1;
+using support::flat_pool::depth;
+using support::flat_pool::index;
 constexpr double eye_height = 0.9;
 constexpr double half_view = 0.9;
 constexpr int width = 20;
@@ -73,27 +73,12 @@ void expect_is(const Film& found, const std::function<double(double)>& irradianc
             << factor;
 }
 
-// A point light 2 m above the water: by the rays' angles a in air, landing at r(a), the floor has
-// E = I (1 - R) sin a / (r dr/da).
 TEST(ReferenceTruths, LightTraceUnderAPool) {
-    constexpr double above = 2;
-    constexpr double intensity = 10;
     SceneDesc desc = pool(0.8);
-    desc.point_lights = {support::point_light({0, 0, above}, intensity)};
-    const auto landing = [](double a) {
-        return above * std::tan(a) + depth * std::tan(std::asin(std::sin(a) / index));
-    };
-    const auto irradiance = [&](double r) {
-        double low = 0, high = 1.2;
-        for (int i = 0; i < 60; ++i) {
-            const double middle = (low + high) / 2;
-            (landing(middle) < r ? low : high) = middle;
-        }
-        const double cos_a = std::cos(low), cos_b = support::refracted_cosine(cos_a, index);
-        const double slope = above / (cos_a * cos_a) + depth * cos_a / (index * std::pow(cos_b, 3));
-        return intensity * (1 - support::fresnel(cos_a, index)) * std::sin(low) / (r * slope);
-    };
-    expect_is(picture(std::move(desc), LightTraceParams{.paths = 1'200'000}, 1), irradiance);
+    desc.point_lights = {support::point_light({0, 0, support::flat_pool::height},
+                                              static_cast<float>(support::flat_pool::intensity))};
+    expect_is(picture(std::move(desc), LightTraceParams{.paths = 1'200'000}, 1),
+              support::flat_pool::floor_irradiance);
 }
 
 // A sky of radiance 1 all round: the floor sees it through the cone of total reflection, whose foot the

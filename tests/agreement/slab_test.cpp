@@ -52,7 +52,7 @@ Spectrum transmitted(const Scene& scene, double degrees, std::uint64_t paths) {
     return (sum / static_cast<double>(paths)).cast<float>();
 }
 
-// T is a binomial share of 200,000 photons: 4 sigma are 0.5 % at worst, within the issue's 1 %.
+// T is a binomial share of 200,000 photons: 4 sigma are 0.5 % at worst, within 1 %.
 void expect_transmits(const Scene& scene, double degrees, double expected) {
     constexpr std::uint64_t paths = 200'000;
     const auto t = static_cast<double>(transmitted(scene, degrees, paths)[0]);
@@ -176,7 +176,7 @@ TEST(Ball, BeersLawAlongItsChords) {
     const Scene scene(std::move(desc));
     const AimedEmission emission(scene);
     const auto flux = support::flux_by_shape(scene, support::aimed(emission), 400'000, 5);
-    // The spread of a photon's share, about 0.3 of 0.5, leaves 0.1 %; the issue asks for 0.5 %.
+    // The spread of a photon's share, about 0.3 of 0.5, leaves 0.1 %; 0.5 % is asked.
     EXPECT_LT(flux.standard_error[1], 0.0012 * expected);
     EXPECT_NEAR(flux.mean[1] / expected, 1, 0.005);
 }
