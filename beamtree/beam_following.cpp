@@ -129,13 +129,17 @@ void BeamFollower::follow(std::array<TracedSet, 2> first) {
 std::vector<Departure> BeamFollower::first_departures(const TracedSet& first) const {
     const std::uint32_t shape = surface_.caster().shape;
     std::vector<Departure> departures;
-    for (const RayOrigin& origin : first.origins)
-        departures.push_back({shape, origin.normal, scene_.offset(shape)});
+    for (const RayOrigin& origin : first.origins) departures.push_back({shape, origin.normal, 0});
     // Points between vertices lie below an exact shape's surface.
-    for (const Beam& beam : first.set.beams)
-        for (const std::uint32_t corner : beam.corners)
-            if (corner != Beam::none && first.origins[corner].vertex == RayOrigin::no_vertex)
-                departures[corner].offset = beam.offset;
+    for (const Beam& beam : first.set.beams) {
+        const float at_vertices = surface_.corner_offset(beam.triangle);
+        for (const std::uint32_t corner : beam.corners) {
+            if (corner == Beam::none) continue;
+            const bool between = first.origins[corner].vertex == RayOrigin::no_vertex;
+            float& offset = departures[corner].offset;
+            offset = std::max(offset, between ? beam.offset : at_vertices);
+        }
+    }
     return departures;
 }
 

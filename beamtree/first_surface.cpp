@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/surface_offset.h"
+
 namespace caustics {
 
 bool sends_on(const MeshPoint& point, const Facing& facing, Event event) {
@@ -17,8 +19,7 @@ FirstSurface::FirstSurface(const Scene& scene, const CasterMesh& caster, const L
       light_(light),
       bsdf_(scene.shapes()[caster.shape].bsdf),
       bender_(scene, caster.shape, light),
-      hidden_(caster.closed.hidden_from(caster.mesh, light)),
-      surface_offset_(scene.offset(caster.shape)) {}
+      hidden_(caster.closed.hidden_from(caster.mesh, light)) {}
 
 Facing FirstSurface::facing(std::uint32_t triangle) const {
     const TriangleMesh& mesh = caster_.mesh;
@@ -31,14 +32,28 @@ Facing FirstSurface::facing(std::uint32_t triangle) const {
     facing.front = facing.normal.dot(to_light(light_, middle)) > 0;
     // A surface that meets itself may be lit on what counts as its inside.
     facing.hidden = hidden_(triangle, facing.front) &&
-                    !sees(scene_, {middle, facing.normal, surface_offset_}, light_);
+                    !sees(scene_, {middle, facing.normal, corner_offset(triangle)}, light_);
     return facing;
+}
+
+// Twice the rounding, as places between corners are found in float.
+float FirstSurface::corner_offset(std::uint32_t triangle) const {
+    const TriangleMesh& mesh = caster_.mesh;
+    const auto& [i, j, k] = mesh.triangles[triangle];
+    const Vec3& a = mesh.positions[i];
+    const Vec3& b = mesh.positions[j];
+    const Vec3& c = mesh.positions[k];
+    const Vec3 normal = triangle_normal(a, b, c);
+    float offset = 0;
+    for (const Vec3* corner : {&a, &b, &c})
+        offset = std::max(offset, triangle_offset(*corner, normal, a, b, c));
+    return 2 * offset;
 }
 
 // Bound of how far the exact shape bulges from its triangle: |edge| |turn of the normal| / 8 for
 // a circular arc, twice that for others and for what adds up inside the triangle.
 float FirstSurface::offset(std::uint32_t triangle) const {
-    if (!caster_.tessellated) return surface_offset_;
+    if (!caster_.tessellated) return corner_offset(triangle);
     const TriangleMesh& mesh = caster_.mesh;
     const auto& corners = mesh.triangles[triangle];
     float bulge = 0;
@@ -48,7 +63,7 @@ float FirstSurface::offset(std::uint32_t triangle) const {
         bulge = std::max(bulge, (mesh.positions[a] - mesh.positions[b]).norm() *
                                     (mesh.normals[a] - mesh.normals[b]).norm());
     }
-    return surface_offset_ + bulge / 4;
+    return corner_offset(triangle) + bulge / 4;
 }
 
 }  // namespace caustics

@@ -29,7 +29,9 @@ public:
     const Bsdf& bsdf() const { return bsdf_; }
     const LightBender& bender() const { return bender_; }
     Facing facing(std::uint32_t triangle) const;
-    /// How far off a triangle rays to and from it end, so that they do not meet the surface [m].
+    /// How far off a triangle rays to and from its corners end, so that they do not meet it [m].
+    float corner_offset(std::uint32_t triangle) const;
+    /// The same for points inside of it, which lie below an exact shape's surface.
     float offset(std::uint32_t triangle) const;
 
 private:
@@ -39,7 +41,6 @@ private:
     const Bsdf& bsdf_;
     LightBender bender_;
     ClosedParts::Hidden hidden_;
-    float surface_offset_;
 };
 
 }  // namespace caustics

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/sampling.h"
+#include "core/surface_offset.h"
 
 namespace caustics {
 namespace {
@@ -131,7 +132,7 @@ void LampSampler::weigh_square() {
 LampSampler::Sample LampSampler::sample(float u0, float u1) const {
     if (cumulative_.empty()) {
         const auto point = even_.sample(shape_, u0, u1);
-        return {point.position, point.normal, 1};
+        return {point.position, point.normal, point.offset, 1};
     }
     return shape_.primitive == Primitive::mesh ? sample_triangles(u0, u1) : sample_square(u0, u1);
 }
@@ -141,8 +142,12 @@ LampSampler::Sample LampSampler::sample_triangles(float u0, float u1) const {
     const std::size_t index = pick_and_stretch(cumulative_, rest);
     const auto [a, b, c] = corners(shape_.mesh, index);
     const auto root = static_cast<float>(std::sqrt(rest));
-    return {(1 - root) * a + root * (1 - u1) * b + root * u1 * c,
-            (b - a).cross(c - a).stableNormalized(), static_cast<float>(1 / density_[index])};
+    Sample sample{(1 - root) * a + root * (1 - u1) * b + root * u1 * c,
+                  (b - a).cross(c - a).stableNormalized(), 0,
+                  static_cast<float>(1 / density_[index])};
+    // Twice, as this place is found in float.
+    sample.offset = 2 * triangle_offset(sample.position, sample.normal, a, b, c);
+    return sample;
 }
 
 LampSampler::Sample LampSampler::sample_square(float u0, float u1) const {
@@ -154,7 +159,8 @@ LampSampler::Sample LampSampler::sample_square(float u0, float u1) const {
                         0x1.fffffep-1F);
     };
     const auto point = even_.sample(shape_, in_square(row, u[0]), in_square(column, u[1]));
-    return {point.position, point.normal, static_cast<float>(1 / density_[row * cells + column])};
+    return {point.position, point.normal, point.offset,
+            static_cast<float>(1 / density_[row * cells + column])};
 }
 
 }  // namespace caustics

@@ -17,6 +17,7 @@ public:
     struct Sample {
         Vec3 position;
         Vec3 normal;   ///< unit, front side
+        float offset;  ///< as AreaSampler::Sample::offset
         float weight;  ///< even density over this one's
     };
     /// Maps the unit square.

@@ -19,7 +19,6 @@ void sample_area_light(const Scene& scene, const AreaLight& light, LightSample s
     const float shift_v = rng.next();
     constexpr float golden = 0.618033988F;
     sample.kind = LightSample::Kind::area;
-    sample.offset = scene.offset(light.shape);
     const Spectrum even =
         light.radiance * static_cast<float>(light.sampler.area() / static_cast<double>(count));
     for (int i = 0; i < count; ++i) {
@@ -29,6 +28,7 @@ void sample_area_light(const Scene& scene, const AreaLight& light, LightSample s
         sample.strength = even * point.weight;
         sample.position = point.position;
         sample.normal = point.normal;
+        sample.offset = point.offset;
         samples.push_back(sample);
     }
 }
@@ -49,8 +49,7 @@ std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, s
             sample.kind = LightSample::Kind::directional;
             sample.travel = far->direction;
             sample.strength = far->irradiance;
-            // Where core/light_path starts the rays of a directional light.
-            sample.start = scene.bounds().center().dot(far->direction) - 0.505F * scene.diameter();
+            sample.bounds = scene.bounds();
             samples.push_back(sample);
         } else {
             sample_area_light(scene, std::get<AreaLight>(light), sample, per_area_light,
@@ -68,7 +67,8 @@ Vec3 to_light(const LightSample& light, const Vec3& point) {
 }
 
 float distance_from(const LightSample& light, const Vec3& point) {
-    if (light.kind == LightSample::Kind::directional) return point.dot(light.travel) - light.start;
+    if (light.kind == LightSample::Kind::directional)
+        return -distance_to_entry(light.bounds, point, light.travel);
     return (light.position - point).norm();
 }
 

@@ -261,7 +261,9 @@ private:
         Level& level = next_level(first.shape, event);
         beam.triangle = set_.beams[parent].triangle;
         beam.inside = first.front == (event == refraction);
-        beam.offset = first.offset + bulge(corners);
+        for (const Corner& corner : corners)
+            beam.offset = std::max(beam.offset, 2 * corner.landing->offset);
+        beam.offset += bulge(corners);
         beam.corners.fill(Beam::none);
         for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
         level.traced.set.beams.push_back(beam);

@@ -6,6 +6,7 @@
 
 #include "core/frame.h"
 #include "core/sampling.h"
+#include "core/surface_offset.h"
 
 namespace caustics {
 namespace {
@@ -121,10 +122,9 @@ std::optional<LightParticle> AimedEmission::send(const Aim& aim, Rng& rng) const
 std::optional<Ray> AimedEmission::send_from_area(const AimedSource& source, const Vec3& direction,
                                                  Rng& rng) const {
     const auto& light = std::get<AreaLight>(scene_.lights()[source.light]);
-    const float offset = scene_.offset(light.shape);
     if (source.facing_sphere) {
         SegmentEnd end = facing_point(*source.facing_sphere, direction, rng);
-        end.offset = offset;
+        end.offset = rounding_offset(end.position);
         return spawn_ray(end, direction);
     }
     const Vec2 size = source.high - source.low;
@@ -133,7 +133,7 @@ std::optional<Ray> AimedEmission::send_from_area(const AimedSource& source, cons
     const auto sample = light.sampler.sample(scene_.shapes()[light.shape], u0, u1);
     const float cosine = sample.normal.dot(direction);
     if (cosine <= rng.next() * source.max_cosine) return {};
-    return spawn_ray({sample.position, sample.normal, offset}, direction);
+    return spawn_ray({sample.position, sample.normal, sample.offset}, direction);
 }
 
 std::optional<Ray> AimedEmission::send_through(const AimedSource& source, const AimedDisc& disc,
@@ -150,10 +150,7 @@ std::optional<Ray> AimedEmission::send_through(const AimedSource& source, const 
         }
         if (holding > 1 && rng.next() * static_cast<float>(holding) >= 1) return {};
     }
-    // Start on the plane that touches the scene's bounding sphere from outside.
-    const Vec3 centre = scene_.bounds().center();
-    const float behind = (point - centre).dot(along) + 0.505F * scene_.diameter();
-    return Ray{point - behind * along, along};
+    return Ray{point + distance_to_entry(scene_.bounds(), point, along) * along, along};
 }
 
 }  // namespace caustics

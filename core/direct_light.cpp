@@ -46,8 +46,7 @@ Spectrum by_light_sample(const Scene& scene, const ReceiverPoint& p, const AreaL
     const float cos_light = -sample.normal.dot(wi);
     const Spectrum f = scattering(p, wi);
     if (cos_light <= 0 || is_black(f)) return black();
-    if (scene.occluded(end_of(p), {sample.position, sample.normal, scene.offset(light.shape)}))
-        return black();
+    if (scene.occluded(end_of(p), {sample.position, sample.normal, sample.offset})) return black();
     const float pdf = light_pdf_w(light, distance2, cos_light);
     return f * light.radiance / (pdf + direction_pdf(*p.bsdf, p.shading_normal, p.wo, wi));
 }

@@ -10,6 +10,7 @@
 #include <emmintrin.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -21,6 +22,7 @@
 
 #include "core/exact_shape.h"
 #include "core/parallel.h"
+#include "core/surface_offset.h"
 
 namespace caustics {
 namespace {
@@ -34,6 +36,7 @@ void throw_embree_error(void*, RTCError code, const char* text) {
 struct ExactGeometry {
     const Shape* shape = nullptr;
     Transform to_local = Transform::Identity();
+    float least_offset = 0;
 
     std::optional<ExactHit> intersect(const Vec3& origin, const Vec3& direction, float t_min,
                                       float t_max) const {
@@ -228,10 +231,16 @@ void fill_mesh_point(const Mesh& mesh, std::uint32_t primitive, float u, float v
     const Vertex& b = mesh.vertices[triangle[1]];
     const Vertex& c = mesh.vertices[triangle[2]];
     const float w = 1 - u - v;
-    point.position = w * a.position + u * b.position + v * c.position;
+    // In double, so that the point lies on the plane to its own rounding, however large the triangle.
+    point.position = (static_cast<double>(w) * a.position.cast<double>() +
+                      static_cast<double>(u) * b.position.cast<double>() +
+                      static_cast<double>(v) * c.position.cast<double>())
+                         .cast<float>();
     const Vec3 across = (b.position - a.position).cross(c.position - a.position);
     const float twice_area = across.norm();
     point.geometric_normal = twice_area > 0 ? Vec3(across * (1 / twice_area)) : across;
+    point.offset =
+        triangle_offset(point.position, point.geometric_normal, a.position, b.position, c.position);
     point.shading_normal = point.geometric_normal;
     if (mesh.smooth) {
         const Vec3 n = w * a.normal + u * b.normal + v * c.normal;
@@ -246,6 +255,7 @@ void fill_exact_point(const ExactGeometry& exact, const Vec3d& local, SurfacePoi
     const Shape& shape = *exact.shape;
     const Vec3d n = exact.to_local.linear().transpose() * exact_normal(shape, local);
     point.position = Vec3d(shape.to_world * local).cast<float>();
+    point.offset = std::max(rounding_offset(point.position), exact.least_offset);
     point.geometric_normal = n.normalized().cast<float>();
     if (shape.flip_normals) point.geometric_normal = -point.geometric_normal;
     point.shading_normal = point.geometric_normal;
@@ -283,7 +293,8 @@ struct Intersector::Embree {
             geometries.emplace_back(Mesh(shape));
             geometry = mesh_geometry(device, std::get<Mesh>(geometries.back()));
         } else {
-            geometries.emplace_back(ExactGeometry{&shape, shape.to_world.inverse()});
+            geometries.emplace_back(
+                ExactGeometry{&shape, shape.to_world.inverse(), least_offset(shape)});
             geometry = exact_geometry(device, std::get<ExactGeometry>(geometries.back()));
         }
         rtcCommitGeometry(geometry);
@@ -292,8 +303,8 @@ struct Intersector::Embree {
     }
 };
 
-Intersector::Intersector(const std::vector<Shape>& shapes, const std::vector<float>& offsets)
-    : offsets_(offsets), embree_(std::make_unique<Embree>(shapes)) {}
+Intersector::Intersector(const std::vector<Shape>& shapes)
+    : embree_(std::make_unique<Embree>(shapes)) {}
 
 Intersector::~Intersector() = default;
 
@@ -309,7 +320,6 @@ struct Intersector::Arrival {
 void Intersector::fill(const Arrival& arrival, SurfacePoint& point) const {
     point.shape = arrival.geometry;
     point.distance = arrival.distance;
-    point.offset = offsets_[arrival.geometry];
     const auto& geometry = embree_->geometries[arrival.geometry];
     if (const auto* mesh = std::get_if<Mesh>(&geometry))
         fill_mesh_point(*mesh, arrival.primitive, arrival.u, arrival.v, point);

@@ -13,8 +13,8 @@ namespace caustics {
 /// in double. Robust mode; the tree is built by one thread, so that hits are the same everywhere.
 class Intersector {
 public:
-    /// Keeps references to both, which must not move; `offsets` as Scene::offset.
-    Intersector(const std::vector<Shape>& shapes, const std::vector<float>& offsets);
+    /// Keeps a reference to the shapes, which must not move.
+    explicit Intersector(const std::vector<Shape>& shapes);
     ~Intersector();
     Intersector(const Intersector&) = delete;
     Intersector& operator=(const Intersector&) = delete;
@@ -30,7 +30,6 @@ private:
     struct Arrival;
     void fill(const Arrival& arrival, SurfacePoint& point) const;
 
-    const std::vector<float>& offsets_;
     std::unique_ptr<Embree> embree_;
 };
 

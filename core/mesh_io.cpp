@@ -108,6 +108,27 @@ void join_corners(TriangleMesh& mesh) {
     mesh = std::move(joined);
 }
 
+// Vertices that no triangle has are no part of the surface, nor of its bounds.
+void drop_unused_vertices(TriangleMesh& mesh) {
+    constexpr std::uint32_t unused = ~0U;
+    std::vector<std::uint32_t> place(mesh.positions.size(), unused);
+    for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t corner : triangle) place[corner] = 0;
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < place.size(); ++i) {
+        if (place[i] == unused) continue;
+        mesh.positions[count] = mesh.positions[i];
+        if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[i];
+        if (!mesh.uvs.empty()) mesh.uvs[count] = mesh.uvs[i];
+        place[i] = count++;
+    }
+    mesh.positions.resize(count);
+    if (!mesh.normals.empty()) mesh.normals.resize(count);
+    if (!mesh.uvs.empty()) mesh.uvs.resize(count);
+    for (auto& triangle : mesh.triangles)
+        for (std::uint32_t& corner : triangle) corner = place[corner];
+}
+
 TriangleMesh load_obj(const std::string& bytes, const std::string& name) {
     TriangleMesh mesh = import(check_obj(bytes, name), "obj", name);
     for (Vec2& uv : mesh.uvs) uv.y() = 1 - uv.y();
@@ -116,7 +137,9 @@ TriangleMesh load_obj(const std::string& bytes, const std::string& name) {
 }
 
 TriangleMesh load_ply(const std::string& bytes, const std::string& name) {
-    return import(check_ply(bytes, name), "ply", name);
+    TriangleMesh mesh = import(check_ply(bytes, name), "ply", name);
+    drop_unused_vertices(mesh);
+    return mesh;
 }
 
 }  // namespace

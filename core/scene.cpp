@@ -1,6 +1,7 @@
 #include "core/scene.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/intersector.h"
@@ -11,21 +12,19 @@ Scene::Scene(SceneDesc desc)
     : shapes_(std::move(desc.shapes)),
       light_of_shape_(shapes_.size(), -1),
       camera_(desc.camera),
-      sampling_(desc.sampling) {
+      sampling_(desc.sampling),
+      origin_(desc.origin) {
     for (const PointLight& light : desc.point_lights) lights_.emplace_back(light);
     for (const DirectionalLight& light : desc.directional_lights) lights_.emplace_back(light);
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         const Shape& shape = shapes_[i];
-        const Box box = caustics::bounds(shape);
-        bounds_.extend(box);
-        offsets_.push_back(64 * 0x1p-24F *
-                           box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff());
+        bounds_.extend(caustics::bounds(shape));
         if (is_caster(shape.bsdf)) casters_.push_back(i);
         if (!shape.radiance) continue;
         light_of_shape_[i] = static_cast<std::int32_t>(lights_.size());
         lights_.emplace_back(AreaLight{i, *shape.radiance, AreaSampler(shape)});
     }
-    intersector_ = std::make_unique<const Intersector>(shapes_, offsets_);
+    intersector_ = std::make_unique<const Intersector>(shapes_);
 }
 
 Scene::~Scene() = default;
@@ -44,9 +43,12 @@ bool Scene::occluded(const SegmentEnd& from, const SegmentEnd& to) const {
     Ray ray;
     ray.origin = offset_origin(from, towards);
     const Vec3 segment = offset_origin(to, -towards) - ray.origin;
-    ray.max_distance = segment.norm();
-    if (ray.max_distance == 0) return false;
-    ray.direction = segment / ray.max_distance;
+    const float distance = segment.norm();
+    if (distance == 0) return false;
+    ray.direction = segment / distance;
+    // The far end is found from here, to some roundings of the distance: ending before it by more than
+    // those, the ray does not meet the surface that it goes to.
+    ray.max_distance = distance * (1 - 0x1p-19F);
     return intersector_->occluded(ray);
 }
 
@@ -60,6 +62,19 @@ const AreaLight* Scene::area_light(std::uint32_t shape) const {
 }
 
 float Scene::diameter() const { return bounds_.diagonal().norm(); }
+
+float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direction) {
+    // Outwards by more than the rounding of the bounds, of a flat scene as well.
+    const Vec3 low = bounds.min() - Vec3::Constant(0x1p-20F * bounds.min().cwiseAbs().maxCoeff());
+    const Vec3 high = bounds.max() + Vec3::Constant(0x1p-20F * bounds.max().cwiseAbs().maxCoeff());
+    float entry = -std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0) continue;
+        const float face = direction[axis] > 0 ? low[axis] : high[axis];
+        entry = std::max(entry, (face - point[axis]) / direction[axis]);
+    }
+    return entry;
+}
 
 Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction) {
     const float side = end.geometric_normal.dot(direction) < 0 ? -end.offset : end.offset;

@@ -28,7 +28,7 @@ struct SurfacePoint {
     Vec3 shading_normal;    ///< unit, front side
     Vec2 uv;
     float distance;       ///< from the ray's origin [m]
-    float offset;         ///< how far a ray that leaves the point starts off the surface [m]
+    float offset;         ///< how far off the surface a ray starts that leaves the point [m]
     std::uint32_t shape;  ///< index into Scene::shapes
 };
 
@@ -51,8 +51,10 @@ struct PixelSampling {
     float max_error = 0.05F;   ///< of adaptive sampling: allowed standard error / brightness
 };
 
-/// The parsed scene: plain data, no acceleration structure.
+/// The parsed scene: plain data, no acceleration structure. All coordinates are relative to `origin`,
+/// so that floats resolve a small scene as well far from the world's origin as near it.
 struct SceneDesc {
+    Vec3d origin = Vec3d::Zero();  ///< of the scene's frame, in the world [m]
     std::vector<Shape> shapes;
     std::vector<PointLight> point_lights;
     std::vector<DirectionalLight> directional_lights;
@@ -79,9 +81,6 @@ public:
     bool occluded(const SegmentEnd& from, const SegmentEnd& to) const;
     /// Whether any surface lies along a direction (unit).
     bool occluded_along(const SegmentEnd& from, const Vec3& direction) const;
-    /// The offset of rays that leave a shape (see SurfacePoint::offset): 64 float spacings at the
-    /// largest coordinate of its bounds, where intersection errors are a few spacings.
-    float offset(std::uint32_t shape) const { return offsets_[shape]; }
 
     const std::vector<Shape>& shapes() const { return shapes_; }
     const Shape& shape_at(const SurfacePoint& p) const { return shapes_[p.shape]; }
@@ -92,23 +91,28 @@ public:
     const std::vector<std::uint32_t>& casters() const { return casters_; }
     const Camera& camera() const { return camera_; }
     const PixelSampling& sampling() const { return sampling_; }
-    const Box& bounds() const { return bounds_; }  ///< of the surfaces
-    float diameter() const;                        ///< of the bounds [m]
+    const Vec3d& origin() const { return origin_; }  ///< as SceneDesc::origin
+    const Box& bounds() const { return bounds_; }    ///< of the surfaces
+    float diameter() const;                          ///< of the bounds [m]
 
 private:
     std::vector<Shape> shapes_;
     std::vector<Light> lights_;
     std::vector<std::int32_t> light_of_shape_;
-    std::vector<float> offsets_;
     std::vector<std::uint32_t> casters_;
     Camera camera_;
     PixelSampling sampling_;
+    Vec3d origin_;
     Box bounds_;
     std::unique_ptr<const Intersector> intersector_;
 };
 
-/// The one offset rule: a surface point moved off its surface to the side that `direction` points
-/// to.
+/// Signed distance along a unit direction from a point to where light from that direction begins: just
+/// outside of the bounds of all surfaces [m]. Measured along the line itself, so that a wide floor
+/// sends no light off to start where floats are coarse. A line that misses the bounds begins anywhere.
+float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direction);
+
+/// A surface point moved off its surface to the side that `direction` points to.
 Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction);
 
 /// A ray that leaves an end along a unit direction without meeting its surface again.

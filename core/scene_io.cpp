@@ -8,6 +8,7 @@
 #include "core/hash.h"
 #include "core/json_reader.h"
 #include "core/scene_file/bsdfs.h"
+#include "core/scene_file/frame.h"
 #include "core/scene_file/shapes.h"
 #include "core/scene_file/values.h"
 
@@ -114,17 +115,27 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
     }
 }
 
-void read_point_light(const JsonNode& node, SceneDesc& desc) {
+// What is read before it is known where the scene's frame lies.
+struct Draft {
+    SceneDesc desc;
+    std::vector<JsonNode> shape_nodes;
+    std::vector<Vec3d> point_light_positions;  // in the world
+    bool has_sensor = false;
+    Assets assets;
+};
+
+void read_point_light(const JsonNode& node, Draft& draft) {
     PointLight light;
+    Vec3d place = Vec3d::Zero();
     const auto position = node.find("position");
     const auto to_world = node.find("to_world");
     if (position && to_world) to_world->fail("give either position or to_world");
-    if (position) light.position = read_vector(*position).cast<float>();
-    if (to_world)
-        light.position = Vec3d(scene_file::read_transform(*to_world).translation()).cast<float>();
+    if (position) place = read_vector(*position);
+    if (to_world) place = scene_file::read_transform(*to_world).translation();
     light.intensity = read_colour(node, "intensity", 1, unlimited);
     node.finish();
-    desc.point_lights.push_back(light);
+    draft.desc.point_lights.push_back(light);
+    draft.point_light_positions.push_back(place);
 }
 
 void read_directional_light(const JsonNode& node, SceneDesc& desc) {
@@ -146,8 +157,7 @@ void read_directional_light(const JsonNode& node, SceneDesc& desc) {
 }
 
 // The children of the scene are told apart by their types alone.
-void read_child(const std::string& key, const JsonNode& node, SceneDesc& desc, bool& has_sensor,
-                Assets& assets) {
+void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     const std::string type = node.at("type").as_string();
     std::vector<std::string> known{"perspective", "point", "directional"};
     std::vector<std::string> later{"constant",        "spot",   "envmap",       "projector",
@@ -165,15 +175,29 @@ void read_child(const std::string& key, const JsonNode& node, SceneDesc& desc, b
     if (scene_file::is_bsdf_type(type) && type != "ref")
         node.fail("a bsdf is nested in the shape that has it; share one by $include");
     read_type(node, "scene object", known, later);
-    if (type == "point") return read_point_light(node, desc);
-    if (type == "directional") return read_directional_light(node, desc);
+    if (type == "point") return read_point_light(node, draft);
+    if (type == "directional") return read_directional_light(node, draft.desc);
     if (type != "perspective") {
-        desc.shapes.push_back(scene_file::read_shape(key, node, assets));
+        draft.desc.shapes.push_back(scene_file::read_shape(key, node, draft.assets));
+        draft.shape_nodes.push_back(node);
         return;
     }
-    if (has_sensor) node.fail("a scene takes one sensor");
-    has_sensor = true;
-    read_sensor(node, desc);
+    if (draft.has_sensor) node.fail("a scene takes one sensor");
+    draft.has_sensor = true;
+    read_sensor(node, draft.desc);
+}
+
+SceneDesc placed(Draft& draft) {
+    SceneDesc& desc = draft.desc;
+    desc.origin = scene_file::frame_origin(desc.shapes);
+    for (std::size_t i = 0; i < desc.shapes.size(); ++i)
+        scene_file::load_for(draft.shape_nodes[i],
+                             [&] { scene_file::place(desc.shapes[i], desc.origin); });
+    for (std::size_t i = 0; i < desc.point_lights.size(); ++i)
+        desc.point_lights[i].position =
+            Vec3d(draft.point_light_positions[i] - desc.origin).cast<float>();
+    desc.camera.to_world.pretranslate(-desc.origin);
+    return std::move(desc);
 }
 
 std::string hash_of_file(const std::filesystem::path& file) {
@@ -190,18 +214,17 @@ SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrid
     for (const auto& [pointer, value] : overrides) root.set(pointer, value);
     if (const auto type = root.find("type")) type->as_choice({"scene"});
     if (const auto version = root.find("version")) version->as_integer_in(1, 1);
-    SceneFile scene;
-    Assets assets;
-    bool has_sensor = false;
+    Draft draft;
     const auto children = root.children();
     root.finish();
-    for (const auto& [key, child] : children)
-        read_child(key, child, scene.desc, has_sensor, assets);
-    if (!has_sensor) root.fail("the scene has no sensor (known: perspective)");
-    if (scene.desc.shapes.empty()) root.fail("the scene has no shape");
+    for (const auto& [key, child] : children) read_child(key, child, draft);
+    if (!draft.has_sensor) root.fail("the scene has no sensor (known: perspective)");
+    if (draft.desc.shapes.empty()) root.fail("the scene has no shape");
+    SceneFile scene;
+    scene.desc = placed(draft);
     scene.canonical = root.canonical();
     std::uint64_t state = fnv1a(scene.canonical);
-    for (const auto& [path, name] : assets) {
+    for (const auto& [path, name] : draft.assets) {
         scene.assets.emplace_back(name, hash_of_file(path));
         state = fnv1a(name + scene.assets.back().second, state);
     }

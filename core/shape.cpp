@@ -5,22 +5,10 @@
 #include <cmath>
 
 #include "core/sampling.h"
+#include "core/surface_offset.h"
 
 namespace caustics {
 namespace {
-
-Eigen::AlignedBox3d local_bounds(const Shape& shape) {
-    switch (shape.primitive) {
-        case Primitive::sphere: return {Vec3d(-1, -1, -1), Vec3d(1, 1, 1)};
-        case Primitive::cylinder: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 1)};
-        case Primitive::heightfield: {
-            const Vec2d half = shape.field.half_size;
-            const double top = shape.field.max_height();
-            return {Vec3d(-half.x(), -half.y(), -top), Vec3d(half.x(), half.y(), top)};
-        }
-        default: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 0)};
-    }
-}
 
 Vec3 world_normal(const Shape& shape, const Vec3d& local_normal) {
     const Eigen::Matrix3d inverse_transpose = shape.to_world.linear().inverse().transpose();
@@ -66,13 +54,35 @@ std::pair<Vec3d, Vec3d> sample_local(Primitive primitive, float u0, float u1) {
 AreaSampler::Sample sample_triangle(const TriangleMesh& mesh, std::size_t index, float u0,
                                     float u1) {
     const auto& [a, b, c] = mesh.triangles[index];
-    const float root = std::sqrt(u0);
+    const double root = std::sqrt(static_cast<double>(u0));
+    const auto side = static_cast<double>(u1);
     const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-    return {(1 - root) * p + root * (1 - u1) * q + root * u1 * r,
-            (q - p).cross(r - p).normalized()};
+    const Vec3d position = (1 - root) * p.cast<double>() + root * (1 - side) * q.cast<double>() +
+                           root * side * r.cast<double>();
+    AreaSampler::Sample sample{position.cast<float>(), (q - p).cross(r - p).normalized(), 0};
+    sample.offset = triangle_offset(sample.position, sample.normal, p, q, r);
+    return sample;
 }
 
 }  // namespace
+
+Eigen::AlignedBox3d local_bounds(const Shape& shape) {
+    switch (shape.primitive) {
+        case Primitive::mesh: {
+            Eigen::AlignedBox3d box;
+            for (const Vec3& p : shape.mesh.positions) box.extend(p.cast<double>());
+            return box;
+        }
+        case Primitive::sphere: return {Vec3d(-1, -1, -1), Vec3d(1, 1, 1)};
+        case Primitive::cylinder: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 1)};
+        case Primitive::heightfield: {
+            const Vec2d half = shape.field.half_size;
+            const double top = shape.field.max_height();
+            return {Vec3d(-half.x(), -half.y(), -top), Vec3d(half.x(), half.y(), top)};
+        }
+        default: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 0)};
+    }
+}
 
 std::vector<Vec3> hull_points(const Shape& shape) {
     if (shape.primitive == Primitive::mesh) return shape.mesh.positions;
@@ -114,7 +124,13 @@ BoundingSphere bounding_sphere(const std::vector<Vec3>& points) {
 
 std::size_t triangle_count(const Shape& shape) { return shape.mesh.triangles.size(); }
 
-AreaSampler::AreaSampler(const Shape& shape) : area_(exact_area(shape)) {
+float least_offset(const Shape& shape) {
+    const Box box = bounds(shape);
+    return 0x1p-40F * box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff();
+}
+
+AreaSampler::AreaSampler(const Shape& shape)
+    : area_(exact_area(shape)), least_offset_(caustics::least_offset(shape)) {
     if (shape.primitive != Primitive::mesh) return;
     for (const auto& [a, b, c] : shape.mesh.triangles) {
         const Vec3d p = shape.mesh.positions[a].cast<double>();
@@ -129,7 +145,9 @@ AreaSampler::AreaSampler(const Shape& shape) : area_(exact_area(shape)) {
 AreaSampler::Sample AreaSampler::sample(const Shape& shape, float u0, float u1) const {
     if (shape.primitive != Primitive::mesh) {
         const auto [p, n] = sample_local(shape.primitive, u0, u1);
-        return {Vec3d(shape.to_world * p).cast<float>(), world_normal(shape, n)};
+        const Vec3 position = Vec3d(shape.to_world * p).cast<float>();
+        return {position, world_normal(shape, n),
+                std::max(rounding_offset(position), least_offset_)};
     }
     // The first number picks the triangle and its remainder is used again.
     const std::size_t index = pick(cumulative_, u0);

@@ -31,9 +31,13 @@ void make_folder(const std::filesystem::path& folder) {
 int export_scene(ExportOptions options) {
     const SceneFile file = options.scene.load();
     options.settings.scene_file = options.scene.file;
-    const ExportedScene exported = options.target == "mitsuba"
-                                       ? to_mitsuba(file.desc, options.settings)
-                                       : to_povray(file.desc, options.settings);
+    ExportedScene exported = options.target == "mitsuba" ? to_mitsuba(file.desc, options.settings)
+                                                         : to_povray(file.desc, options.settings);
+    if (const Vec3d& o = file.desc.origin; !o.isZero(0))
+        exported.notes.push_back(
+            fmt::format("coordinates are relative to ({:.9g}, {:.9g}, {:.9g}) m of the scene file, "
+                        "where floats resolve the scene",
+                        o.x(), o.y(), o.z()));
     make_folder(options.folder);
     const std::filesystem::path folder = options.folder;
     for (const ExportedScene::File& each : exported.files)

@@ -48,9 +48,9 @@ std::string rgb(const Spectrum& s) { return fmt::format("{:.6g} {:.6g} {:.6g}", 
 struct LightLine {
     const Scene& scene;
     std::string operator()(const PointLight& light) const {
-        return fmt::format("  point at ({:.6g}, {:.6g}, {:.6g}), intensity {} W/sr\n",
-                           light.position.x(), light.position.y(), light.position.z(),
-                           rgb(light.intensity));
+        const Vec3d place = scene.origin() + light.position.cast<double>();
+        return fmt::format("  point at ({:.6g}, {:.6g}, {:.6g}), intensity {} W/sr\n", place.x(),
+                           place.y(), place.z(), rgb(light.intensity));
     }
     std::string operator()(const DirectionalLight& light) const {
         return fmt::format("  directional along ({:.6g}, {:.6g}, {:.6g}), irradiance {} W/m^2\n",
@@ -78,6 +78,10 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
         text += fmt::format("asset    {} ({})\n", name, hash);
     text += fmt::format("photons  of maps with transport {}\n", hex(transport_digest(scene)));
     text += fmt::format("diameter {:.6g} m\n", scene.diameter());
+    if (const Vec3d& o = scene.origin(); !o.isZero(0))
+        text +=
+            fmt::format("frame    coordinates are kept relative to ({:.9g}, {:.9g}, {:.9g}) m\n",
+                        o.x(), o.y(), o.z());
     const PixelSampling& sampling = scene.sampling();
     text += fmt::format("film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
                         scene.camera().height, sampling.sample_count, sampling_name(sampling));

@@ -34,7 +34,8 @@ std::string extent(const TracedPhotons& photons) {
     std::string text =
         fmt::format("flux       {:.6g} {:.6g} {:.6g} W\n", flux[0], flux[1], flux[2]);
     if (!box.isEmpty())
-        text += fmt::format("bounds     {} to {} m\n", point(box.min()), point(box.max()));
+        text += fmt::format("bounds     {} to {} m, in the scene's frame\n", point(box.min()),
+                            point(box.max()));
     return text;
 }
 

@@ -22,6 +22,29 @@ std::optional<double> resolved(const BuildReport& report, const char* name) {
     return found->second;
 }
 
+// How many times its size a caster may lie from the origin of the scene's frame until roundings of
+// coordinates change its light by 0.1 % (tests/agreement/far_scenes_test.cpp). The polygons of beams
+// are far smaller than their caster.
+constexpr double far_for_photons = 1000;
+constexpr double far_for_beams = 10;
+
+/// The caster that lies farthest from the frame's origin, in its own sizes, where that is beyond `most`.
+std::optional<std::string> far_caster(const Scene& scene, double most) {
+    std::optional<std::string> note;
+    for (const std::uint32_t caster : scene.casters()) {
+        const Shape& shape = scene.shapes()[caster];
+        const Box box = bounds(shape);
+        const auto times = static_cast<double>(box.center().norm() / box.diagonal().norm());
+        if (!(times > most)) continue;
+        most = times;
+        note = fmt::format(
+            "{} lies {:.2g} times its size from the other casters; its light is good to 0.1 % only "
+            "within {} times (beams: {}): put casters so far apart into scenes of their own",
+            shape.name, times, far_for_photons, far_for_beams);
+    }
+    return note;
+}
+
 bool has_area_light(const Scene& scene) {
     return std::ranges::any_of(scene.lights(), [](const Light& light) {
         return std::holds_alternative<AreaLight>(light);
@@ -60,6 +83,8 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
                                const BuildReport& report) {
     std::vector<std::string> all;
     const std::optional<double> captured = resolved(report, "flux_share_captured");
+    if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
+        all.push_back(*far);
     if (!captured) return all;
     if (*captured < 1 - least_share_told)
         all.push_back(fmt::format(

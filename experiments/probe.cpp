@@ -21,20 +21,18 @@ constexpr std::size_t points_per_batch = 64;
     throw InputError(fmt::format("{}: row {}: {}", list.file.string(), row + 1, reason));
 }
 
-Vec3 vector_at(const ProbeList& list, std::size_t row, const std::array<const char*, 3>& names) {
-    Vec3 v;
+Vec3d vector_at(const ProbeList& list, std::size_t row, const std::array<const char*, 3>& names) {
+    Vec3d v;
     for (int i = 0; i < 3; ++i)
-        v[i] = static_cast<float>(
-            list.table.rows[row][list.table.column(names[static_cast<std::size_t>(i)])]);
+        v[i] = list.table.rows[row][list.table.column(names[static_cast<std::size_t>(i)])];
     return v;
 }
 
 Vec3 direction_at(const ProbeList& list, std::size_t row, const std::array<const char*, 3>& names,
                   const char* what) {
-    const Vec3 v = vector_at(list, row, names);
-    const Vec3d exact = v.cast<double>();
-    if (!(exact.norm() > 0)) fail(list, row, fmt::format("the {} is zero", what));
-    return exact.normalized().cast<float>();
+    const Vec3d v = vector_at(list, row, names);
+    if (!(v.norm() > 0)) fail(list, row, fmt::format("the {} is zero", what));
+    return v.normalized().cast<float>();
 }
 
 /// The first receiver along a short ray, passing through casters.
@@ -59,13 +57,14 @@ std::optional<SurfacePoint> receiver_along(const Scene& scene, Ray ray, const Ve
 /// edge belongs to the face its normal names, then along the axes.
 std::optional<SurfacePoint> find_receiver(const Scene& scene, const ProbePoint& point) {
     const float tolerance = receiver_tolerance * scene.diameter();
+    const Vec3 position = Vec3d(point.position - scene.origin()).cast<float>();
     const auto nearest_along = [&](const std::vector<Vec3>& lines) {
         std::optional<SurfacePoint> nearest;
         for (const Vec3& line : lines)
             for (const float sign : {1.0F, -1.0F}) {
                 const Vec3 direction = sign * line;
-                const Ray ray{point.position - tolerance * direction, direction, 2 * tolerance};
-                const std::optional<SurfacePoint> hit = receiver_along(scene, ray, point.position);
+                const Ray ray{position - tolerance * direction, direction, 2 * tolerance};
+                const std::optional<SurfacePoint> hit = receiver_along(scene, ray, position);
                 if (hit && (!nearest || hit->distance < nearest->distance)) nearest = hit;
             }
         return nearest;

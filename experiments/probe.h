@@ -12,9 +12,9 @@ namespace caustics {
 
 /// A row of a point list.
 struct ProbePoint {
-    Vec3 position;
-    Vec3 normal;  ///< unit; names the side of the receiver
-    Vec3 wo;      ///< unit, towards the viewer; the normal when the list has no viewer
+    Vec3d position;  ///< in the world
+    Vec3 normal;     ///< unit; names the side of the receiver
+    Vec3 wo;         ///< unit, towards the viewer; the normal when the list has no viewer
     float radius = 0;
 };
 

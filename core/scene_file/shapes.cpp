@@ -126,7 +126,6 @@ struct CommonKeys {
 
     void finish_mesh(TriangleMesh& mesh) const {
         if (face_normals) mesh.normals.clear();
-        transform(mesh, to_world);
         if (flip_normals) flip(mesh);
     }
 };
@@ -145,7 +144,7 @@ void read_mesh_file(const JsonNode& node, const std::string& type, const CommonK
     if (extension != "." + type)
         name.fail("a shape of type " + type + " takes a ." + type + " file (known: obj, ply)");
     shape.mesh = load_for(name, [&] { return load_mesh(file, options); });
-    transform(shape.mesh, keys.to_world);
+    shape.to_world = keys.to_world;
 }
 
 void read_analytic(const JsonNode& node, const std::string& type, CommonKeys keys, Shape& shape) {
@@ -163,8 +162,8 @@ void read_analytic(const JsonNode& node, const std::string& type, CommonKeys key
         keys.to_world = keys.to_world * read_sphere_placement(node);
     if (shape.primitive == Primitive::cylinder)
         keys.to_world = keys.to_world * read_cylinder_placement(node);
+    shape.to_world = keys.to_world;
     if (!keys.resolution) {
-        shape.to_world = keys.to_world;
         shape.flip_normals = keys.flip_normals;
         return;
     }
@@ -176,6 +175,7 @@ void read_analytic(const JsonNode& node, const std::string& type, CommonKeys key
 
 void read_cube(const CommonKeys& keys, Shape& shape) {
     shape.primitive = Primitive::mesh;
+    shape.to_world = keys.to_world;
     shape.mesh = tessellate_cube(keys.resolution ? keys.count(1) : 1);
     keys.finish_mesh(shape.mesh);
 }
@@ -229,7 +229,6 @@ Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) 
         read_cube(keys, shape);
     else
         read_analytic(node, type, keys, shape);
-    if (!bounds(shape).sizes().allFinite()) node.fail("reaches beyond what a float can hold");
     read_nested(node, shape, assets);
     return shape;
 }

@@ -45,7 +45,9 @@ Arriving arriving(const Scene& scene, const ReceiverPoint& point, const Lamp& la
     const Vec3d crossing = p + (1 - p.y()) / to_image.y() * to_image;
     if (cosine <= 0 || std::abs(crossing.x()) > 1 || crossing.z() < 0 || crossing.z() > 2)
         return light;
-    const SegmentEnd on_mirror{crossing.cast<float>(), Vec3::UnitY(), scene.offset(0)};
+    const SegmentEnd on_mirror{
+        crossing.cast<float>(), Vec3::UnitY(),
+        support::surface_offset(scene, 0, crossing.cast<float>(), Vec3::UnitY())};
     const SegmentEnd on_receiver{point.position, point.geometric_normal, point.offset};
     const SegmentEnd at_lamp{lamp.place.cast<float>()};
     if (scene.occluded(on_receiver, on_mirror) || scene.occluded(on_mirror, at_lamp)) return light;

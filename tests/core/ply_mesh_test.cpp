@@ -94,6 +94,21 @@ TEST_F(PlyMesh, OtherPlyElementsAndPropertiesAreSteppedOver) {
     EXPECT_EQ(mesh.triangles.size(), 1U);
 }
 
+TEST_F(PlyMesh, VerticesOfNoTriangleAreNoPartOfTheMesh) {
+    const TriangleMesh mesh =
+        load("u.ply",
+             "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+             "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+             "element face 1\nproperty list uchar int vertex_index\nend_header\n"
+             "1e5 0 0 1 0 0\n1 0 0 0 0 1\n0 2 0 0 0 1\n0 0 1e6 1 0 0\n0 0 0 0 0 1\n3 4 1 2\n");
+    ASSERT_EQ(mesh.positions.size(), 3U);
+    EXPECT_EQ(mesh.positions[0], Vec3(1, 0, 0));
+    EXPECT_EQ(mesh.positions[2], Vec3(0, 0, 0));
+    ASSERT_EQ(mesh.normals.size(), 3U);
+    EXPECT_EQ(mesh.normals[2], Vec3(0, 0, 1));
+    EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{2, 0, 1}));
+}
+
 TEST_F(PlyMesh, EveryTruncationOfAPlyIsRefused) {
     for (const std::string& whole :
          {binary_ply(awkward(), false), binary_ply(awkward(), true), ascii_ply(square())}) {

@@ -129,6 +129,32 @@ TEST(Scene, Lights) {
     EXPECT_TRUE(equal(*shape(desc, "lamp").radiance, Spectrum::Constant(7)));
 }
 
+TEST(Scene, CoordinatesAreRelativeToCastersFarAway) {
+    const std::string glass = R"("bsdf": {"type": "dielectric"}})";
+    const auto scene = [&](const std::string& casters) {
+        return load(R"({"sensor": {"type": "perspective", "to_world": [{"translate": [1e5, 0, 3]}]},
+            "lamp": {"type": "point", "position": [1e5, 0.25, 1]},
+            "floor": {"type": "rectangle", "to_world": [{"translate": [1e5, 0, -1]}]},
+            "cube": {"type": "cube", "to_world": [{"scale": 0.5}, {"translate": [1e5, 1, 0]}]},)" +
+                    casters + "}");
+    };
+    const SceneDesc far =
+        scene(R"("ball": {"type": "sphere", "center": [1e5, 0, 0], "radius": 0.1,)" + glass);
+    EXPECT_EQ(far.origin, Vec3d(1e5, 0, 0));
+    expect_near(shape(far, "ball").to_world * Vec3d(0, 0, 1), {0, 0, 0.1});
+    expect_near(shape(far, "floor").to_world.translation(), {0, 0, -1});
+    EXPECT_EQ(bounds(shape(far, "cube")).min(), Vec3(-0.5F, 0.5F, -0.5F));
+    EXPECT_EQ(far.point_lights[0].position, Vec3(0, 0.25F, 1));
+    expect_near(far.camera.to_world.translation(), {0, 0, 3});
+    // What is near the world's origin stays where it is, and the smaller of two casters counts more.
+    EXPECT_EQ(
+        scene(R"("ball": {"type": "sphere", "center": [1, 0, 0], "radius": 0.1,)" + glass).origin,
+        Vec3d::Zero());
+    const SceneDesc two = scene(R"("a": {"type": "sphere", "center": [1e4, 0, 0], "radius": 0.1,)" +
+                                glass + R"(, "b": {"type": "sphere", "radius": 10,)" + glass);
+    EXPECT_NEAR(two.origin.x(), 1e4, 2);
+}
+
 TEST(Scene, SphereAndCylinderFoldTheirPlacement) {
     const Shape sphere = load_shape(
         R"({"type": "sphere", "center": [1, 2, 3], "radius": 2, "to_world": [{"scale": 10}]})");

@@ -35,12 +35,6 @@ TEST(Scene, ListsLightsCastersAndBounds) {
     EXPECT_NEAR(scene.diameter(), std::sqrt(16.0F + 16 + 1004 * 1004), 1e-3F);
 }
 
-TEST(Scene, OffsetsGrowWithTheCoordinates) {
-    const Scene scene(small_scene());
-    EXPECT_FLOAT_EQ(scene.offset(0), 64 * 2 / 16777216.0F);
-    EXPECT_FLOAT_EQ(scene.offset(3), 64 * 1000 / 16777216.0F);
-}
-
 TEST(Scene, RaysStartOnTheSideTheyGoTo) {
     const SegmentEnd end{Vec3(1, 2, 3), Vec3::UnitZ(), 0.5F};
     EXPECT_EQ(offset_origin(end, Vec3(1, 0, 0.1F)), Vec3(1, 2, 3.5F));
@@ -51,7 +45,8 @@ TEST(Scene, RaysStartOnTheSideTheyGoTo) {
 TEST(Scene, LinesOfSightEndAtTheirSurfaces) {
     const Scene scene(small_scene());
     const auto end = [&](std::uint32_t shape, const Vec3& p) {
-        return SegmentEnd{p, Vec3::UnitZ(), scene.offset(shape)};
+        return SegmentEnd{p, Vec3::UnitZ(),
+                          support::surface_offset(scene, shape, p, Vec3::UnitZ())};
     };
     // Past the ball, and through it.
     EXPECT_FALSE(scene.occluded(end(0, {1.5F, 0, 0}), end(2, {0.9F, 0, 4})));

@@ -36,6 +36,16 @@ std::vector<std::string> notes_of(const SceneDesc& desc, const std::string& name
     return notes(scene, method, build(scene, method, RunOptions{})->build_report());
 }
 
+TEST(Notes, NameACasterThatIsTooFarAway) {
+    SceneDesc desc = flat_mirror();
+    desc.shapes.push_back(support::sphere("bead", {500, 0, 0}, 0.0035, support::glass(1.5F)));
+    const auto all = notes_of(desc, "photonmap", {"photons=100"});
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_TRUE(all[0].starts_with("bead lies 4.1e+04 times its size from the other casters"))
+        << all[0];
+    EXPECT_TRUE(notes_of(flat_mirror(), "photonmap", {"photons=100"}).empty());
+}
+
 // Panes of glass thrown about: what one polygon's corners meet is seldom one pane.
 SceneDesc panes() {
     SceneDesc desc = flat_mirror();

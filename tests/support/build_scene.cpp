@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "core/surface_offset.h"
+
 namespace caustics::support {
 
 Bsdf diffuse(float reflectance, bool twosided) {
@@ -121,13 +123,19 @@ Camera camera(const Vec3d& origin, const Vec3d& target, const Vec3d& up, double 
     return camera;
 }
 
+float surface_offset(const Scene& scene, std::size_t shape, const Vec3& position,
+                     const Vec3& normal) {
+    const Box box = bounds(scene.shapes()[shape]);
+    return triangle_offset(position, normal, box.min(), box.max(), box.center());
+}
+
 ReceiverPoint probe(const Scene& scene, std::size_t shape, const Vec3d& position,
                     const Vec3d& normal, std::uint64_t id, float radius) {
     ReceiverPoint point;
     point.position = position.cast<float>();
     point.geometric_normal = point.shading_normal = point.wo = normal.cast<float>();
     point.uv = Vec2::Zero();
-    point.offset = scene.offset(static_cast<std::uint32_t>(shape));
+    point.offset = surface_offset(scene, shape, point.position, point.geometric_normal);
     point.bsdf = &scene.shapes()[shape].bsdf;
     point.id = id;
     point.radius = radius;

@@ -42,6 +42,9 @@ DirectionalLight directional_light(const Vec3d& direction, float irradiance);
 Camera camera(const Vec3d& origin, const Vec3d& target, const Vec3d& up, double fov_degrees,
               int width, int height);
 
+/// An offset (SurfacePoint::offset) that holds all over a shape, for a point that no ray has found.
+float surface_offset(const Scene& scene, std::size_t shape, const Vec3& position,
+                     const Vec3& normal);
 /// A receiver point on a flat shape of the scene, seen along its normal.
 ReceiverPoint probe(const Scene& scene, std::size_t shape, const Vec3d& position,
                     const Vec3d& normal, std::uint64_t id, float radius = 0);

@@ -24,9 +24,8 @@ std::optional<LightParticle> emit_unaimed(const Scene& scene, const AreaLight& l
     const auto sample = light.sampler.sample(scene.shapes()[light.shape], u0, u1);
     const Vec3 direction = Frame(sample.normal).to_world(cosine_hemisphere(u2, u3)).normalized();
     const auto area = static_cast<float>(light.sampler.area());
-    return LightParticle{
-        spawn_ray({sample.position, sample.normal, scene.offset(light.shape)}, direction),
-        light.radiance * pi * area};
+    return LightParticle{spawn_ray({sample.position, sample.normal, sample.offset}, direction),
+                         light.radiance * pi * area};
 }
 
 std::optional<LightParticle> emit_unaimed(const Scene& scene, const DirectionalLight& light,
