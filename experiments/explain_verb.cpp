@@ -71,7 +71,7 @@ std::string scene_warning(const RunRequest& request, const json& record) {
         const std::string hash = run_in_child([&](const ChildProcess::Tell&) {
             return load_scene(request.scene_file, request.overrides).hash;
         });
-        if (hash == record.at("scene").at("hash")) return {};
+        if (hash == record.at("scene").at("hash").get<std::string>()) return {};
         return fmt::format("{} has changed since", request.scene_file.string());
     } catch (const InputError& error) {
         return error.what();
