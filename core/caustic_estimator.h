@@ -18,11 +18,11 @@ namespace caustics {
 
 /// A point of a receiver as a viewer sees it. Normals are on the viewer's side.
 struct ReceiverPoint {
-    Vec3 position;
-    Vec3 geometric_normal;  ///< unit
-    Vec3 shading_normal;    ///< unit
-    Vec3 wo;                ///< unit, away from the surface towards the viewer
-    Vec2 uv;
+    Vec3 position = Vec3::Zero();
+    Vec3 geometric_normal = Vec3::Zero();  ///< unit
+    Vec3 shading_normal = Vec3::Zero();    ///< unit
+    Vec3 wo = Vec3::Zero();                ///< unit, away from the surface towards the viewer
+    Vec2 uv = Vec2::Zero();
     float offset = 0;            ///< as SurfacePoint::offset
     const Bsdf* bsdf = nullptr;  ///< of the receiver; not read by irradiance()
     std::uint32_t shape = 0;     ///< index into Scene::shapes

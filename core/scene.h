@@ -23,18 +23,18 @@ struct Ray {
 
 /// A point on a surface as a ray found it.
 struct SurfacePoint {
-    Vec3 position;
-    Vec3 geometric_normal;  ///< unit, front side of the surface
-    Vec3 shading_normal;    ///< unit, front side
-    Vec2 uv;
-    float distance;       ///< from the ray's origin [m]
-    float offset;         ///< how far off the surface a ray starts that leaves the point [m]
-    std::uint32_t shape;  ///< index into Scene::shapes
+    Vec3 position = Vec3::Zero();
+    Vec3 geometric_normal = Vec3::Zero();  ///< unit, front side of the surface
+    Vec3 shading_normal = Vec3::Zero();    ///< unit, front side
+    Vec2 uv = Vec2::Zero();
+    float distance = 0;       ///< from the ray's origin [m]
+    float offset = 0;         ///< how far off the surface a ray starts that leaves the point [m]
+    std::uint32_t shape = 0;  ///< index into Scene::shapes
 };
 
 /// An end of a line of sight: a free point (offset 0), or a point on a surface.
 struct SegmentEnd {
-    Vec3 position;
+    Vec3 position = Vec3::Zero();
     Vec3 geometric_normal = Vec3::Zero();  ///< unit, either side
     float offset = 0;                      ///< of that surface [m]
 };
