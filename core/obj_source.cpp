@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 16> ignored_keywords = {
     "o", "g", "s",   "mg",    "usemtl",   "mtllib",   "usemap",     "maplib",
     "l", "p", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 
-constexpr double max_float = std::numeric_limits<float>::max();
+constexpr auto max_float = static_cast<double>(std::numeric_limits<float>::max());
 
 template <class Number>
 std::optional<Number> parse(std::string_view text) {

@@ -14,7 +14,7 @@
 namespace caustics {
 namespace {
 
-constexpr double max_float = std::numeric_limits<float>::max();
+constexpr auto max_float = static_cast<double>(std::numeric_limits<float>::max());
 
 template <class Value>
 void append(std::string& text, Value value) {

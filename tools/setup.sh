@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that the build, the tests and the plots need. It may be run again at
-# any time: what is there is left alone, and with everything there neither root nor network is used.
+# setup.sh [PACKAGE...]: installs the Debian packages that the build, the tests and the plots need, and
+# those named. It may be run again at any time: what is there is left alone, and with everything there
+# neither root nor network is used. Exit code 75: packages could not be fetched, after several tries.
 set -euo pipefail
 
 packages=(
@@ -14,6 +15,7 @@ packages=(
     libgtest-dev                                    # tests
     libbenchmark-dev libnanoflann-dev               # benchmarks
     python3 python3-numpy python3-matplotlib        # layering test, plots
+    "$@"
 )
 
 fail() { echo "setup: $*" >&2; exit 1; }
@@ -42,7 +44,18 @@ apt() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
         apt-get -q -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" </dev/null
 }
-apt update || fail "'apt-get update' failed (see above)"
-apt install -y --no-install-recommends "${missing[@]}" ||
-    fail "'apt-get install' failed (see above); wanted: ${missing[*]}"
+fetch() {
+    local pause
+    for pause in 5 30 0; do
+        apt "$@" && return
+        sleep "$pause"
+    done
+    echo "setup: 'apt-get $1' failed three times (see above)" >&2
+    exit 75
+}
+install=(install -y --no-install-recommends "${missing[@]}")
+fetch update
+apt "${install[@]}" --simulate >/dev/null || fail "apt-get cannot install: ${missing[*]}"
+fetch "${install[@]}" --download-only
+apt "${install[@]}" || fail "'apt-get install' failed (see above); wanted: ${missing[*]}"
 echo "setup: done"

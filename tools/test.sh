@@ -3,5 +3,5 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-bash tools/build.sh ci || exit 1
+bash tools/build.sh ci || exit
 ctest --preset ci --parallel "$(nproc)" "$@" </dev/null

@@ -1,0 +1,127 @@
+#!/usr/bin/env bash
+# fresh_debian.sh RELEASE LINE...: runs bash lines as root, in a clone of this checkout's HEAD, on a
+# minimal Debian of that release (bookworm, trixie), until one fails. That Debian is a throwaway chroot
+# with namespaces of its own: nothing of it is left, however the script ends (after SIGKILL, from the
+# next start on). It has this machine's mirrors, certificates and settings of apt's network; its first
+# packages, and its folder of ccache, if a line installs that, are kept in $XDG_CACHE_HOME/causticbench
+# (by default in ~/.cache). The exit code is that of the line, or
+#   2   wrong usage
+#   69  there can be no such chroot here: the message says why
+#   75  packages could not be fetched, after several tries
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+fail() { echo "fresh_debian: $2" >&2; exit "$1"; }
+
+[ $# -ge 2 ] || fail 2 "usage: tools/fresh_debian.sh RELEASE LINE..."
+export release=$1
+shift
+[[ $release =~ ^[a-z]+$ ]] || fail 2 "'$release' names no release of Debian; bookworm and trixie do"
+
+# Each "URI suite" of this machine's apt that is Debian's own, with the other release's name.
+sources() {
+    local codename
+    codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
+    apt-get indextargets --format '$(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
+        awk -v here="$codename" -v there="$release" '$3 == "main" &&
+            ($2 == here || $2 == here "-updates" || $2 == here "-security") {
+                sub(here, there, $2)
+                print $1, $2
+            }' | uniq
+}
+
+# The functions from here to `run_lines` run in namespaces of their own.
+
+fetch_packages() {
+    local pause
+    for pause in 0 15 60; do
+        sleep "$pause"
+        debootstrap --variant=minbase --make-tarball="$root/packages.tgz" "$release" "$root/fetch" \
+            "$mirror" && mv "$root/packages.tgz" "$packages" && return
+    done
+}
+
+carry_network() {
+    cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
+    rm -f "$root/etc/apt/sources.list"
+    awk '{print "deb", $0, "main"}' <<<"$sources" >"$root/etc/apt/sources.list.d/host.list"
+    {
+        apt-config dump | grep '^Acquire::' | grep -v '^Acquire::IndexTargets'
+        echo 'APT::Update::Error-Mode "any";'
+    } >"$root/etc/apt/apt.conf.d/90host"
+    mkdir -p "$root/etc/ssl/certs" "$root/usr/local/share/ca-certificates"
+    cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/" || true
+    cp -RL /usr/local/share/ca-certificates "$root/usr/local/share/" || true
+}
+
+make_system() {
+    debootstrap --variant=minbase --unpack-tarball="$packages" "$release" "$root" "$mirror"
+    carry_network
+    git clone --quiet . "$root/src/causticbench"
+}
+
+run_lines() {
+    mount -t proc proc "$root/proc"
+    mount --rbind /sys "$root/sys"
+    mount --rbind /dev "$root/dev"
+    mount -t tmpfs -o mode=1777 shm "$root/dev/shm"
+    mkdir -p "$compiled" "$root/root/.cache/ccache"
+    mount --bind "$compiled" "$root/root/.cache/ccache"
+    local environment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8) name line
+    for name in {http,https,no}_proxy {HTTP,HTTPS,NO}_PROXY; do
+        [ -z "${!name:-}" ] || environment+=("$name=${!name}")
+    done
+    for line in "$@"; do
+        local start=$SECONDS code=0
+        echo "[$release] \$ $line"
+        chroot "$root" env -i -C /src/causticbench "${environment[@]}" bash -c "$line" || code=$?
+        echo "[$release] exit code $code after $((SECONDS - start)) s"
+        [ "$code" = 0 ] || return "$code"
+    done
+}
+
+# Runs one of these functions where its mounts and processes end with this script.
+apart() {
+    setpriv --pdeathsig KILL unshare --mount --pid --mount-proc --ipc --fork --kill-child \
+        bash -c "$(declare -f); set -euo pipefail; \"\$@\"" fresh_debian "$@" </dev/null &
+    child=$!
+    local code=0
+    wait "$child" || code=$?
+    child=
+    return "$code"
+}
+
+# The same, with nothing said where all goes well.
+quietly() { apart "$@" >"$root.log" 2>&1 || { tail -n 20 "$root.log" >&2; return 1; }; }
+
+clean_up() {
+    [ -z "$child" ] || { kill -KILL "$child"; wait "$child" 2>/dev/null; } || true
+    exec 9<&-
+    flock "$root" rm -rf --one-file-system "$root" "$root.log"  # once the last process is gone
+}
+
+[ "$(id -u)" = 0 ] || fail 69 "only root can make a chroot"
+command -v debootstrap >/dev/null || fail 69 "needs the Debian package debootstrap"
+command -v git >/dev/null || fail 69 "needs the Debian package git"
+unshare --mount --pid --ipc --fork true || fail 69 "this machine gives no namespaces (see above)"
+sources=$(sources)
+[ -n "$sources" ] || fail 69 "no mirror of Debian among apt's sources"
+export sources mirror=${sources%% *}
+
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/causticbench
+mkdir -p "$cache"
+for stale in "$cache"/fresh-*/; do
+    [ ! -d "$stale" ] || flock --nonblock "$stale" rm -rf --one-file-system "$stale" || true
+done
+root=$(mktemp -d "$cache/fresh-$release-XXXXXX")
+chmod 755 "$root"
+export root packages=$cache/packages-$release.tgz compiled=$cache/ccache-$release
+child=
+exec 9<"$root"
+flock 9
+trap clean_up EXIT
+trap 'exit 143' TERM INT HUP
+
+[ -s "$packages" ] || quietly fetch_packages || fail 75 "the packages of $release could not be fetched"
+quietly make_system || fail 69 "no system could be made of $packages (see above)"
+apart run_lines "$@"
