@@ -16,7 +16,7 @@ fail() { echo "fresh_debian: $2" >&2; exit "$1"; }
 [ $# -ge 2 ] || fail 2 "usage: tools/fresh_debian.sh RELEASE LINE..."
 export release=$1
 shift
-[[ $release =~ ^[a-z]+$ ]] || fail 2 "'$release' names no release of Debian; bookworm and trixie do"
+[[ $release =~ ^[a-z]+$ ]] || fail 2 "'$release' is no release of Debian; try bookworm or trixie"
 
 # Each "URI suite" of this machine's apt that is Debian's own, with the other release's name.
 sources() {
@@ -36,8 +36,8 @@ fetch_packages() {
     local pause
     for pause in 0 15 60; do
         sleep "$pause"
-        debootstrap --variant=minbase --make-tarball="$root/packages.tgz" "$release" "$root/fetch" \
-            "$mirror" && mv "$root/packages.tgz" "$packages" && return
+        debootstrap --variant=minbase --make-tarball="$work/packages.tgz" "$release" "$work/fetch" \
+            "$mirror" && mv "$work/packages.tgz" "$packages" && return
     done
 }
 
@@ -60,13 +60,17 @@ make_system() {
     git clone --quiet . "$root/src/causticbench"
 }
 
+mount_all() {
+    mkdir -p "$compiled" "$root/root/.cache/ccache" &&
+        mount --bind "$compiled" "$root/root/.cache/ccache" &&
+        mount -t proc proc "$root/proc" &&
+        mount --rbind /sys "$root/sys" &&
+        mount --rbind /dev "$root/dev" &&
+        mount -t tmpfs -o mode=1777 shm "$root/dev/shm"
+}
+
 run_lines() {
-    mount -t proc proc "$root/proc"
-    mount --rbind /sys "$root/sys"
-    mount --rbind /dev "$root/dev"
-    mount -t tmpfs -o mode=1777 shm "$root/dev/shm"
-    mkdir -p "$compiled" "$root/root/.cache/ccache"
-    mount --bind "$compiled" "$root/root/.cache/ccache"
+    mount_all || return 69
     local environment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8) name line
     for name in {http,https,no}_proxy {HTTP,HTTPS,NO}_PROXY; do
         [ -z "${!name:-}" ] || environment+=("$name=${!name}")
@@ -92,16 +96,17 @@ apart() {
 }
 
 # The same, with nothing said where all goes well.
-quietly() { apart "$@" >"$root.log" 2>&1 || { tail -n 20 "$root.log" >&2; return 1; }; }
+quietly() { apart "$@" >"$work/log" 2>&1 || { tail -n 20 "$work/log" >&2; return 1; }; }
 
 clean_up() {
     [ -z "$child" ] || { kill -KILL "$child"; wait "$child" 2>/dev/null; } || true
     exec 9<&-
-    flock "$root" rm -rf --one-file-system "$root" "$root.log"  # once the last process is gone
+    flock "$work" rm -rf --one-file-system "$work"  # once the last process is gone
 }
 
 [ "$(id -u)" = 0 ] || fail 69 "only root can make a chroot"
 command -v debootstrap >/dev/null || fail 69 "needs the Debian package debootstrap"
+[ -e "/usr/share/debootstrap/scripts/$release" ] || fail 2 "debootstrap knows no release '$release'"
 command -v git >/dev/null || fail 69 "needs the Debian package git"
 unshare --mount --pid --ipc --fork true || fail 69 "this machine gives no namespaces (see above)"
 sources=$(sources)
@@ -113,11 +118,10 @@ mkdir -p "$cache"
 for stale in "$cache"/fresh-*/; do
     [ ! -d "$stale" ] || flock --nonblock "$stale" rm -rf --one-file-system "$stale" || true
 done
-root=$(mktemp -d "$cache/fresh-$release-XXXXXX")
-chmod 755 "$root"
-export root packages=$cache/packages-$release.tgz compiled=$cache/ccache-$release
+work=$(mktemp -d "$cache/fresh-$release-XXXXXX")
+export work root=$work/root packages=$cache/packages-$release.tgz compiled=$cache/ccache-$release
 child=
-exec 9<"$root"
+exec 9<"$work"
 flock 9
 trap clean_up EXIT
 trap 'exit 143' TERM INT HUP
