@@ -108,9 +108,9 @@ private:
         for (const Event event : events) {
             const Origin whole{quad.triangle, 2, sides[0], event};
             bool is_whole = alike && !part_widely(corners, event, true);
-            for (const std::size_t i : {0, 1, 2})
+            for (const std::size_t i : {0U, 1U, 2U})
                 is_whole = is_whole && sends_on(*corners[i], sides[0], event);
-            for (const std::size_t i : {0, 2, 3})
+            for (const std::size_t i : {0U, 2U, 3U})
                 is_whole = is_whole && sends_on(*corners[i], sides[1], event);
             if (is_whole) {
                 add_beam(corners, whole);

@@ -189,7 +189,7 @@ Contest unbalanced_contest(Caustic caustic, std::size_t count, Arrival arrival,
 void register_knn(Caustic caustic, std::size_t count, const BenchOptions& options) {
     const std::string set = std::string(name(caustic)) + "/" + std::to_string(count) + "/";
     for (const Density density : {Density::sparse, Density::dense})
-        for (const std::size_t k : {50, 100, 200})
+        for (const std::size_t k : {50U, 100U, 200U})
             if (!options.quick || k == usual_k)
                 register_contest("knn/" + set + std::to_string(k) + "/" + name(density), 1,
                                  [=] { return knn_contest(caustic, count, k, density, options); });

@@ -46,7 +46,8 @@ TEST(Shading, IsTheFormulaOnEveryInstructionSet) {
     Rng rng(31, Stage::test, 0);
     for (const float alpha : {0.0F, 1.0F, 0.5F, 0.1F, 0.01F, 0.001F}) {
         const Bsdf bsdf = alpha > 0 ? schlick(alpha) : lambert();
-        for (const std::size_t count : {0, 1, 7, 8, 9, 15, 16, 17, 31, 100, 511, 512, 513, 1500}) {
+        for (const std::size_t count :
+             {0U, 1U, 7U, 8U, 9U, 15U, 16U, 17U, 31U, 100U, 511U, 512U, 513U, 1500U}) {
             const ReceiverPoint point = test::random_point(rng, bsdf);
             const PhotonArrays photons = test::random_photons(count, 32);
             for (const bool weighted : {false, true}) {
@@ -143,7 +144,7 @@ TEST(Shading, DecodesEveryEnergyExactly) {
 
 TEST(Shading, ArrivingLeavesOutAndWeighs) {
     const PhotonArrays photons = test::random_photons(700, 37);
-    for (const std::size_t left_out : {0, 3, 16, 511, 512, 513, 699}) {
+    for (const std::size_t left_out : {0U, 3U, 16U, 511U, 512U, 513U, 699U}) {
         SpectrumSum truth = SpectrumSum::Zero();
         for (std::size_t i = 0; i < photons.size(); ++i)
             if (i != left_out)
