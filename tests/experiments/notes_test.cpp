@@ -52,7 +52,7 @@ SceneDesc panes() {
     desc.shapes.erase(desc.shapes.begin());
     Rng rng(5, Stage::test, 0);
     const auto random = [&rng] {
-        return Vec3d(2 * Vec3d(rng.next(), rng.next(), rng.next()) - Vec3d::Ones());
+        return Vec3d(2 * Vec3(rng.next(), rng.next(), rng.next()).cast<double>() - Vec3d::Ones());
     };
     for (int i = 0; i < 24; ++i) {
         const Vec3d u = random().normalized();
