@@ -36,7 +36,8 @@ std::vector<double> irradiance(const Scene& scene, const BeamTreeParams& params,
                                const std::vector<Vec2>& at) {
     std::vector<ReceiverPoint> points;
     for (const Vec2& p : at)
-        points.push_back(support::probe(scene, 1, {p.x(), p.y(), -1}, Vec3d::UnitZ(), 0));
+        points.push_back(
+            support::probe(scene, 1, Vec3(p.x(), p.y(), -1).cast<double>(), Vec3d::UnitZ(), 0));
     std::vector<double> found;
     for (const Estimate& one : support::irradiance(*build(scene, params, {}), points))
         found.push_back(static_cast<double>(one.value.mean()));
