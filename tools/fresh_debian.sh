@@ -18,16 +18,13 @@ export release=$1
 shift
 [[ $release =~ ^[a-z]+$ ]] || fail 2 "'$release' is no release of Debian; try bookworm or trixie"
 
-# Each "URI suite" of this machine's apt that is Debian's own, with the other release's name.
+# Each "URI suite" of this machine's apt that is Debian's own, with the other release's name. apt would
+# fetch their lists from 'URI/dists/SUITE/InRelease'.
 sources() {
     local codename
     codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
-    apt-get indextargets --format '$(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
-        awk -v here="$codename" -v there="$release" '$3 == "main" &&
-            ($2 == here || $2 == here "-updates" || $2 == here "-security") {
-                sub(here, there, $2)
-                print $1, $2
-            }' | uniq
+    apt-get --print-uris update |
+        sed -nE "s#^'([^']*/)dists/$codename(-updates|-security)?/InRelease'.*#\1 $release\2#p"
 }
 
 # The functions from here to `run_lines` run in namespaces of their own.
