@@ -33,6 +33,7 @@ fetch_packages() {
     local pause
     for pause in 0 15 60; do
         sleep "$pause"
+        rm -rf "$work/fetch"  # of an earlier try: debootstrap wants it empty
         debootstrap --variant=minbase --make-tarball="$work/packages.tgz" "$release" "$work/fetch" \
             "$mirror" && mv "$work/packages.tgz" "$packages" && return
     done
