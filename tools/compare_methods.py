@@ -2,31 +2,28 @@
 """Compares the methods of a sweep: errors with confidence intervals, bias and variance apart, efficiency, and which
 method is best at equal time and at equal error, with ties where the seeds do not tell.
 
-Reads DIR/records.csv, writes statistics.csv, statistics.md, equal_time.md and equal_error.md. Wants several seeds; a
-cell of one seed has no interval, and wins or loses nothing. Times are CPU seconds of the whole trial without reading
+Reads DIR/records.csv, writes statistics.csv, statistics.md, equal_time.md and equal_error.md. Wants five seeds; a cell
+of one seed has no interval, and with fewer than five no method is called the best. Times are CPU seconds of the whole trial without reading
 the scene, so compare records of one machine. The same records give the same bytes.
 Exit codes: 0 done, 2 bad input or usage.
 """
 import argparse
 import csv
+import dataclasses
 import io
 import math
 import os
-import random
 import statistics
 import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 import records
-from curves import along
 from estimate_cells import STAGES
 from report_files import report, write
 
-RESAMPLINGS = 400
 STEPS = 5  # times and errors asked for, a scene
-# Student's t for a two-sided 95 % interval, by degrees of freedom; beyond the list the normal's.
-STUDENT = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
+FEWEST_SEEDS = 5  # below, no method is called the best
 
 
 def main():
@@ -77,6 +74,12 @@ class Scored:
         """mse = bias² + variance + the reference's own squared error; may come out a little below 0 by chance."""
         return None if self.variance is None else self.square() - self.variance - self.reference_square
 
+    def bias_square_error(self):
+        """Its standard error, by how the squares scatter from seed to seed; None for one seed."""
+        if self.variance is None or len(self.errors) < 2:
+            return None
+        return statistics.stdev(error * error for error in self.errors) / math.sqrt(len(self.errors))
+
     def seconds(self):
         return statistics.median(self.times)
 
@@ -88,17 +91,49 @@ class Scored:
     def is_at_the_references_noise(self):
         return self.square() < 2 * self.reference_square
 
-    def drawn(self, generator):
-        """(seconds, rmse), the rmse of as many seeds drawn again, for the bootstrap."""
-        return self.seconds(), statistics.mean(generator.choices(self.errors, k=len(self.errors)))
+    def point(self):
+        return Point(self.seconds(), self.mean(), log_variance(self.times), log_variance(self.errors), len(self.errors))
+
+
+@dataclasses.dataclass(frozen=True)
+class Point:
+    """A cell on a convergence curve; the variances are of the logarithms, as far as the seeds tell them."""
+    seconds: float
+    error: float
+    seconds_variance: float = 0.0
+    error_variance: float = 0.0
+    seeds: int = FEWEST_SEEDS
+
+    def turned(self):
+        """Error for time, to ask for the time at an error."""
+        return Point(self.error, self.seconds, self.error_variance, self.seconds_variance, self.seeds)
+
+
+@dataclasses.dataclass(frozen=True)
+class Answer:
+    """What a curve says at a place; the terms of its logarithm's variance, each with its degrees of freedom."""
+    value: float
+    terms: tuple = ()
+
+
+def student(degrees):
+    """Student's t for a two-sided 95 % interval."""
+    from scipy.special import stdtrit  # here, so that a broken table is named even without SciPy
+
+    return float(stdtrit(degrees, 0.975))
 
 
 def half_interval(values):
     if len(values) < 2:
         return None
-    degrees = len(values) - 1
-    t = STUDENT[degrees - 1] if degrees <= len(STUDENT) else 1.96
-    return t * statistics.stdev(values) / math.sqrt(len(values))
+    return student(len(values) - 1) * statistics.stdev(values) / math.sqrt(len(values))
+
+
+def log_variance(values):
+    """Of the logarithm of the mean, to first order; 0 for one value."""
+    if len(values) < 2:
+        return 0.0
+    return statistics.variance(values) / len(values) / statistics.mean(values) ** 2
 
 
 def parameter_names(cells):
@@ -110,11 +145,11 @@ def statistics_csv(cells):
     names = parameter_names(cells)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["scene", "method", *names, "seeds", "rmse_mean", "rmse_half_interval_95", "bias_square", "variance",
-                     "reference_square", "cpu_s_median", "efficiency"])
+    writer.writerow(["scene", "method", *names, "seeds", "rmse_mean", "rmse_half_interval_95", "bias_square",
+                     "bias_square_stderr", "variance", "reference_square", "cpu_s_median", "efficiency"])
     for cell in cells:
-        numbers = [cell.mean(), cell.half_interval(), cell.bias_square(), cell.variance, cell.reference_square,
-                   cell.seconds(), cell.efficiency()]
+        numbers = [cell.mean(), cell.half_interval(), cell.bias_square(), cell.bias_square_error(), cell.variance,
+                   cell.reference_square, cell.seconds(), cell.efficiency()]
         writer.writerow([cell.scene, cell.method, *(cell.parameters.get(name, "") for name in names), len(cell.errors)]
                         + ["" if number is None else repr(number) for number in numbers])
     return text.getvalue()
@@ -125,7 +160,9 @@ def statistics_md(cells):
     yes = lambda number, form: "" if number is None else format(number, form)
     lines = ["rmse: mean over the seeds ± half its 95 % interval (Student). mse = bias² + variance + (the reference's own "
              "error)², each a mean over pixels and channels; \\* marks errors of which half or more is the reference's: "
-             "cells so marked are not told apart. efficiency = 1 / (mse × CPU seconds).", "",
+             "cells so marked are not told apart. bias² is what is left of the mse, ± its standard error by the scatter "
+             "of the seeds: an unbiased estimate, so below 0 in half the cells that have no bias; † marks those not "
+             "distinguishable from 0 (less than two standard errors above it). efficiency = 1 / (mse × CPU seconds).", "",
              "| scene | method | " + " | ".join([*names, "seeds", "rmse", "bias²", "variance", "CPU s", "efficiency"]) + " |",
              "|" + "---|" * (len(names) + 8)]
     for cell in cells:
@@ -134,39 +171,62 @@ def statistics_md(cells):
         error += " \\*" if cell.is_at_the_references_noise() else ""
         lines.append("| " + " | ".join(
             [cell.scene, cell.method, *(cell.parameters.get(name, "") for name in names), str(len(cell.errors)), error,
-             yes(cell.bias_square(), ".2g"), yes(cell.variance, ".2g"), f"{cell.seconds():.3g}",
+             bias_text(cell), yes(cell.variance, ".2g"), f"{cell.seconds():.3g}",
              yes(cell.efficiency(), ".3g")]) + " |")
     return "\n".join(lines) + "\n"
 
 
+def bias_text(cell):
+    square, error = cell.bias_square(), cell.bias_square_error()
+    if square is None:
+        return ""
+    if error is None:
+        return f"{square:.2g}"
+    return f"{square:.2g} ± {error:.1g}" + (" †" if square < 2 * error else "")
+
+
 def front(points):
-    """The convergence curve: of (seconds, error) those that nothing faster beats, by time."""
+    """The convergence curve: the points that nothing faster beats, by time."""
     curve = []
-    for seconds, error in sorted(points):
-        if not curve or error < curve[-1][1]:
-            curve.append((seconds, error))
+    for point in sorted(points, key=lambda point: (point.seconds, point.error)):
+        if not curve or point.error < curve[-1].error:
+            curve.append(point)
     return curve
+
+
+def along(curve, seconds):
+    """The error at a time, as a power between neighbours; None outside of the curve. Seconds may fall as well as rise."""
+    for a, b in zip(curve, curve[1:]):
+        if min(a.seconds, b.seconds) <= seconds <= max(a.seconds, b.seconds):
+            weight = math.log(seconds / a.seconds) / math.log(b.seconds / a.seconds)
+            power = math.log(b.error / a.error) / math.log(b.seconds / a.seconds)
+            terms = tuple((share ** 2 * (point.error_variance + power ** 2 * point.seconds_variance), point.seeds - 1)
+                          for share, point in ((1 - weight, a), (weight, b)))
+            return Answer(a.error * (b.error / a.error) ** weight, terms)
+    return None
 
 
 def equal_time(curve, seconds):
     """The error that a method has reached after a time; more time than was measured does no harm."""
-    if curve and seconds > curve[-1][0]:
-        return curve[-1][1]
+    last = curve[-1]
+    if seconds >= last.seconds:
+        return Answer(last.error, ((last.error_variance, last.seeds - 1),))
     return along(curve, seconds)
 
 
 def equal_error(curve, error):
     """The time after which a method has reached an error; one that it had at once takes its first time."""
-    if curve and error > curve[0][1]:
-        return curve[0][0]
-    return along([(e, s) for s, e in curve], error)
+    first = curve[0]
+    if error >= first.error:
+        return Answer(first.seconds, ((first.seconds_variance, first.seeds - 1),))
+    return along([point.turned() for point in curve], error)
 
 
 def asked(curves, question):
     """Times, or errors, spread evenly (as powers) over what at least two methods reach."""
-    column = 0 if question is equal_time else 1
-    lows = sorted(min(point[column] for point in curve) for curve in curves)
-    highs = sorted((max(point[column] for point in curve) for curve in curves), reverse=True)
+    place = (lambda point: point.seconds) if question is equal_time else (lambda point: point.error)
+    lows = sorted(min(map(place, curve)) for curve in curves)
+    highs = sorted((max(map(place, curve)) for curve in curves), reverse=True)
     if len(curves) < 2 or lows[1] >= highs[0]:
         return []
     low, high = lows[1], highs[0]
@@ -177,8 +237,8 @@ def contests(cells, question):
     name, unit = ("time", "s") if question is equal_time else ("error", "rmse")
     value = "rmse" if question is equal_time else "CPU seconds"
     lines = [f"{value} at equal {name}, along each method's convergence curve: its cells that nothing faster beats, a power "
-             "law between neighbours. Bold: the best, and all that the seeds do not tell from it (95 % of "
-             f"{RESAMPLINGS} bootstrap samples over seeds); – where a method was not measured."]
+             "law between neighbours. Bold: the best, and all that the seeds do not tell from it (Welch's t of the logarithms, "
+             f"two-sided, 95 %), where there are {FEWEST_SEEDS} seeds; – where a method was not measured."]
     for title, own in by_scene(cells):
         groups = {}
         for cell in own:
@@ -201,42 +261,44 @@ def by_scene(cells):
 
 
 def contest(groups, question, unit):
-    generator = random.Random(1)
-    curves = {method: front((cell.seconds(), cell.mean()) for cell in own) for method, own in groups.items()}
+    curves = {method: front(cell.point() for cell in own) for method, own in groups.items()}
     places = asked(list(curves.values()), question)
     if not places:
         return ["Fewer than two methods cover a common range."]
-    again = [{method: front(cell.drawn(generator) for cell in own) for method, own in groups.items()}
-             for _ in range(RESAMPLINGS)]
-    lines = ["| method | " + " | ".join(f"{place:.3g} {unit}" for place in places) + " |", "|---|" + "---|" * len(places)]
-    bold = [tied(curves, groups, again, question, place) for place in places]
+    few = min(point.seeds for curve in curves.values() for point in curve)
+    lines = []
+    if few < FEWEST_SEEDS:
+        lines += [f"Too few seeds ({few}, not {FEWEST_SEEDS}) to call a method the best.", ""]
+    lines += ["| method | " + " | ".join(f"{place:.3g} {unit}" for place in places) + " |", "|---|" + "---|" * len(places)]
+    bold = [set() if few < FEWEST_SEEDS else tied(curves, question, place) for place in places]
     for method in sorted(curves):
         fields = []
         for place, best in zip(places, bold):
-            value = question(curves[method], place)
-            text = "–" if value is None else f"{value:.3g}"
+            answer = question(curves[method], place)
+            text = "–" if answer is None else f"{answer.value:.3g}"
             fields.append(f"**{text}**" if method in best else text)
         lines.append(f"| {method} | " + " | ".join(fields) + " |")
     return lines
 
 
-def tied(curves, groups, again, question, place):
-    """The best method there, and those that are not worse in at least 1 of 40 samples; also those of one seed."""
-    values = {method: question(curve, place) for method, curve in curves.items()}
-    reached = {method: value for method, value in values.items() if value is not None}
+def tied(curves, question, place):
+    """The best method there, and those that the seeds do not tell from it."""
+    answers = {method: question(curve, place) for method, curve in curves.items()}
+    reached = {method: answer for method, answer in answers.items() if answer is not None}
     if not reached:
         return set()
-    best = min(reached, key=reached.get)
-    result = {best}
-    for method in reached:
-        pairs = [(question(sample[method], place), question(sample[best], place)) for sample in again]
-        pairs = [pair for pair in pairs if None not in pair]
-        worse = sum(mine > other for mine, other in pairs)
-        if all(len(cell.errors) < 2 for cell in groups[method] + groups[best]):
-            worse = len(pairs) if reached[method] > reached[best] else 0
-        if not pairs or worse < 0.975 * len(pairs):
-            result.add(method)
-    return result
+    best = min(reached.values(), key=lambda answer: answer.value)
+    return {method for method, answer in reached.items() if not is_worse(answer, best)}
+
+
+def is_worse(mine, best):
+    """Whether a value is above another by more than chance, by Welch's t with Satterthwaite's degrees of freedom."""
+    terms = [(variance, degrees) for variance, degrees in mine.terms + best.terms if variance > 0]
+    variance = sum(variance for variance, _ in terms)
+    if variance == 0:
+        return mine.value > best.value
+    degrees = variance ** 2 / sum(variance ** 2 / degrees for variance, degrees in terms)
+    return math.log(mine.value / best.value) > student(degrees) * math.sqrt(variance)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@ import sys
 
 import records
 
+PACKAGES = "Debian's python3-matplotlib and python3-scipy"
+
 
 def write(path, text):
     """Whole files only: a reader never sees half of one."""
@@ -13,13 +15,13 @@ def write(path, text):
 
 
 def report(tool, what, output, make):
-    """Runs make(); returns the exit code: 0 done, 2 bad input. `what` is the part that needs matplotlib."""
+    """Runs make(); returns the exit code: 0 done, 2 bad input. `what` is the part that needs a package."""
     try:
         make()
     except records.RecordsError as error:
         return fail(tool, error)
     except ImportError as error:
-        return fail(tool, f"{error}: {what} need matplotlib (Debian package python3-matplotlib, run by /usr/bin/python3)")
+        return fail(tool, f"{error}: {what} need {PACKAGES} (run by /usr/bin/python3)")
     except OSError as error:
         return fail(tool, f"{error.filename or output}: {error.strerror}")
     return 0

@@ -15,6 +15,7 @@ packages=(
     libgtest-dev                                    # tests
     libbenchmark-dev libnanoflann-dev               # benchmarks
     python3 python3-numpy python3-matplotlib        # layering test, plots
+    python3-scipy                                   # intervals of the tables
     "$@"
 )
 

@@ -1,14 +1,25 @@
-"""tools/compare_methods.py on records made by hand: intervals, bias and variance, curves, ties."""
+"""tools/compare_methods.py on records made by hand: intervals, bias and variance, curves, ties.
+
+Exits with 77 where SciPy is missing.
+"""
 import csv
 import math
 import os
 import pathlib
+import random
+import statistics
 import sys
 import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+
+try:
+    import scipy
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
 
 import compare_methods as tool
 
@@ -41,8 +52,12 @@ def outputs(*records):
 
 class Comparison(unittest.TestCase):
     def test_interval_is_students(self):
-        self.assertAlmostEqual(tool.half_interval([1.0, 2.0, 3.0]), 4.303 / math.sqrt(3))
+        self.assertAlmostEqual(tool.half_interval([1.0, 2.0, 3.0]), 4.30265 / math.sqrt(3), places=5)
         self.assertIsNone(tool.half_interval([1.0]))
+        for degrees, t in ((1, 12.706), (15, 2.131), (16, 2.120), (30, 2.042), (120, 1.980)):  # from printed tables
+            self.assertAlmostEqual(tool.student(degrees), t, places=3)
+        seventeen = [float(i) for i in range(17)]
+        self.assertAlmostEqual(tool.half_interval(seventeen), 2.1199 * statistics.stdev(seventeen) / math.sqrt(17), places=3)
 
     def test_bias_and_variance_and_the_references_error_add_up_to_the_mean_square(self):
         text = outputs(rows("a", [1], [0.5], scatter=0))["statistics.csv"]
@@ -52,6 +67,14 @@ class Comparison(unittest.TestCase):
         self.assertAlmostEqual(float(row["bias_square"]), 0.25 - 0.125 - 1e-4)
         self.assertAlmostEqual(float(row["efficiency"]), 4)
 
+    def test_a_bias_that_chance_explains_is_marked(self):
+        clear, unclear = rows("a", [1], [0.5], scatter=0), rows("b", [1], [0.5], scatter=1)
+        text = outputs(clear, unclear)["statistics.md"]
+        line = {name: next(line for line in text.splitlines() if line.startswith(f"| pool | {name}")) for name in "ab"}
+        self.assertIn("| 0.12 ± 0 |", line["a"])
+        self.assertRegex(line["b"], r"\| 0\.25 ± 0\.2 † \|")  # squares 0, 1/16, 1/4, 9/16, 1: mean 3/8, stderr 0.18
+        self.assertIn("not distinguishable from 0", text)
+
     def test_errors_of_the_references_size_are_marked(self):
         text = outputs(rows("a", [1, 2], [0.5, 0.012], scatter=0))["statistics.md"]
         marked = [line for line in text.splitlines() if "\\*" in line and line.startswith("| pool")]
@@ -59,16 +82,42 @@ class Comparison(unittest.TestCase):
         self.assertIn("0.012", marked[0])
 
     def test_curve_leaves_out_what_something_faster_beats(self):
-        self.assertEqual(tool.front([(1, 4), (3, 5), (2, 2), (4, 1)]), [(1, 4), (2, 2), (4, 1)])
+        curve = tool.front([tool.Point(1, 4), tool.Point(3, 5), tool.Point(2, 2), tool.Point(4, 1)])
+        self.assertEqual([(point.seconds, point.error) for point in curve], [(1, 4), (2, 2), (4, 1)])
 
     def test_between_neighbours_runs_a_power_law(self):
-        curve = [(1, 8), (4, 4), (16, 2)]  # error = 8 / sqrt(seconds)
-        self.assertAlmostEqual(tool.equal_time(curve, 2), 8 / math.sqrt(2))
-        self.assertAlmostEqual(tool.equal_error(curve, 5), 2.56)
+        curve = [tool.Point(1, 8), tool.Point(4, 4), tool.Point(16, 2)]  # error = 8 / sqrt(seconds)
+        self.assertAlmostEqual(tool.equal_time(curve, 2).value, 8 / math.sqrt(2))
+        self.assertAlmostEqual(tool.equal_error(curve, 5).value, 2.56)
         self.assertIsNone(tool.equal_time(curve, 0.5))
-        self.assertEqual(tool.equal_time(curve, 100), 2)
+        self.assertEqual(tool.equal_time(curve, 100).value, 2)
         self.assertIsNone(tool.equal_error(curve, 1))
-        self.assertEqual(tool.equal_error(curve, 9), 1)
+        self.assertEqual(tool.equal_error(curve, 9).value, 1)
+
+    def test_variance_between_neighbours_is_that_of_the_power_law(self):
+        generator = random.Random(3)
+        ends = [(1.0, 8.0), (16.0, 2.0)]
+        sigma = 0.01
+        curve = [tool.Point(s, e, sigma ** 2, sigma ** 2, 9) for s, e in ends]
+        for question, place in ((tool.equal_time, 3.0), (tool.equal_error, 3.0)):
+            drawn = [math.log(question([tool.Point(s * generator.lognormvariate(0, sigma), e * generator.lognormvariate(0, sigma))
+                                        for s, e in ends], place).value) for _ in range(4000)]
+            told = sum(variance for variance, _ in question(curve, place).terms)
+            self.assertAlmostEqual(told / statistics.variance(drawn), 1, delta=0.1)
+
+    def test_one_of_forty_equals_is_called_worse(self):
+        """Two methods of the same law: what is called worse is called so by chance, in 1 of 40 cases on either side."""
+        generator = random.Random(4)
+        draw = lambda: [math.exp(generator.gauss(0, 0.1)) for _ in range(5)]
+        answer = lambda values: tool.Answer(statistics.mean(values), ((tool.log_variance(values), len(values) - 1),))
+        wrong = sum(tool.is_worse(answer(draw()), answer(draw())) for _ in range(2000))
+        self.assertAlmostEqual(wrong / 2000, 0.025, delta=4 * math.sqrt(0.025 / 2000))
+
+    def test_three_seeds_call_no_winner(self):
+        text = outputs(rows("good", [1, 4], [0.4, 0.2], seeds=3), rows("poor", [1, 4], [0.8, 0.4]))
+        for name in ("equal_time.md", "equal_error.md"):
+            self.assertIn("Too few seeds (3, not 5)", text[name])
+            self.assertNotIn("**", text[name])
 
     def test_the_better_method_alone_is_bold(self):
         text = outputs(rows("good", [1, 4], [0.4, 0.2]), rows("poor", [1, 4], [0.8, 0.4]))["equal_time.md"]
