@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 
 #include "core/error.h"
+#include "core/picture_file.h"
 #include "core/whole_file.h"
 
 namespace caustics {
@@ -20,9 +22,7 @@ std::array<std::string, 3> rgb_channels(const std::string& layer) {
 }
 
 [[noreturn]] void fail(const fs::path& file, const std::string& doing, const std::string& why) {
-    std::string line = why;
-    std::ranges::replace(line, '\n', ' ');
-    throw InputError(file.string() + ": cannot be " + doing + " (" + line + ")");
+    throw InputError(file.string() + ": cannot be " + doing + " (" + why + ")");
 }
 
 // OpenImageIO encodes to memory: its own writers do not report a full disk, and a temporary name
@@ -45,7 +45,12 @@ void encode_and_write(const std::string& format, const OIIO::ImageSpec& spec, OI
 std::vector<float>& Film::plane(const std::string& channel) {
     for (Plane& plane : planes_)
         if (plane.channel == channel) return plane.values;
-    planes_.push_back({channel, std::vector<float>(pixel_count(), 0.0F)});
+    try {
+        planes_.push_back({channel, std::vector<float>(pixel_count(), 0.0F)});
+    } catch (const std::bad_alloc&) {
+        throw InputError("a film of " + std::to_string(width_) + " x " + std::to_string(height_) +
+                         " pixels does not fit into memory");
+    }
     return planes_.back().values;
 }
 
@@ -89,23 +94,20 @@ void write_exr(const Film& film, const fs::path& file) {
 }
 
 Film read_exr(const fs::path& file) {
-    if (!fs::exists(file)) fail(file, "read", "no such file");
-    if (!fs::is_regular_file(file)) fail(file, "read", "not a file");
-    const auto input = OIIO::ImageInput::open(file.string());
-    if (!input) fail(file, "read", OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
+    PictureFile picture(file);
+    const OIIO::ImageSpec& spec = picture.spec();
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height)
         fail(file, "read", "its data window is not the whole picture");
     Film film(spec.width, spec.height);
     const auto channels = static_cast<std::size_t>(spec.nchannels);
-    std::vector<float> pixels(film.pixel_count() * channels);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
-        fail(file, "read", input->geterror());
-    for (std::size_t c = 0; c < channels; ++c) {
-        std::vector<float>& plane = film.plane(spec.channelnames[c]);
-        for (std::size_t i = 0; i < film.pixel_count(); ++i) plane[i] = pixels[i * channels + c];
-    }
+    const auto width = static_cast<std::size_t>(spec.width);
+    std::vector<std::vector<float>*> planes;
+    for (const std::string& channel : spec.channelnames) planes.push_back(&film.plane(channel));
+    picture.read_rows([&](int y, const float* values) {
+        for (std::size_t i = width * static_cast<std::size_t>(y), end = i + width; i < end; ++i)
+            for (std::size_t c = 0; c < channels; ++c) (*planes[c])[i] = *values++;
+    });
     const std::string prefix = "causticbench.";
     for (const auto& attribute : spec.extra_attribs) {
         const std::string name = attribute.name().string();

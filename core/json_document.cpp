@@ -1,14 +1,11 @@
 #include "core/json_document.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <system_error>
 
 #include "core/error.h"
+#include "core/whole_file.h"
 
 namespace caustics {
 namespace {
@@ -17,16 +14,11 @@ using nlohmann::json;
 
 constexpr std::size_t max_depth = 64;
 
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    return text;
-}
-
-/// Follows the parser's events to know the pointer of each key, and refuses a key's second time.
-class DuplicateKeyGuard {
+/// Follows the parser's events to know the pointer of each key, and refuses a key's second time and
+/// control characters: a file's name would end at a NUL, and no name is printed with them.
+class DocumentGuard {
 public:
-    explicit DuplicateKeyGuard(const std::string& origin) : origin_(origin) {}
+    explicit DocumentGuard(const std::string& origin) : origin_(origin) {}
 
     bool operator()(int, json::parse_event_t event, json& value) {
         switch (event) {
@@ -34,13 +26,16 @@ public:
             case json::parse_event_t::array_start:
                 begin_value();
                 if (levels_.size() >= max_depth)
-                    throw InputError(one_line(origin_ + ": " + pointer() + ": nested more than " +
-                                              std::to_string(max_depth) + " levels deep"));
+                    throw InputError(origin_ + ": " + pointer() + ": nested more than " +
+                                     std::to_string(max_depth) + " levels deep");
                 levels_.push_back({event == json::parse_event_t::array_start, 0, {}, {}});
                 break;
             case json::parse_event_t::object_end:
             case json::parse_event_t::array_end: levels_.pop_back(); break;
-            case json::parse_event_t::value: begin_value(); break;
+            case json::parse_event_t::value:
+                begin_value();
+                if (value.is_string()) require_printable(value.get_ref<const std::string&>());
+                break;
             case json::parse_event_t::key: begin_key(value.get<std::string>()); break;
         }
         return true;
@@ -59,11 +54,21 @@ private:
             levels_.back().key = std::to_string(levels_.back().count++);
     }
 
+    void require_printable(const std::string& text) const {
+        const auto is_control = [](char c) {
+            return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+        };
+        if (std::ranges::any_of(text, is_control))
+            throw InputError(origin_ + ": " + pointer() + ": a control character in " +
+                             shown(text));
+    }
+
     void begin_key(const std::string& key) {
+        require_printable(key);
         levels_.back().key = key;
         if (!levels_.back().keys.insert(key).second)
-            throw InputError(one_line(origin_ + ": " + pointer() + ": key " + shown(key) +
-                                      " is given twice in one object"));
+            throw InputError(origin_ + ": " + pointer() + ": key " + shown(key) +
+                             " is given twice in one object");
     }
 
     std::string pointer() const {
@@ -121,7 +126,7 @@ private:
     void include(json& value, const std::string& pointer, const std::string& local_pointer,
                  const std::filesystem::path& file) {
         const std::string place =
-            one_line(file.string() + ": " + child_pointer(local_pointer, "$include") + ": ");
+            file.string() + ": " + child_pointer(local_pointer, "$include") + ": ";
         if (value.size() != 1)
             throw InputError(place + "an object with \"$include\" may have no other key (has " +
                              key_list(value) + ")");
@@ -131,13 +136,13 @@ private:
         const std::filesystem::path target =
             (file.parent_path() / name.get<std::string>()).lexically_normal();
         if (std::find(open_.begin(), open_.end(), identity(target)) != open_.end())
-            throw InputError(place + one_line(target.string()) +
+            throw InputError(place + target.string() +
                              " includes itself, directly or through others");
         if (open_.size() >= max_depth)
             throw InputError(place + "files include each other more than " +
                              std::to_string(max_depth) + " levels deep");
         try {
-            value = parse_json(read_text(target), target.string());
+            value = parse_json(read_whole_file(target), target.string());
         } catch (const std::filesystem::filesystem_error& e) {
             throw InputError(place + e.what());
         } catch (const InputError& e) {
@@ -177,7 +182,7 @@ std::string JsonNode::Document::place(const std::string& pointer) const {
 }
 
 void JsonNode::Document::fail(const std::string& pointer, const std::string& reason) const {
-    throw InputError(one_line(place(pointer) + ": " + reason));
+    throw InputError(place(pointer) + ": " + reason);
 }
 
 std::string child_pointer(const std::string& pointer, const std::string& key) {
@@ -217,9 +222,9 @@ std::string key_list(const json& object) {
 
 json parse_json(const std::string& text, const std::string& origin) {
     try {
-        return json::parse(text, DuplicateKeyGuard(origin));
+        return json::parse(text, DocumentGuard(origin));
     } catch (const json::exception& e) {
-        throw InputError(one_line(origin + ": " + untagged(e.what())));
+        throw InputError(origin + ": " + untagged(e.what()));
     }
 }
 
@@ -228,20 +233,6 @@ void resolve_includes(json& value, const std::string& pointer, const std::filesy
     IncludeResolver resolver(included);
     resolver.enter(file);
     resolver.resolve(value, pointer, pointer, file);
-}
-
-std::string read_text(const std::filesystem::path& file) {
-    std::error_code failed;
-    if (std::filesystem::is_directory(file, failed))
-        throw InputError(one_line(file.string() + ": is a folder, expected a JSON file"));
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    if (stream && stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-    if (!stream.is_open() || stream.bad())
-        throw InputError(one_line(file.string() +
-                                  ": cannot be read: " + std::generic_category().message(errno)));
-    return text.str();
 }
 
 std::string canonical_json(const json& value) {

@@ -54,8 +54,6 @@ nlohmann::json parse_json(const std::string& text, const std::string& origin);
 void resolve_includes(nlohmann::json& value, const std::string& pointer,
                       const std::filesystem::path& file,
                       std::map<std::string, std::filesystem::path>& included);
-/// Reads a whole file. Throws InputError.
-std::string read_text(const std::filesystem::path& file);
 /// Text that is the same for the same values: sorted keys, shortest round-trip numbers, 1.0 as 1.
 std::string canonical_json(const nlohmann::json& value);
 

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/json_document.h"
+#include "core/whole_file.h"
 
 namespace caustics {
 namespace {
@@ -46,13 +47,8 @@ std::string contents(const json& value) {
 
 json value_or_string(const std::string& text, const std::string& place) {
     if (json::accept(text)) return parse_json(text, place);
-    json string = text;
-    try {
-        static_cast<void>(string.dump());
-    } catch (const json::exception&) {
-        throw InputError(place + ": the value is not valid UTF-8");
-    }
-    return string;
+    if (!is_utf8(text)) throw InputError(place + ": the value is not valid UTF-8");
+    return parse_json(json(text).dump(), place);
 }
 
 template <class Value>
@@ -70,7 +66,7 @@ JsonNode::JsonNode(std::shared_ptr<Document> document, std::string pointer)
 JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
     const auto document = std::make_shared<Document>();
     document->file = file;
-    document->root = parse_json(read_text(file), file.string());
+    document->root = parse_json(read_whole_file(file), file.string());
     resolve_includes(document->root, "", file, document->included);
     return {document, ""};
 }

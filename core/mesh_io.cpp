@@ -4,33 +4,17 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <system_error>
 #include <utility>
 
 #include "core/error.h"
 #include "core/mesh_source.h"
 #include "core/polygon.h"
 #include "core/vertex_normals.h"
+#include "core/whole_file.h"
 
 namespace caustics {
 namespace {
-
-std::string read_bytes(const std::filesystem::path& file) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) throw InputError(file.string() + ": no such file");
-    if (!std::filesystem::is_regular_file(status))
-        throw InputError(file.string() + ": not a regular file");
-    std::ifstream stream(file, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.is_open() || stream.bad())
-        throw InputError(file.string() + ": the file cannot be read");
-    if (bytes.empty()) throw InputError(file.string() + ": the file is empty");
-    return bytes;
-}
 
 std::string lower_extension(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
@@ -149,7 +133,8 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const MeshLoadOptions&
     if (extension != ".obj" && extension != ".ply")
         throw InputError(file.string() + ": unknown mesh format '" + extension +
                          "' (known: .obj, .ply)");
-    const std::string bytes = read_bytes(file);
+    const std::string bytes = read_whole_file(file);
+    if (bytes.empty()) throw InputError(file.string() + ": the file is empty");
     TriangleMesh mesh =
         extension == ".obj" ? load_obj(bytes, file.string()) : load_ply(bytes, file.string());
     if (options.face_normals)

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "core/hash.h"
 #include "core/json_reader.h"
@@ -11,6 +9,7 @@
 #include "core/scene_file/frame.h"
 #include "core/scene_file/shapes.h"
 #include "core/scene_file/values.h"
+#include "core/whole_file.h"
 
 namespace caustics {
 namespace {
@@ -96,6 +95,7 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
         if (skewed || linear.determinant() < 0)
             to_world->fail("a sensor takes rotations, translations and one positive scale only");
         camera.to_world.linear() = linear / std::sqrt(scale);
+        scene_file::require_near(*to_world, {camera.to_world.translation()});
     }
     bool has_film = false;
     bool has_sampler = false;
@@ -132,6 +132,7 @@ void read_point_light(const JsonNode& node, Draft& draft) {
     if (position && to_world) to_world->fail("give either position or to_world");
     if (position) place = read_vector(*position);
     if (to_world) place = scene_file::read_transform(*to_world).translation();
+    scene_file::require_near(node, {place});
     light.intensity = read_colour(node, "intensity", 1, unlimited);
     node.finish();
     draft.desc.point_lights.push_back(light);
@@ -178,7 +179,8 @@ void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     if (type == "point") return read_point_light(node, draft);
     if (type == "directional") return read_directional_light(node, draft.desc);
     if (type != "perspective") {
-        draft.desc.shapes.push_back(scene_file::read_shape(key, node, draft.assets));
+        draft.desc.shapes.push_back(scene_file::make_for(
+            node, [&] { return scene_file::read_shape(key, node, draft.assets); }));
         draft.shape_nodes.push_back(node);
         return;
     }
@@ -200,13 +202,6 @@ SceneDesc placed(Draft& draft) {
     return std::move(desc);
 }
 
-std::string hash_of_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << in.rdbuf();
-    return hex(fnv1a(bytes.str()));
-}
-
 }  // namespace
 
 SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrides) {
@@ -225,7 +220,7 @@ SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrid
     scene.canonical = root.canonical();
     std::uint64_t state = fnv1a(scene.canonical);
     for (const auto& [path, name] : draft.assets) {
-        scene.assets.emplace_back(name, hash_of_file(path));
+        scene.assets.emplace_back(name, hex(fnv1a(read_whole_file(path))));
         state = fnv1a(name + scene.assets.back().second, state);
     }
     scene.hash = hex(state);

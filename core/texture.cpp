@@ -1,20 +1,14 @@
 #include "core/texture.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 #include "core/error.h"
+#include "core/picture_file.h"
 
 namespace caustics {
 namespace {
-
-std::string one_line(std::string text) {
-    std::ranges::replace(text, '\n', ' ');
-    return text;
-}
 
 float fraction(float x) { return x - std::floor(x); }
 
@@ -83,40 +77,28 @@ Spectrum evaluate(const Texture& texture, const Vec2& uv) {
 }
 
 Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {
-    OIIO::ImageSpec config;
-    config["oiio:UnassociatedAlpha"] = 1;  // colours as written, not multiplied by alpha
-    const auto input = OIIO::ImageInput::open(file.string(), &config);
-    if (!input)
-        throw InputError(file.string() + ": not a picture that can be read (" +
-                         one_line(OIIO::geterror()) + ")");
-    const OIIO::ImageSpec& spec = input->spec();
-    const auto pixels =
-        static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-    const auto channels = static_cast<std::size_t>(spec.nchannels);
-    const bool decode = !raw && spec.format.is_floating_point() == false;
-    std::vector<float> values(pixels * channels);
-    if (pixels == 0 ||
-        !input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
-        throw InputError(file.string() + ": the picture is broken (" + one_line(input->geterror()) +
-                         ")");
-    Bitmap bitmap;
-    bitmap.width = spec.width;
-    bitmap.height = spec.height;
-    bitmap.texels.resize(pixels);
+    PictureFile picture(file);
+    const bool decode = !raw && !picture.spec().format.is_floating_point();
+    const auto channels = static_cast<std::size_t>(picture.spec().nchannels);
     // One or two channels are grey, with alpha ignored.
     const std::size_t step = channels >= 3 ? 1 : 0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const float* p = &values[i * channels];
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float v = p[c * step];
-            if (!std::isfinite(v) || v < 0)
-                throw InputError(file.string() + ": pixel (" +
-                                 std::to_string(i % static_cast<std::size_t>(spec.width)) + ", " +
-                                 std::to_string(i / static_cast<std::size_t>(spec.width)) +
-                                 ") is negative or not finite");
-            bitmap.texels[i][static_cast<Eigen::Index>(c)] = decode ? srgb_to_linear(v) : v;
+    Bitmap bitmap;
+    bitmap.width = picture.spec().width;
+    bitmap.height = picture.spec().height;
+    bitmap.texels.reserve(picture.pixel_count());
+    picture.read_rows([&](int y, const float* values) {
+        for (int x = 0; x < bitmap.width; ++x, values += channels) {
+            Spectrum texel;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float v = values[c * step];
+                if (!std::isfinite(v) || v < 0)
+                    throw InputError(file.string() + ": pixel (" + std::to_string(x) + ", " +
+                                     std::to_string(y) + ") is negative or not finite");
+                texel[static_cast<Eigen::Index>(c)] = decode ? srgb_to_linear(v) : v;
+            }
+            bitmap.texels.push_back(texel);
         }
-    }
+    });
     return bitmap;
 }
 

@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
+#include <new>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -12,6 +14,8 @@
 namespace caustics {
 
 WholeFile::WholeFile(const std::filesystem::path& file) : file_(file), temporary_(file) {
+    std::error_code unknown;
+    if (std::filesystem::is_other(file, unknown)) fail(EEXIST);
     temporary_ += ".tmp-" + std::to_string(getpid());
     out_ = std::fopen(temporary_.c_str(), "wb");
     if (out_ == nullptr) fail(errno);
@@ -40,10 +44,50 @@ void WholeFile::commit() {
     temporary_.clear();
 }
 
+void require_writable_place(const std::filesystem::path& file) {
+    namespace fs = std::filesystem;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    const auto fail = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
+    std::error_code unknown;
+    if (!fs::is_directory(folder, unknown))
+        fail("the folder " + folder.string() + " does not exist");
+    const fs::file_status status = fs::status(file, unknown);
+    if (fs::is_directory(status)) fail("is a folder, not a file");
+    if (fs::exists(status) && !fs::is_regular_file(status)) fail("is no regular file");
+}
+
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes) {
     WholeFile out(file);
     out.write(bytes);
     out.commit();
+}
+
+void require_regular_file(const std::filesystem::path& file) {
+    const auto fail = [&](const std::string& why) {
+        throw InputError(file.string() + ": cannot be read (" + why + ")");
+    };
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+    if (!std::filesystem::status_known(status)) fail(error.message());
+    if (std::filesystem::is_directory(status)) fail("it is a folder, not a regular file");
+    if (!std::filesystem::is_regular_file(status))
+        fail("a pipe or device, not a regular file: write its content to a file first");
+}
+
+std::string read_whole_file(const std::filesystem::path& file) {
+    require_regular_file(file);
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    try {
+        std::string bytes(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
+        in.seekg(0);
+        in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        if (in) return bytes;
+    } catch (const std::bad_alloc&) {
+        throw InputError(file.string() + ": does not fit into memory");
+    }
+    throw InputError(file.string() + ": cannot be read (" + std::generic_category().message(errno) +
+                     ")");
 }
 
 }  // namespace caustics

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace caustics {
@@ -27,7 +28,19 @@ private:
     std::FILE* out_ = nullptr;
 };
 
+/// Throws InputError where no file can be put: its folder is missing, or a folder, pipe or device
+/// has its name, which renaming would replace.
+void require_writable_place(const std::filesystem::path& file);
+
 /// Writes a file in one go.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// The content of a regular file. Throws InputError naming the file when it is absent, cannot be
+/// read, or does not fit into memory, and as require_regular_file() does.
+std::string read_whole_file(const std::filesystem::path& file);
+
+/// Throws InputError unless there is a regular file: reading a pipe or a device may wait for ever or
+/// have no end.
+void require_regular_file(const std::filesystem::path& file);
 
 }  // namespace caustics

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/scene_io.h"
+#include "core/whole_file.h"
 #include "experiments/methods.h"
 
 namespace caustics {
@@ -49,9 +50,6 @@ struct RunFlags {
 /// Samples a pixel as asked for, or the scene's when `asked` is 0. Throws InputError when they do
 /// not fit the scene's sampler.
 int samples_per_pixel(const PixelSampling& sampling, int asked);
-
-/// Throws InputError unless `file` can be written to: its folder exists and it is no folder itself.
-void require_writable_place(const std::filesystem::path& file);
 
 /// What a user should know beside the answer: a line each on stderr.
 void print_notes(const std::vector<std::string>& notes);

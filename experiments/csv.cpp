@@ -7,10 +7,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "core/error.h"
+#include "experiments/files.h"
 
 namespace caustics {
 
@@ -124,12 +125,8 @@ std::size_t NumberTable::column(const std::string& name) const {
 NumberTable read_numbers(const std::filesystem::path& file,
                          const std::vector<std::string>& required,
                          const std::vector<std::string>& optional) {
-    const std::string name = file.string();
-    if (!std::filesystem::is_regular_file(file))
-        throw InputError(fmt::format("{}: no such file", name));
-    std::ifstream in(file);
-    if (!in) throw InputError(fmt::format("{}: cannot be read", name));
-
+    const std::string name = file == "-" ? "standard input" : file.string();
+    std::istringstream in(read_input(file));
     NumberTable table;
     std::string line;
     if (!std::getline(in, line) || trimmed(line).empty())
@@ -138,7 +135,7 @@ NumberTable read_numbers(const std::filesystem::path& file,
     table.header = split(line);
     check_header(name, table.header, required, optional);
     while (std::getline(in, line)) {
-        if (trimmed(line).empty() && in.peek() == std::ifstream::traits_type::eof()) break;
+        if (trimmed(line).empty() && in.peek() == std::istringstream::traits_type::eof()) break;
         const std::string place = fmt::format("{}: row {}", name, table.rows.size() + 1);
         const std::vector<std::string> cells = split(line);
         if (cells.size() != table.header.size())

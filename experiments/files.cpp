@@ -1,22 +1,72 @@
 #include "experiments/files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
+#include <system_error>
+#include <vector>
 
 #include "core/error.h"
+#include "experiments/interrupt.h"
 
 namespace caustics {
 
-std::string read_whole_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) throw InputError(fmt::format("{}: cannot be read", file.string()));
-    return text.str();
+namespace {
+
+/// A file's descriptor.
+class Descriptor {
+public:
+    /// Not blocking: a pipe without a writer would hold up the opening, which no signal ends.
+    explicit Descriptor(const std::filesystem::path& file)
+        : number_(file == "-" ? dup(STDIN_FILENO)
+                              : open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
+    ~Descriptor() {
+        if (number_ >= 0) close(number_);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    int number() const { return number_; }
+    /// Devices may have no end, but a terminal has one.
+    bool may_be_read() const {
+        struct stat found{};
+        if (fstat(number_, &found) != 0) return false;
+        return S_ISREG(found.st_mode) || S_ISFIFO(found.st_mode) || S_ISSOCK(found.st_mode) ||
+               isatty(number_) == 1;
+    }
+
+private:
+    int number_;
+};
+
+}  // namespace
+
+std::string read_input(const std::filesystem::path& file) {
+    const std::string name = file == "-" ? "standard input" : file.string();
+    const auto fail = [&](const std::string& why) {
+        throw InputError(fmt::format("{}: cannot be read ({})", name, why));
+    };
+    const Descriptor in(file);
+    if (in.number() < 0) fail(std::generic_category().message(errno));
+    if (!in.may_be_read()) fail("neither a file nor a pipe");
+    std::string text;
+    std::vector<char> block(1 << 16);
+    while (true) {
+        pollfd ready{in.number(), POLLIN, 0};
+        poll(&ready, 1, -1);
+        throw_if_interrupted();
+        const ssize_t count = read(in.number(), block.data(), block.size());
+        if (count == 0) return text;
+        if (count > 0)
+            text.append(block.data(), static_cast<std::size_t>(count));
+        else if (errno != EINTR && errno != EAGAIN)
+            fail(std::generic_category().message(errno));
+    }
 }
 
 std::string file_stamp(const std::filesystem::path& file) {

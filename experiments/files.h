@@ -7,8 +7,9 @@
 
 namespace caustics {
 
-/// The content of a file. Throws InputError when it cannot be read.
-std::string read_whole_file(const std::filesystem::path& file);
+/// What a file holds or a pipe brings until it ends; "-" is standard input. Waits for a pipe, and
+/// throws Interrupted when asked to stop meanwhile. Throws InputError for folders and devices.
+std::string read_input(const std::filesystem::path& file);
 
 /// Tells a file from what it was: its number, its size, and when it was last written and last
 /// changed in any way (which no program can choose). Empty when it is not there.

@@ -17,12 +17,6 @@ namespace {
 
 enum ExitCode { done = 0, failed = 1, bad_input = 2, unsupported = 3, interrupted = 130 };
 
-std::string one_line(std::string text) {
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    std::ranges::replace(text, '\n', ' ');
-    return text;
-}
-
 int report(const std::string& message, ExitCode code) {
     fmt::print(stderr, "causticbench: error: {}\n", one_line(message));
     return code;
@@ -80,10 +74,15 @@ int parse_and_run(int argc, char** argv) {
     app.footer(
         "Exit codes: 0 done, 1 some trials failed, 2 bad input or usage, 3 the method cannot "
         "serve the scene, 130 interrupted.\nExample:\n  causticbench VERB --help");
-    const std::vector<Verb> verbs = {add_render(app),  add_probe(app),  add_sweep(app),
-                                     add_compare(app), add_info(app),   add_merge(app),
-                                     add_explain(app), add_verify(app), add_export(app)};
-    require_known_words(app, verbs, std::vector<std::string>(argv + 1, argv + argc));
+    const std::vector<Verb> verbs = add_verbs(app);
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    for (const std::string& word : words)
+        if (!is_utf8(word))
+            throw InputError(
+                fmt::format("\"{}\" is not valid UTF-8, which records and pictures hold "
+                            "(rename the file, or use a link)",
+                            word));
+    require_known_words(app, verbs, words);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

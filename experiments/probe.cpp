@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/coordinate_limit.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "experiments/notes.h"
@@ -155,7 +156,7 @@ void require_finite(const ProbeList& list, const std::vector<Estimate>& answers)
 
 ProbeList read_probe_list(const std::filesystem::path& file) {
     ProbeList list;
-    list.file = file;
+    list.file = file == "-" ? "standard input" : file;
     list.table =
         read_numbers(file, {"x", "y", "z", "nx", "ny", "nz"}, {"wx", "wy", "wz", "radius"});
     const NumberTable& table = list.table;
@@ -169,6 +170,9 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         ProbePoint point;
         point.position = vector_at(list, row, {"x", "y", "z"});
+        if (!within_limit(point.position))
+            fail(list, row,
+                 fmt::format("x, y, z reach beyond {:g} m from the origin", farthest_coordinate));
         point.normal = direction_at(list, row, {"nx", "ny", "nz"}, "normal");
         point.wo = list.has_viewer ? direction_at(list, row, {"wx", "wy", "wz"}, "viewer direction")
                                    : point.normal;
@@ -176,7 +180,10 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
             fail(list, row, "the viewer direction lies below the surface its normal names");
         if (table.column("radius") != none) {
             point.radius = static_cast<float>(table.rows[row][table.column("radius")]);
-            if (!(point.radius > 0)) fail(list, row, "the radius must be above 0");
+            if (!(point.radius > 0 && static_cast<double>(point.radius) <= farthest_coordinate))
+                fail(list, row,
+                     fmt::format("the radius must be above 0, and {:g} m at most",
+                                 farthest_coordinate));
         }
         list.points.push_back(point);
     }

@@ -18,11 +18,12 @@ struct ProbeOptions {
     MethodOptions method;
     RunFlags run;
     std::string points;
-    std::string output;
+    std::string output = "-";
 };
 
 int probe_points(const ProbeOptions& options) {
-    if (!options.output.empty()) require_writable_place(options.output);
+    const bool to_file = options.output != "-";
+    if (to_file) require_writable_place(options.output);
     const SceneFile file = options.scene.load();
     const Method method = options.method.parse();
     const ProbeList list = read_probe_list(options.points);
@@ -33,10 +34,10 @@ int probe_points(const ProbeOptions& options) {
     const ProbeAnswers answers = probe(scene, method, list, run);
     print_notes(answers.notes);
     const std::string table = probe_table(list, answers);
-    if (options.output.empty())
-        write_stdout(table);
-    else
+    if (to_file)
         write_whole_file(options.output, table);
+    else
+        write_stdout(table);
     return 0;
 }
 
@@ -51,10 +52,10 @@ Verb add_probe(CLI::App& app) {
     options->run.add_to(*verb);
     verb->add_option("--points", options->points,
                      "CSV with columns x,y,z,nx,ny,nz and optionally wx,wy,wz (towards the viewer) "
-                     "and radius [m]")
+                     "and radius [m]; - reads standard input")
         ->required()
         ->type_name("FILE");
-    verb->add_option("-o,--output", options->output, "CSV to write (default: standard output)")
+    verb->add_option("-o,--output", options->output, "CSV to write (default: -, standard output)")
         ->type_name("FILE");
     verb->footer(
         "Writes the rows as they are plus irradiance_r,g,b [W/m^2] on the side of the normal, with "

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "core/coordinate_limit.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/whole_file.h"
@@ -55,7 +56,9 @@ std::string header_bytes(const TracedPhotons& photons, const PhotonOrigin& origi
 
 class Reader {
 public:
-    explicit Reader(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
+    explicit Reader(const std::filesystem::path& file) : file_(file) {
+        require_regular_file(file);
+        in_.open(file, std::ios::binary);
         if (!in_) fail("cannot be read");
     }
 
@@ -129,6 +132,21 @@ Header read_header(Reader& in) {
     return header;
 }
 
+/// A right checksum says only that the file is as it was written.
+void require_sense(const Reader& in, const TracedPhotons& photons) {
+    const std::span<const Photon> all = photons.store.photons();
+    const Spectrum unit = all.empty() ? photons.flux_unit : photons.flux_per_energy();
+    if (!is_finite(unit) || unit.minCoeff() < 0)
+        in.fail("is damaged: the unit of its photons' flux is negative or not finite");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!within_limit(position(all[i])))
+            in.fail("is damaged: the place of photon " + std::to_string(i) +
+                    " is not finite or beyond every scene");
+        if (!is_finite(decode_rgbe(all[i].energy) * unit))
+            in.fail("is damaged: the flux of photon " + std::to_string(i) + " is not finite");
+    }
+}
+
 }  // namespace
 
 void save_photon_map(const TracedPhotons& photons, const PhotonOrigin& origin,
@@ -151,6 +169,7 @@ void save_photon_map(const TracedPhotons& photons, const PhotonOrigin& origin,
 }
 
 bool is_photon_map(const std::filesystem::path& file) {
+    if (!std::filesystem::is_regular_file(file)) return false;
     std::ifstream in(file, std::ios::binary);
     std::string start(magic.size(), '\0');
     in.read(start.data(), static_cast<std::streamsize>(start.size()));
@@ -173,6 +192,7 @@ SavedPhotons load_photon_map(const std::filesystem::path& file) {
     const std::uint64_t hash = in.hash();
     if (in.read<std::uint64_t>() != hash || in.left() != 0 || header.counts.stored != count)
         in.fail("is damaged: its checksum does not fit");
+    require_sense(in, photons);
     return {std::move(photons), std::move(header.origin)};
 }
 

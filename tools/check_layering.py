@@ -35,7 +35,7 @@ EXCEPTIONS = {
 LIBRARIES = {
     "embree3/": ["core/intersector.cpp", "tests/bench/"],
     "embree4/": ["core/intersector.cpp", "tests/bench/"],
-    "OpenImageIO/": ["core/film.cpp", "core/texture.cpp", "experiments/pictures.cpp", "tests/"],
+    "OpenImageIO/": ["core/film.cpp", "core/picture_file.h", "core/picture_file.cpp", "tests/"],
     "assimp/": ["core/mesh_io.cpp"],
     "nlohmann/": ["core/json_reader.cpp", "core/json_document.h", "core/json_document.cpp",
                   "experiments/", "tests/"],

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "core/error.h"
-
 namespace caustics::scene_file {
 namespace {
 
 constexpr double near_enough = 8;
+
+}  // namespace
 
 Eigen::AlignedBox3d world_bounds(const Shape& shape) {
     const Eigen::AlignedBox3d local = local_bounds(shape);
@@ -16,8 +16,6 @@ Eigen::AlignedBox3d world_bounds(const Shape& shape) {
         box.extend(shape.to_world * local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
     return box;
 }
-
-}  // namespace
 
 Vec3d frame_origin(const std::vector<Shape>& shapes) {
     const bool any_caster =
@@ -45,8 +43,6 @@ void place(Shape& shape, const Vec3d& origin) {
     } else {
         shape.to_world = to_frame;
     }
-    if (!bounds(shape).sizes().allFinite())
-        throw InputError("reaches beyond what a float can hold");
 }
 
 }  // namespace caustics::scene_file

@@ -6,6 +6,7 @@
 
 #include "core/mesh_io.h"
 #include "core/scene_file/bsdfs.h"
+#include "core/scene_file/frame.h"
 #include "core/tessellate.h"
 
 namespace caustics::scene_file {
@@ -229,6 +230,8 @@ Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) 
         read_cube(keys, shape);
     else
         read_analytic(node, type, keys, shape);
+    const Eigen::AlignedBox3d box = world_bounds(shape);
+    require_near(node, {box.min(), box.max()});
     read_nested(node, shape, assets);
     return shape;
 }

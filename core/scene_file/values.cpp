@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "core/coordinate_limit.h"
+#include "core/whole_file.h"
+
 namespace caustics::scene_file {
 namespace {
 
@@ -129,6 +134,12 @@ Vec3d read_vector(const JsonNode& node) {
     return {values[0], values[1], values[2]};
 }
 
+void require_near(const JsonNode& node, const std::vector<Vec3d>& points) {
+    for (const Vec3d& point : points)
+        if (!within_limit(point))
+            node.fail(fmt::format("reaches beyond {:g} m from the origin", farthest_coordinate));
+}
+
 Spectrum read_colour(const JsonNode& node, double most) {
     if (!node.is_object()) return read_three(node, most);
     read_type(node, "colour", {"rgb"}, {"spectrum", "uniform", "d65", "blackbody"});
@@ -175,9 +186,7 @@ Transform read_transform(const JsonNode& node) {
 std::filesystem::path read_file_name(const JsonNode& node, Assets& assets) {
     const std::string name = node.as_string();
     const std::filesystem::path file = node.file().parent_path() / name;
-    std::error_code failed;
-    if (!std::filesystem::is_regular_file(file, failed))
-        node.fail("there is no file " + file.string());
+    load_for(node, [&] { require_regular_file(file); });
     const std::pair<std::filesystem::path, std::string> asset{file, name};
     if (std::ranges::find(assets, asset) == assets.end()) assets.push_back(asset);
     return file;

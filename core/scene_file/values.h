@@ -1,5 +1,6 @@
 #pragma once
 
+#include <new>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ using Assets = std::vector<std::pair<std::filesystem::path, std::string>>;
 
 /// Three numbers that fit a float.
 Vec3d read_vector(const JsonNode& node);
+/// Fails at the node unless all points are within `farthest_coordinate`.
+void require_near(const JsonNode& node, const std::vector<Vec3d>& points);
 /// A number, [r, g, b], or {"type": "rgb", "value": number or [r, g, b]}; 0 <= value <= `most`.
 Spectrum read_colour(const JsonNode& node, double most);
 Spectrum read_colour(const JsonNode& parent, const std::string& key, double fallback, double most);
@@ -26,12 +29,21 @@ Texture read_texture(const JsonNode& parent, const std::string& key, double fall
 Transform read_transform(const JsonNode& node);
 /// The file named by the string node, relative to the file the node was written in; noted.
 std::filesystem::path read_file_name(const JsonNode& node, Assets& assets);
+/// Calls a maker of something large, and names the node that asked for it where memory ends.
+template <class Make>
+auto make_for(const JsonNode& node, const Make& make) {
+    try {
+        return make();
+    } catch (const std::bad_alloc&) {
+        node.fail("does not fit into memory");
+    }
+}
 /// Calls a loader of files that knows nothing of the scene, and names the node that asked for the
 /// file in what it throws.
 template <class Load>
 auto load_for(const JsonNode& node, const Load& load) {
     try {
-        return load();
+        return make_for(node, load);
     } catch (const InputError& e) {
         node.fail(e.what());
     }

@@ -250,7 +250,33 @@ std::vector<Broken> broken_scenes() {
          {"/it/to_world", "beyond 1e30"}},
         {"beyond_float_shape",
          with(R"({"type": "sphere", "radius": 1e20, "to_world": [{"scale": 1e20}]})"),
-         {"/it: ", "beyond what a float can hold"}},
+         {"/it: ", "beyond 1e+18 m"}},
+        {"far_mesh",
+         with(R"({"type": "cube", "to_world": [{"translate": [0, 2e18, 0]}]})"),
+         {"/it: ", "beyond 1e+18 m"}},
+        {"far_wave",
+         with(R"({"type": "heightfield", "waves": [{"amplitude": 2e18, "wave_vector": [1, 0]}]})"),
+         {"/it: ", "beyond 1e+18 m"}},
+        {"far_lamp",
+         with(R"({"type": "point", "position": [0, 0, -2e18]})"),
+         {"/it: ", "beyond 1e+18 m"}},
+        {"far_camera",
+         with_sensor(R"("to_world": [{"translate": [2e18, 0, 0]}])"),
+         {"/sensor/to_world: ", "beyond 1e+18 m"}},
+        {"nul_in_a_name",
+         with(R"({"type": "ply", "filename": "broken.ply\u0000"})"),
+         {"/it/filename: ", "control character", "broken.ply\\u0000"}},
+        {"escape_in_a_key", with(R"({"type": "disk", "\u001b[2J": 1})"), {"/it", "control"}},
+        {"device_as_mesh",
+         with(R"({"type": "ply", "filename": "/dev/zero"})"),
+         {"/it/filename: ", "/dev/zero", "not a regular file"}},
+        {"device_as_include",
+         with(R"({"$include": "/dev/zero"})"),
+         {"/dev/zero", "not a regular file", "/it/$include"}},
+        {"huge_picture",
+         with_bsdf(
+             R"({"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "huge.tga"}})"),
+         {"/it/b/reflectance/filename: ", "huge.tga", "12000 x 12000 pixels, more than"}},
         {"too_fine",
          with(R"({"type": "disk", "resolution": 5000})"),
          {"/it/resolution", "from 1 to 4096"}},
@@ -266,6 +292,10 @@ std::vector<Broken> broken_scenes() {
 class BrokenScene : public testing::TestWithParam<Broken> {
 protected:
     static void SetUpTestSuite() {
+        // The header of a TGA picture of 12,000 x 12,000 pixels.
+        const unsigned char huge[] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
+                                      0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
+        write("huge.tga", {reinterpret_cast<const char*>(huge), sizeof huge});
         write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
         Film bright(1, 1);
         bright.set_rgb("", 0, Spectrum::Constant(1.5F));

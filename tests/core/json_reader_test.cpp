@@ -225,6 +225,21 @@ TEST(JsonInclude, WhatIsWrongWithItIsNamed) {
               std::string::npos);
 }
 
+TEST(JsonNode, HoldsNoControlCharacters) {
+    for (const char* text :
+         {R"({"a": "x\u0000"})", R"({"a": ["\u001b[2J"]})", R"({"a\u0000": 1})"}) {
+        const std::string error = error_of([&] { return node(text); });
+        EXPECT_NE(error.find("t.json: /"), std::string::npos) << error;
+        EXPECT_NE(error.find("a control character in \""), std::string::npos) << error;
+    }
+    JsonNode root = node(R"({"a": 1})");
+    EXPECT_NE(error_of([&] {
+                  root.set("/a", "x\ny");
+                  return 0;
+              }).find("control character"),
+              std::string::npos);
+}
+
 TEST(JsonFile, AFolderOrNothingIsAnError) {
     const fs::path file = write("x.json", "{}");
     EXPECT_NE(error_of([&] { return JsonNode::parse_file(file.parent_path()); }).find("folder"),

@@ -1,6 +1,7 @@
 #include "core/whole_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <iterator>
@@ -58,6 +59,46 @@ TEST(WholeFile, NamesTheFileAndTheReason) {
     const std::string onto_folder = refusal(folder / "a_folder", "x");
     EXPECT_NE(onto_folder.find("a_folder: cannot be written ("), std::string::npos) << onto_folder;
     EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+std::string read_refusal(const std::filesystem::path& file) {
+    try {
+        read_whole_file(file);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "read";
+}
+
+TEST(ReadWholeFile, GivesBackEveryByte) {
+    const support::TemporaryFolder folder;
+    std::string bytes;
+    for (int i = 0; i < 1000; ++i) bytes += static_cast<char>(i);
+    for (const std::string& text : {bytes, std::string()}) {
+        write_whole_file(folder / "a", text);
+        EXPECT_EQ(read_whole_file(folder / "a"), text);
+    }
+}
+
+TEST(ReadWholeFile, RefusesWhatIsNoRegularFileWithoutWaitingForIt) {
+    const support::TemporaryFolder folder;
+    const std::string pipe = folder / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_NE(read_refusal(pipe).find("pipe: cannot be read (a pipe or device, not a regular file"),
+              std::string::npos);
+    EXPECT_NE(read_refusal("/dev/zero").find("not a regular file"), std::string::npos);
+    EXPECT_NE(read_refusal(folder.path()).find("a folder"), std::string::npos);
+    EXPECT_NE(read_refusal(folder / "absent").find("no such file"), std::string::npos);
+}
+
+TEST(WholeFile, ReplacesNoPipeOrDevice) {
+    const support::TemporaryFolder folder;
+    const std::string pipe = folder / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_NE(refusal(pipe, "x").find("pipe: cannot be written"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+    EXPECT_THROW(require_writable_place(pipe), InputError);
+    EXPECT_NO_THROW(require_writable_place(folder / "new"));
 }
 
 }  // namespace

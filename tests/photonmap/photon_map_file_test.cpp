@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "core/error.h"
 #include "core/whole_file.h"
@@ -115,6 +116,33 @@ TEST_F(PhotonMapFile, RefusesEveryDamagedByteAndEveryCut) {
     EXPECT_NE(refusal(file_).find("checksum"), std::string::npos);
     write_whole_file(file_, good);
     EXPECT_EQ(refusal(file_), "taken");
+}
+
+TEST_F(PhotonMapFile, RefusesPhotonsThatAreNoLightThoughTheChecksumFits) {
+    const auto refusal_with = [&](const auto& spoil) {
+        TracedPhotons photons = traced(3);
+        spoil(photons);
+        save_photon_map(photons, origin, file_);
+        return refusal(file_);
+    };
+    using Limits = std::numeric_limits<float>;
+    for (const float place : {Limits::quiet_NaN(), Limits::infinity(), 1e19F}) {
+        const std::string message = refusal_with(
+            [&](TracedPhotons& photons) { photons.store.photons()[2].position[1] = place; });
+        EXPECT_EQ(message, file_.string() +
+                               ": is damaged: the place of photon 2 is not finite or "
+                               "beyond every scene");
+    }
+    for (const float unit : {Limits::quiet_NaN(), Limits::infinity(), -1.0F})
+        EXPECT_NE(refusal_with([&](TracedPhotons& photons) {
+                      photons.flux_unit[0] = unit;
+                  }).find("a.photons: is damaged: the unit of its photons' flux"),
+                  std::string::npos);
+    const std::string bright = refusal_with([](TracedPhotons& photons) {
+        photons.flux_unit[0] = 1e30F;
+        photons.store.photons()[1].energy = {{255, 0, 0}, 255};
+    });
+    EXPECT_NE(bright.find("the flux of photon 1 is not finite"), std::string::npos) << bright;
 }
 
 TEST_F(PhotonMapFile, NamesWhatIsWrong) {
