@@ -5,6 +5,9 @@
 
 namespace caustics {
 
+/// The most threads that may be asked for.
+inline constexpr int most_threads = 4096;
+
 /// Runs body(index, worker) for every index below `count` on up to `threads` threads; `worker` is
 /// below `threads` and no two bodies run with the same one at a time. The first exception is
 /// rethrown after all have stopped. oneTBB, or std::thread where built with CAUSTICS_STD_THREADS

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "experiments/interrupt.h"
+#include "experiments/number_option.h"
 
 namespace caustics {
 
@@ -46,8 +48,8 @@ void MethodOptions::add_to(CLI::App& verb) {
 Method MethodOptions::parse() const { return parse_method(name, parameters_node(params)); }
 
 void MachineFlags::add_to(CLI::App& verb, const std::string& default_threads) {
-    verb.add_option("--threads", threads, "Number of threads (default: " + default_threads + ")")
-        ->check(CLI::Range(1, 4096));
+    add_number(verb, "--threads", threads, 1, most_threads,
+               "Number of threads (default: " + default_threads + ")");
     std::string known;
     for (const Isa each : supported_isas())
         known += (known.empty() ? "" : ", ") + std::string(name(each));
@@ -58,7 +60,8 @@ void MachineFlags::add_to(CLI::App& verb, const std::string& default_threads) {
 }
 
 void RunFlags::add_to(CLI::App& verb) {
-    verb.add_option("--seed", seed, "Seed of all random numbers (default 1)");
+    add_number<std::uint64_t>(verb, "--seed", seed, 0, std::numeric_limits<std::uint64_t>::max(),
+                              "Seed of all random numbers (default 1)");
     machine.add_to(verb, "those available");
 }
 
@@ -88,16 +91,6 @@ int samples_per_pixel(const PixelSampling& sampling, int asked) {
 
 void print_notes(const std::vector<std::string>& notes) {
     for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-}
-
-void require_writable_place(const std::filesystem::path& file) {
-    const std::filesystem::path folder =
-        file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    if (!std::filesystem::is_directory(folder))
-        throw InputError(
-            fmt::format("{}: the folder {} does not exist", file.string(), folder.string()));
-    if (std::filesystem::is_directory(file))
-        throw InputError(fmt::format("{}: is a folder, not a file", file.string()));
 }
 
 }  // namespace caustics

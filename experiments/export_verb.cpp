@@ -7,6 +7,7 @@
 #include "experiments/cli_options.h"
 #include "experiments/exported_scene.h"
 #include "experiments/files.h"
+#include "experiments/number_option.h"
 #include "experiments/verbs.h"
 
 namespace caustics {
@@ -64,12 +65,10 @@ Verb add_export(CLI::App& app) {
                      "scene.ini, and the meshes and textures they name")
         ->required()
         ->type_name("DIR");
-    verb->add_option("--max-bounces", options->settings.max_bounces,
-                     "Specular events between light and receiver (default 16)")
-        ->check(CLI::Range(1, 1000));
-    verb->add_option("--mesh-resolution", options->settings.mesh_resolution,
-                     "Of exact shapes that the other renderer does not know (default 256)")
-        ->check(CLI::Range(1, 4096));
+    add_number(*verb, "--max-bounces", options->settings.max_bounces, 1, 1000,
+               "Specular events between light and receiver (default 16)");
+    add_number(*verb, "--mesh-resolution", options->settings.mesh_resolution, 1, 4096,
+               "Of exact shapes that the other renderer does not know (default 256)");
     verb->footer(
         "Units stay: metres, watts, and pixels in W/(m^2 sr). A scene that the other renderer "
         "cannot express is refused (exit code 3).\n"

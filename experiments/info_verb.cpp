@@ -12,6 +12,7 @@
 #include "experiments/files.h"
 #include "experiments/interrupt.h"
 #include "experiments/map_info.h"
+#include "experiments/number_option.h"
 #include "experiments/verbs.h"
 
 namespace caustics {
@@ -184,8 +185,8 @@ Verb add_info(CLI::App& app) {
                    "they are turned over, white between the two, where the caustic is");
     add_repeatable(*verb, "--param", options->params,
                    "With --beams: parameter of `beamtree`, key=value. Repeatable");
-    verb->add_option("--dot", options->dot, "Radius of the dots in pixels (default 1)")
-        ->check(CLI::Range(0.1, 100.0));
+    add_number(*verb, "--dot", options->dot, 0.1, 100.0,
+               "Radius of the dots in pixels (default 1)");
     verb->footer(
         "Example:\n  causticbench info pool.json --set /water/resolution=64\n"
         "  causticbench info pool.json --beams --set /water/resolution=32 -o beams.png\n"

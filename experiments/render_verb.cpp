@@ -8,6 +8,7 @@
 #include "experiments/cli_options.h"
 #include "experiments/csv.h"
 #include "experiments/metrics.h"
+#include "experiments/number_option.h"
 #include "experiments/pictures.h"
 #include "experiments/run.h"
 #include "experiments/verbs.h"
@@ -15,6 +16,9 @@
 namespace caustics {
 
 namespace {
+
+/// Reaches every float from its smallest to its largest.
+constexpr double most_stops = 150;
 
 struct RenderOptions {
     SceneOptions scene;
@@ -27,6 +31,10 @@ struct RenderOptions {
 
 void check_outputs(const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
+        if (output == "-")
+            throw InputError(
+                "-o -: pictures are not written to standard output (give a file: "
+                ".exr, .png)");
         const std::string ending = std::filesystem::path(output).extension().string();
         if (ending != ".exr" && ending != ".png")
             throw InputError(fmt::format(
@@ -95,10 +103,10 @@ Verb add_render(CLI::App& app) {
     options->scene.add_to(*verb);
     options->method.add_to(*verb);
     options->run.add_to(*verb);
-    verb->add_option("--spp", options->spp, "Samples a pixel (default: the scene's)")
-        ->check(CLI::Range(1, 1'000'000));
-    verb->add_option("--exposure", options->exposure,
-                     std::string("Exposure of a .png in stops: ") + tone_mapping_rule);
+    add_number(*verb, "--spp", options->spp, 1, 1'000'000,
+               "Samples a pixel (default: the scene's)");
+    add_number(*verb, "--exposure", options->exposure, -most_stops, most_stops,
+               std::string("Exposure of a .png in stops: ") + tone_mapping_rule);
     add_repeatable(*verb, "-o,--output", options->outputs,
                    "Picture to write: .exr (float32, all layers) or .png (tone-mapped). Repeatable")
         ->required()

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/parallel.h"
+#include "core/whole_file.h"
 #include "experiments/record.h"
 
 namespace caustics {
@@ -26,9 +28,10 @@ std::vector<JsonNode> list(const JsonNode& node) {
     return elements;
 }
 
-int integer(const JsonNode& node, const std::string& key, std::int64_t low, int otherwise) {
+int integer(const JsonNode& node, const std::string& key, std::int64_t low, int otherwise,
+            std::int64_t high = most) {
     const std::optional<JsonNode> child = node.find(key);
-    return child ? static_cast<int>(child->as_integer_in(low, most)) : otherwise;
+    return child ? static_cast<int>(child->as_integer_in(low, high)) : otherwise;
 }
 
 std::vector<std::filesystem::path> read_scenes(const JsonNode& node) {
@@ -36,8 +39,11 @@ std::vector<std::filesystem::path> read_scenes(const JsonNode& node) {
     for (const JsonNode& scene : list(node)) {
         const std::filesystem::path file =
             (scene.file().parent_path() / scene.as_string()).lexically_normal();
-        if (!std::filesystem::is_regular_file(file))
-            scene.fail(fmt::format("no such scene file: {}", file.string()));
+        try {
+            require_regular_file(file);
+        } catch (const InputError& error) {
+            scene.fail(error.what());
+        }
         scenes.push_back(file);
     }
     return scenes;
@@ -162,7 +168,7 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     }
     sweep.repeats = integer(node, "repeats", 1, 1);
     sweep.spp = integer(node, "spp", 1, 16);
-    sweep.threads = integer(node, "threads", 1, 1);
+    sweep.threads = integer(node, "threads", 1, 1, most_threads);
     if (const std::optional<JsonNode> reference = node.find("reference"))
         sweep.reference = read_reference(*reference, sweep.spp);
     node.finish();

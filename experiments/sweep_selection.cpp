@@ -14,22 +14,15 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "experiments/number_option.h"
 
 namespace caustics {
 
 namespace {
 
-std::optional<int> whole_number(const std::string& text) {
-    int value = 0;
-    const char* const end = text.data() + text.size();
-    const auto result = std::from_chars(text.data(), end, value);
-    if (result.ec != std::errc() || result.ptr != end) return {};
-    return value;
-}
-
 int slurm_number(const char* name) {
     const char* const text = std::getenv(name);
-    const std::optional<int> value = whole_number(text == nullptr ? "" : text);
+    const std::optional<int> value = decimal<int>(text == nullptr ? "" : text);
     if (!value)
         throw InputError(fmt::format(
             "--shard auto: {} is {}: this is no task of a Slurm job array (give --shard i/n)", name,
@@ -120,8 +113,8 @@ Shard parse_shard(const std::string& text) {
     if (text == "auto") return shard_of_array_task();
     const std::size_t slash = text.find('/');
     if (slash != std::string::npos) {
-        const std::optional<int> index = whole_number(text.substr(0, slash));
-        const std::optional<int> count = whole_number(text.substr(slash + 1));
+        const std::optional<int> index = decimal<int>(text.substr(0, slash));
+        const std::optional<int> count = decimal<int>(text.substr(slash + 1));
         if (index && count && 1 <= *index && *index <= *count) return {*index, *count};
     }
     throw InputError(fmt::format("--shard {}: expected i/n with 1 <= i <= n, or auto", text));

@@ -6,6 +6,7 @@
 #include "experiments/cli_options.h"
 #include "experiments/dry_run.h"
 #include "experiments/files.h"
+#include "experiments/number_option.h"
 #include "experiments/sweep.h"
 #include "experiments/verbs.h"
 
@@ -90,12 +91,12 @@ Verb add_sweep(CLI::App& app) {
         ->check(CLI::IsMember({"failed"}))
         ->excludes(force);
     verb->add_flag("--fail-fast", flags->fail_fast, "Stop at the first trial that fails");
-    verb->add_option("--timeout", flags->timeout, "Seconds after which a trial is given up")
-        ->check(CLI::Range(0.001, 1e9));
-    verb->add_option("--memory", flags->memory, "MiB that a trial may have in memory at a time")
-        ->check(CLI::Range(1, 1 << 30));
-    verb->add_option("--jobs", flags->jobs, "Trials at a time (default 1, so that times hold)")
-        ->check(CLI::Range(1, 4096));
+    add_number(*verb, "--timeout", flags->timeout, 0.001, 1e9,
+               "Seconds after which a trial is given up");
+    add_number(*verb, "--memory", flags->memory, 1, 1 << 30,
+               "MiB that a trial may have in memory at a time");
+    add_number(*verb, "--jobs", flags->jobs, 1, 4096,
+               "Trials at a time (default 1, so that times hold)");
     verb->add_option("--references", flags->references,
                      "keep: use the references that are there; rebuild: render them anew; extend: "
                      "begin those missing with the samples of smaller ones that are there; only: "

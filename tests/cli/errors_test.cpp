@@ -161,6 +161,37 @@ const std::vector<Broken> broken_commands = {
     {"ProbeHalfAViewer", probe_with("none"), {"wx, wy, wz"}, "x,y,z,nx,ny,nz,wx\n0,0,0,0,0,1,0\n"},
     {"CompareMissingFile", {"compare", "absent.exr", "absent.exr"}, {"absent.exr"}},
     {"CompareNotAPicture", {"compare", "BROKEN", "BROKEN"}, {"broken"}, "no picture"},
+    {"SceneIsADevice", {"info", "/dev/zero"}, {"/dev/zero", "not a regular file"}},
+    {"SweepIsADevice",
+     {"sweep", "/dev/zero", "-o", "DIR/out"},
+     {"/dev/zero", "not a regular file"}},
+    {"PhotonMapIsADevice",
+     render_good({"--method", "photonmap", "--param", "load=/dev/zero"}),
+     {"/dev/zero", "not a regular file"}},
+    {"PointsAreADevice",
+     {"probe", "SCENE", "--method", "none", "--points", "/dev/zero"},
+     {"/dev/zero", "neither a file nor a pipe"}},
+    {"PictureOntoADevice",
+     {"probe", "SCENE", "--method", "none", "--points", "BROKEN", "-o", "/dev/null"},
+     {"/dev/null", "no regular file"}},
+    {"PictureToAPipe",
+     {"render", "SCENE", "--method", "none", "-o", "-"},
+     {"standard output", ".exr, .png"}},
+    {"ScaledTooFar",
+     render_good({"--method", "none", "--set", R"(/floor/to_world=[{"scale": 1e19}])"}),
+     {"/floor", "1e+18 m"}},
+    {"ProbeTooFar", probe_with("none"), {"row 1", "1e+18 m"}, "x,y,z,nx,ny,nz\n1e19,0,0,0,0,1\n"},
+    {"NegativeSeed", render_good({"--method", "none", "--seed", "-1"}), {"--seed \"-1\""}},
+    {"TimeoutNaN",
+     {"sweep", "BROKEN", "-o", "DIR/out", "--timeout", "nan"},
+     {"--timeout \"nan\"", "from 0.001 to"}},
+    {"NotUtf8", {"info", "\xff.json"}, {"?.json", "UTF-8"}},
+    {"ControlCharacters", {"info", "\x1b[2J"}, {"?[2J", "no such file"}},
+    {"LongWord", {"info", std::string(5000, 'x')}, {"xxx...xxx"}},
+    {"SweepOfManyThreads",
+     {"sweep", "BROKEN", "-o", "DIR/out"},
+     {"/threads", "4096"},
+     R"({"version": 1, "scenes": ["broken.json"], "methods": [{"method": "none"}], "threads": 1000000000})"},
     {"SweepEmptyList",
      {"sweep", "BROKEN", "-o", "DIR/out"},
      {"/scenes", "empty"},
@@ -188,6 +219,8 @@ TEST_P(BrokenInput, EndsInOneLine) {
     EXPECT_EQ(result.exit_code, broken.exit_code) << result.err;
     EXPECT_EQ(result.err.rfind("causticbench: error: ", 0), 0U) << result.err;
     EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
+    EXPECT_LT(result.err.size(), 2100U) << "no word is echoed whole";
     EXPECT_EQ(result.out, "");
     // The folder's name holds the case's and a number, which are not the program's words.
     const std::string message = replaced(result.err, folder.path(), "DIR");

@@ -22,7 +22,7 @@ std::string file_base() {
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& arguments) {
+Program::Program(const std::vector<std::string>& arguments, const std::filesystem::path& input) {
     const std::string base = file_base();
     out_ = base + ".out";
     err_ = base + ".err";
@@ -35,6 +35,7 @@ Program::Program(const std::vector<std::string>& arguments) {
     child_ = fork();
     if (child_ == 0) {
         constexpr mode_t mode = 0600;
+        dup2(open(input.c_str(), O_RDONLY), STDIN_FILENO);
         dup2(open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDOUT_FILENO);
         dup2(open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, mode), STDERR_FILENO);
         execv(argv[0], argv.data());
@@ -62,6 +63,11 @@ ProgramResult Program::wait() {
 
 ProgramResult causticbench(const std::vector<std::string>& arguments) {
     return Program(arguments).wait();
+}
+
+ProgramResult causticbench_reading(const std::filesystem::path& input,
+                                   const std::vector<std::string>& arguments) {
+    return Program(arguments, input).wait();
 }
 
 ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments,

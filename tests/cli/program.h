@@ -18,7 +18,9 @@ struct ProgramResult {
 /// causticbench at work, its output going to files.
 class Program {
 public:
-    explicit Program(const std::vector<std::string>& arguments);
+    /// Its standard input is `input`.
+    explicit Program(const std::vector<std::string>& arguments,
+                     const std::filesystem::path& input = "/dev/null");
 
     pid_t id() const { return child_; }
     bool has_ended() { return has_ended_ || reap(false); }
@@ -35,6 +37,10 @@ private:
     int status_ = 0;
     bool has_ended_ = false;
 };
+
+/// Runs causticbench with these arguments, `input` as its standard input.
+ProgramResult causticbench_reading(const std::filesystem::path& input,
+                                   const std::vector<std::string>& arguments);
 
 /// Runs causticbench with these arguments.
 ProgramResult causticbench(const std::vector<std::string>& arguments);

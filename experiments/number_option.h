@@ -1,0 +1,44 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace caustics {
+
+/// A whole number or a finite number in decimal, as sweep files write it: no "010", "0x10", "nan", "inf"
+/// or "1e400", nothing before or after. Empty where the text is no such number, or the type cannot
+/// hold it.
+template <typename Number>
+std::optional<Number> decimal(const std::string& text);
+extern template std::optional<double> decimal(const std::string&);
+extern template std::optional<int> decimal(const std::string&);
+extern template std::optional<std::uint64_t> decimal(const std::string&);
+
+/// The number that an option was given as. Throws InputError naming the option unless it is a
+/// decimal() from `low` to `high`.
+template <typename Number>
+Number number_in(const std::string& option, const std::string& text, Number low, Number high);
+extern template double number_in(const std::string&, const std::string&, double, double);
+extern template int number_in(const std::string&, const std::string&, int, int);
+extern template std::uint64_t number_in(const std::string&, const std::string&, std::uint64_t,
+                                        std::uint64_t);
+
+/// The one way to take a number from the command line, into a number or an optional one: the
+/// parser's own conversion takes -1 for 2^64 - 1, 010 for 8, "" for 0 and nan for a number in range.
+template <typename Number, typename Value>
+CLI::Option* add_number(CLI::App& verb, const std::string& name, Value& value, Number low,
+                        Number high, const std::string& help) {
+    const std::string option = name.substr(name.find("--"));
+    return verb
+        .add_option_function<std::string>(
+            name,
+            [&value, option, low, high](const std::string& text) {
+                value = number_in<Number>(option, text, low, high);
+            },
+            help)
+        ->type_name("NUMBER");
+}
+
+}  // namespace caustics
