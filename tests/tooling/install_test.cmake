@@ -1,0 +1,23 @@
+# cmake -DBUILD=... -DPREFIX=... -DBINDIR=... -DDATADIR=... -P install_test.cmake: what is installed serves without the source.
+
+function(run out)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
+    if(NOT code EQUAL 0)
+        message(FATAL_ERROR "${ARGN}: ended with ${code}: ${text}")
+    endif()
+    set(${out} "${text}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE "${PREFIX}")
+run(text "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}")
+set(program "${PREFIX}/${BINDIR}/causticbench")
+set(data "${PREFIX}/${DATADIR}/causticbench")
+run(text "${program}" info "${data}/scenes/ball.json")
+if(NOT text MATCHES "asset    .*stone.png")
+    message(FATAL_ERROR "the installed scene has no texture: ${text}")
+endif()
+run(text "${program}" sweep "${data}/sweeps/tiny.json" -o "${PREFIX}/out" --list)
+if(NOT text MATCHES "photonmap")
+    message(FATAL_ERROR "the installed sweep lists no trials: ${text}")
+endif()
+file(REMOVE_RECURSE "${PREFIX}")
