@@ -4,9 +4,10 @@
 
 namespace caustics {
 
-/// Of every coordinate and length that is read [m]: Embree takes rays from nowhere beyond 1.844e18
-/// in any coordinate, and light starts outside of the scene's bounds.
-inline constexpr double farthest_coordinate = 1e18;
+/// Of every coordinate and length that is read [m]. Embree takes no ray that starts beyond 1.844e18 in
+/// any coordinate; directional light starts outside of the scene's bounds, as far as 3.2 times their
+/// farthest coordinate.
+inline constexpr double farthest_coordinate = 5e17;
 
 /// Whether all coordinates are numbers within the limit.
 template <typename Derived>

@@ -159,6 +159,40 @@ TEST(Probe, KeepsTheRowsAndAddsItsAnswers) {
         << "the back of a one-sided floor is black";
 }
 
+TEST(Probe, ReadsPointsFromStandardInputAndWritesToStandardOutput) {
+    const support::TemporaryFolder folder;
+    write_whole_file(folder / "points.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n");
+    const ProgramResult result = support::causticbench_reading(
+        folder / "points.csv", {"probe", scene, "--method", "none", "--points", "-", "-o", "-"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out,
+              "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b\n0,0,0,0,0,1,0,0,0\n");
+    const ProgramResult empty = support::causticbench_reading(
+        "/dev/zero", {"probe", scene, "--method", "none", "--points", "-"});
+    EXPECT_EQ(empty.exit_code, 2);
+    EXPECT_EQ(empty.err,
+              "causticbench: error: standard input: cannot be read (neither a file nor a pipe)\n");
+}
+
+// Light along a diagonal starts outside of the scene's bounds, where Embree must still take it.
+TEST(Render, FollowsLightToTheFarthestCoordinates) {
+    const support::TemporaryFolder folder;
+    const std::string file = folder / "far.json";
+    write_whole_file(file, R"({
+        "sensor": {"type": "perspective",
+            "to_world": [{"look_at": {"origin": [0, -4e17, 4e17], "target": [0, 0, 0], "up": [0, 0, 1]}}],
+            "film": {"type": "hdrfilm", "width": 4, "height": 3}},
+        "sun": {"type": "directional", "direction": [-1, -1, -1], "irradiance": 1},
+        "box": {"type": "cube", "to_world": [{"scale": 5e17}], "bsdf": {"type": "dielectric"}},
+        "floor": {"type": "rectangle", "to_world": [{"scale": 5e17}]}})");
+    for (const std::string emission : {"random", "stratified"}) {
+        const ProgramResult result =
+            causticbench({"render", file, "--method", "photonmap", "--param", "photons=200",
+                          "--param", "emission=" + emission, "--spp", "1", "-o", folder / "a.exr"});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+    }
+}
+
 TEST(Compare, FindsAPictureEqualToItself) {
     const support::TemporaryFolder folder;
     const std::string file = folder / "a.exr";
