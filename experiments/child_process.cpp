@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "experiments/files.h"
 #include "experiments/interrupt.h"
 
 namespace caustics {
@@ -38,8 +39,10 @@ constexpr char threw_letter = 'e';
     throw std::system_error(errno, std::generic_category(), what);
 }
 
+/// 0 where there is no /proc to count them by.
 std::size_t thread_count() {
-    const std::filesystem::directory_iterator threads("/proc/self/task");
+    std::error_code none;
+    const std::filesystem::directory_iterator threads("/proc/self/task", none);
     return static_cast<std::size_t>(std::distance(begin(threads), end(threads)));
 }
 
@@ -128,6 +131,8 @@ std::string last_message(const ChildProcess::Work& work, const ChildLimits& limi
         return std::string(1, bad_input_letter) + error.what();
     } catch (const UnsupportedScene& error) {
         return std::string(1, unsupported_letter) + error.what();
+    } catch (const std::filesystem::filesystem_error& error) {
+        return std::string(1, bad_input_letter) + reason_of(error);
     } catch (const std::bad_alloc&) {
         return std::string(1, threw_letter) + "out of memory";
     } catch (const std::exception& error) {

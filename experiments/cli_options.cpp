@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "experiments/files.h"
 #include "experiments/interrupt.h"
 #include "experiments/number_option.h"
 
@@ -90,7 +91,7 @@ int samples_per_pixel(const PixelSampling& sampling, int asked) {
 }
 
 void print_notes(const std::vector<std::string>& notes) {
-    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+    for (const std::string& note : notes) write_stderr(fmt::format("note: {}\n", note));
 }
 
 }  // namespace caustics

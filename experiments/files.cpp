@@ -76,6 +76,23 @@ std::string file_stamp(const std::filesystem::path& file) {
                        found.st_mtim.tv_nsec, found.st_ctim.tv_sec, found.st_ctim.tv_nsec);
 }
 
+std::string reason_of(const std::filesystem::filesystem_error& error) {
+    // Only a question for the working folder names no path.
+    const std::string place = error.path1().empty() ? "the working folder" : error.path1().string();
+    return fmt::format("{}: {}", place, error.code().message());
+}
+
+void hold_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(stream, F_GETFD) < 0)
+            open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+void write_stderr(std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+}
+
 void write_stdout(const std::string& text) {
     const bool written =
         std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <clocale>
-#include <cstdio>
+#include <csignal>
+#include <filesystem>
 #include <new>
+#include <sstream>
 #include <vector>
 
 #include "core/error.h"
 #include "experiments/environment.h"
+#include "experiments/files.h"
 #include "experiments/interrupt.h"
 #include "experiments/verbs.h"
 
@@ -18,7 +21,7 @@ namespace {
 enum ExitCode { done = 0, failed = 1, bad_input = 2, unsupported = 3, interrupted = 130 };
 
 int report(const std::string& message, ExitCode code) {
-    fmt::print(stderr, "causticbench: error: {}\n", one_line(message));
+    write_stderr(fmt::format("causticbench: error: {}\n", one_line(message)));
     return code;
 }
 
@@ -86,7 +89,12 @@ int parse_and_run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        if (error.get_exit_code() == 0) {  // --help, --version
+            std::ostringstream text;
+            app.exit(error, text, text);
+            write_stdout(text.str());
+            return done;
+        }
         throw InputError(one_line(error.what()) + " (see --help)");
     }
     return run_verb(verbs);
@@ -99,7 +107,9 @@ int parse_and_run(int argc, char** argv) {
 int main(int argc, char** argv) {
     using namespace caustics;
     std::setlocale(LC_ALL, "C");
+    hold_standard_streams();
     catch_interrupts();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write like others
     try {
         return parse_and_run(argc, argv);
     } catch (const InputError& error) {
@@ -108,6 +118,8 @@ int main(int argc, char** argv) {
         return report(error.what(), unsupported);
     } catch (const Interrupted& error) {
         return report(error.what(), interrupted);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return report(reason_of(error), bad_input);
     } catch (const std::bad_alloc&) {
         return report("out of memory", failed);
     } catch (const std::exception& error) {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 
+#include "experiments/files.h"
 #include "experiments/merge.h"
 #include "experiments/verbs.h"
 
@@ -28,7 +28,7 @@ Verb add_merge(CLI::App& app) {
                 const auto warnings =
                     merge_results({flags->folders.begin(), flags->folders.end()}, flags->target);
                 for (const std::string& warning : warnings)
-                    fmt::print(stderr, "warning: {}\n", warning);
+                    write_stderr(fmt::format("warning: {}\n", warning));
                 return 0;
             }};
 }

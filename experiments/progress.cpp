@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "experiments/files.h"
+
 namespace caustics {
 
 namespace {
@@ -35,7 +37,7 @@ Progress::Progress(std::size_t steps, std::size_t done)
 Progress::~Progress() { clear(); }
 
 void Progress::clear() {
-    if (terminal_) fmt::print(stderr, "\r\033[K");
+    if (terminal_) write_stderr("\r\033[K");
 }
 
 bool Progress::is_due() const {
@@ -48,10 +50,9 @@ void Progress::show(const std::string& what, double share, std::optional<double>
                                          eta(remaining), what, 100 * share);
     clear();
     if (terminal_)
-        fmt::print(stderr, "{}", line.substr(0, 150));
+        write_stderr(line.substr(0, 150));
     else
-        fmt::print(stderr, "{}\n", line);
-    std::fflush(stderr);
+        write_stderr(line + "\n");
     last_shown_ = Clock::now();
 }
 
@@ -63,7 +64,7 @@ void Progress::end(const std::string& result, bool notable, std::optional<double
 
 void Progress::note(const std::string& line) {
     clear();
-    fmt::print(stderr, "{}\n", line);
+    write_stderr(line + "\n");
 }
 
 }  // namespace caustics

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "core/error.h"
 #include "experiments/cli_options.h"
 #include "experiments/csv.h"
+#include "experiments/files.h"
 #include "experiments/metrics.h"
 #include "experiments/number_option.h"
 #include "experiments/pictures.h"
@@ -74,8 +74,9 @@ int render_picture(const RenderOptions& options) {
         run(scene, request, options.run.options(request.samples_per_pixel), stopwatch);
 
     for (const auto& layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
-    fmt::print(stderr, "{}\n", told_counts(result.counters));
-    if (result.why_empty) fmt::print(stderr, "the caustic is empty: {}\n", *result.why_empty);
+    write_stderr(told_counts(result.counters) + "\n");
+    if (result.why_empty)
+        write_stderr(fmt::format("the caustic is empty: {}\n", *result.why_empty));
     print_notes(result.notes);
     const double exposure = options.exposure.value_or(auto_exposure(result.film, ""));
     result.film.metadata = picture_metadata(request, file, result.report);
@@ -87,10 +88,10 @@ int render_picture(const RenderOptions& options) {
             write_exr(result.film, output);
         else
             write_png(tone_map(result.film, "", exposure), output);
-        fmt::print(stderr,
-                   "{}: {}x{} pixels, {} samples a pixel, exposure {:.2f} stops, {:.1f} s\n",
-                   output, result.film.width(), result.film.height(), request.samples_per_pixel,
-                   exposure, stopwatch.total().wall);
+        write_stderr(
+            fmt::format("{}: {}x{} pixels, {} samples a pixel, exposure {:.2f} stops, {:.1f} s\n",
+                        output, result.film.width(), result.film.height(),
+                        request.samples_per_pixel, exposure, stopwatch.total().wall));
     }
     return 0;
 }

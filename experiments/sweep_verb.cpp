@@ -2,9 +2,11 @@
 
 #include <memory>
 
+#include "core/error.h"
 #include "experiments/child_process.h"
 #include "experiments/cli_options.h"
 #include "experiments/dry_run.h"
+#include "experiments/environment.h"
 #include "experiments/files.h"
 #include "experiments/number_option.h"
 #include "experiments/sweep.h"
@@ -32,6 +34,8 @@ struct SweepFlags {
 };
 
 SweepOptions options_of(const SweepFlags& flags) {
+    if (flags.memory > 0 && resident_bytes() == 0)
+        throw InputError("--memory: cannot be held without /proc, which tells what a trial has");
     SweepOptions options;
     options.folder = flags.folder;
     if (!flags.shard.empty()) options.shard = parse_shard(flags.shard);

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "experiments/environment.h"
+#include "experiments/files.h"
 #include "experiments/trial.h"
 
 namespace caustics {
@@ -23,10 +23,7 @@ constexpr const char* log_name = "log.txt";
 /// What happens in the child.
 std::string work(const Trial& trial, ReferenceCache& references, const RunOptions& options,
                  const fs::path& folder) {
-    const auto log = [](const std::string& line) {
-        fmt::print(stderr, "{}\n", line);
-        std::fflush(stderr);
-    };
+    const auto log = [](const std::string& line) { write_stderr(line + "\n"); };
     const TrialOutcome outcome = run_trial(trial, references, options, log);
     if (outcome.film) write_exr(*outcome.film, folder / "image.exr");
     // Messages may hold names of files in any encoding.

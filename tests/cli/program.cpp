@@ -22,11 +22,15 @@ std::string file_base() {
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& arguments, const std::filesystem::path& input) {
+Program::Program(const std::vector<std::string>& arguments, const std::filesystem::path& input)
+    : Program(CAUSTICBENCH, arguments, input) {}
+
+Program::Program(const std::string& executable, const std::vector<std::string>& arguments,
+                 const std::filesystem::path& input) {
     const std::string base = file_base();
     out_ = base + ".out";
     err_ = base + ".err";
-    std::vector<std::string> words = {CAUSTICBENCH};
+    std::vector<std::string> words = {executable};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -68,6 +72,10 @@ ProgramResult causticbench(const std::vector<std::string>& arguments) {
 ProgramResult causticbench_reading(const std::filesystem::path& input,
                                    const std::vector<std::string>& arguments) {
     return Program(arguments, input).wait();
+}
+
+ProgramResult shell(const std::string& line) {
+    return Program("/bin/sh", {"-c", "P='" CAUSTICBENCH "'; " + line}).wait();
 }
 
 ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments,

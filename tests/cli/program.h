@@ -21,6 +21,8 @@ public:
     /// Its standard input is `input`.
     explicit Program(const std::vector<std::string>& arguments,
                      const std::filesystem::path& input = "/dev/null");
+    Program(const std::string& executable, const std::vector<std::string>& arguments,
+            const std::filesystem::path& input = "/dev/null");
 
     pid_t id() const { return child_; }
     bool has_ended() { return has_ended_ || reap(false); }
@@ -44,6 +46,9 @@ ProgramResult causticbench_reading(const std::filesystem::path& input,
 
 /// Runs causticbench with these arguments.
 ProgramResult causticbench(const std::vector<std::string>& arguments);
+
+/// Runs a line of shell, in which $P is causticbench.
+ProgramResult shell(const std::string& line);
 
 /// Runs it, and sends SIGINT as soon as `file` exists.
 ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments,

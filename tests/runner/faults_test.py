@@ -51,6 +51,20 @@ class Faults(lab.Lab):
         self.assertEqual(done.returncode, 2)
         self.assertIn(f"{folder}: cannot be written (Read-only file system)", done.stderr)
 
+    def test_without_proc(self):
+        folder = self.scratch / "no-proc"
+        done = in_own_mounts(f"""
+            mount -t tmpfs none /proc || exit 99
+            {lab.PROGRAM} --version && {shlex.join(self.command(folder))}; echo "sweep $?"
+            {shlex.join(self.command(self.scratch / "limited"))} --memory 1000; echo "limited $?"
+            """)
+        if done is None or done.returncode == 99:
+            self.skipTest("needs leave to mount (root)")
+        self.assertIn("sweep 0", done.stdout, done.stderr)
+        self.check_same(folder)
+        self.assertIn("limited 2", done.stdout)
+        self.assertIn("--memory: cannot be held without /proc", done.stderr)
+
     def test_crash(self):
         sweep = lab.write_sweep(self.scratch / "crash.json", photons=(20,), seeds=(1,), methods=[
             {"method": "none"}, {"method": "photonmap", "param": {"emitted": [100, 2000000000]}}])
