@@ -1,5 +1,6 @@
 #include "core/whole_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,11 +14,33 @@
 
 namespace caustics {
 
+namespace {
+
+std::filesystem::path entry_of(int descriptor) {
+    return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
+/// A file without a name in the folder, which a killed process leaves nothing of; -1 where the file
+/// system has no such files, or it could not be given a name later.
+int open_nameless(const std::filesystem::path& folder) {
+    constexpr mode_t mode = 0666;
+    const int descriptor =
+        open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
+    std::error_code none;
+    if (descriptor < 0 || std::filesystem::exists(entry_of(descriptor), none)) return descriptor;
+    close(descriptor);
+    return -1;
+}
+
+}  // namespace
+
 WholeFile::WholeFile(const std::filesystem::path& file) : file_(file), temporary_(file) {
     std::error_code unknown;
     if (std::filesystem::is_other(file, unknown)) fail(EEXIST);
     temporary_ += ".tmp-" + std::to_string(getpid());
-    out_ = std::fopen(temporary_.c_str(), "wb");
+    const int nameless = open_nameless(file.parent_path());
+    is_nameless_ = nameless >= 0;
+    out_ = is_nameless_ ? fdopen(nameless, "wb") : std::fopen(temporary_.c_str(), "wb");
     if (out_ == nullptr) fail(errno);
 }
 
@@ -36,7 +59,18 @@ void WholeFile::write(std::string_view bytes) {
     if (std::fwrite(bytes.data(), 1, bytes.size(), out_) != bytes.size()) fail(errno);
 }
 
+/// Another process of that number may have left the name behind.
+void WholeFile::name() {
+    std::error_code none;
+    std::filesystem::remove(temporary_, none);
+    const std::filesystem::path entry = entry_of(fileno(out_));
+    if (linkat(AT_FDCWD, entry.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+        fail(errno);
+}
+
 void WholeFile::commit() {
+    if (std::fflush(out_) != 0) fail(errno);
+    if (is_nameless_) name();
     if (std::fclose(std::exchange(out_, nullptr)) != 0) fail(errno);
     std::error_code error;
     std::filesystem::rename(temporary_, file_, error);

@@ -7,8 +7,9 @@
 
 namespace caustics {
 
-/// A file that is whole or absent: written under a temporary name beside it, and renamed by commit().
-/// Without commit() nothing is left behind. Every failure throws InputError naming the file and the
+/// A file that is whole or absent: written without a name, or under a temporary one beside it where
+/// the file system has none without, and named or renamed by commit(). Without commit() nothing is
+/// left behind. Every failure throws InputError naming the file and the
 /// system's reason (a full disk, a missing folder).
 class WholeFile {
 public:
@@ -22,10 +23,12 @@ public:
 
 private:
     [[noreturn]] void fail(int error) const;
+    void name();
 
     std::filesystem::path file_;
     std::filesystem::path temporary_;
     std::FILE* out_ = nullptr;
+    bool is_nameless_ = false;
 };
 
 /// Throws InputError where no file can be put: its folder is missing, or a folder, pipe or device

@@ -9,6 +9,7 @@
 #include "experiments/files.h"
 #include "experiments/number_option.h"
 #include "experiments/verbs.h"
+#include "experiments/whole_folder.h"
 
 namespace caustics {
 
@@ -21,14 +22,6 @@ struct ExportOptions {
     ExportSettings settings;
 };
 
-void make_folder(const std::filesystem::path& folder) {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (!std::filesystem::is_directory(folder))
-        throw InputError(fmt::format("-o {}: is no folder and cannot be made ({})", folder.string(),
-                                     failed ? failed.message() : "a file of that name is there"));
-}
-
 int export_scene(ExportOptions options) {
     const SceneFile file = options.scene.load();
     options.settings.scene_file = options.scene.file;
@@ -39,13 +32,17 @@ int export_scene(ExportOptions options) {
             fmt::format("coordinates are relative to ({:.9g}, {:.9g}, {:.9g}) m of the scene file, "
                         "where floats resolve the scene",
                         o.x(), o.y(), o.z()));
-    make_folder(options.folder);
     const std::filesystem::path folder = options.folder;
+    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+        throw InputError(
+            fmt::format("-o {}: is no folder (a file of that name is there)", options.folder));
+    WholeFolder whole(folder);
     for (const ExportedScene::File& each : exported.files)
-        write_whole_file(folder / each.name, each.bytes);
+        write_whole_file(whole.path() / each.name, each.bytes);
+    whole.commit();
     print_notes(exported.notes);
-    fmt::print(stderr, "{}: {} file{}\n", (folder / exported.files.front().name).string(),
-               exported.files.size(), exported.files.size() == 1 ? "" : "s");
+    write_stderr(fmt::format("{}: {} file{}\n", (folder / exported.files.front().name).string(),
+                             exported.files.size(), exported.files.size() == 1 ? "" : "s"));
     return 0;
 }
 

@@ -25,7 +25,8 @@ TriangleMesh baked_mesh(const Shape& shape, const ExportSettings& settings,
 }
 
 std::string plain_name(const std::string& name, std::size_t number) {
-    std::string plain = name;
+    constexpr std::size_t longest = 64;
+    std::string plain = name.substr(0, longest);
     std::ranges::replace_if(
         plain,
         [](char c) {

@@ -32,7 +32,8 @@ struct ExportSettings {
 TriangleMesh baked_mesh(const Shape& shape, const ExportSettings& settings,
                         std::vector<std::string>& notes);
 
-/// Shape names as file names and identifiers: letters, digits, '_' and '-' only, unique by number.
+/// Shape names as file names and identifiers: letters, digits, '_' and '-' only, cut short,
+/// unique by number.
 std::string plain_name(const std::string& name, std::size_t number);
 
 /// Mitsuba 3 (from 3.0 on): scene.xml with meshes as binary PLY and textures as PFM beside it.

@@ -33,6 +33,19 @@ TEST(Export, WritesAFolderThatAnotherRendererReads) {
     EXPECT_TRUE(fs::exists(out + "/scene.pov"));
 }
 
+TEST(Export, TakesNamesOfAnyLength) {
+    const support::TemporaryFolder folder;
+    std::string text = read_whole_file(scenes + "crosscheck/pool_point.json");
+    const std::string name = "\"water\"";
+    ASSERT_NE(text.find(name), std::string::npos);
+    text.replace(text.find(name), name.size(), '"' + std::string(300, 'w') + '"');
+    write_whole_file(folder / "scene.json", text);
+    const ProgramResult result =
+        causticbench({"export", folder / "scene.json", "--to", "mitsuba", "-o", folder / "out"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_GE(std::distance(fs::directory_iterator(folder / "out"), {}), 2);
+}
+
 TEST(Export, RefusesWhatTheOtherCannotExpress) {
     const support::TemporaryFolder folder;
     const std::string out = folder / "out";

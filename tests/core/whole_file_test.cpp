@@ -1,8 +1,13 @@
 #include "core/whole_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 
@@ -39,6 +44,22 @@ TEST(WholeFile, IsThereOnlyWhenItIsWhole) {
     }
     EXPECT_EQ(content(file), "new text");
     EXPECT_EQ(files_in(folder.path()), 1) << "nothing temporary is left";
+}
+
+TEST(WholeFile, LeavesNothingOfAKilledProcess) {
+    const support::TemporaryFolder folder;
+    const pid_t writer = fork();
+    if (writer == 0) {
+        WholeFile out(folder / "a.txt");
+        out.write(std::string(1 << 20, 'x'));
+        std::raise(SIGKILL);
+    }
+    waitpid(writer, nullptr, 0);
+    std::FILE* const nameless =
+        fdopen(open(folder.path().c_str(), O_TMPFILE | O_WRONLY, 0600), "w");
+    if (nameless == nullptr) GTEST_SKIP() << "the file system has no files without names";
+    std::fclose(nameless);
+    EXPECT_EQ(files_in(folder.path()), 0);
 }
 
 std::string refusal(const std::filesystem::path& file, std::string_view bytes) {
