@@ -7,6 +7,7 @@
 
 #include "experiments/environment.h"
 #include "experiments/notes.h"
+#include "experiments/shell_word.h"
 #include "experiments/why_empty.h"
 
 namespace caustics {
@@ -23,18 +24,9 @@ void add(BuildReport& report, const BuildReport& pass) {
 
 }  // namespace
 
-std::string shell_word(const std::string& text) {
-    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                               "_-./=:,+") == std::string::npos)
-        return text;
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
 std::string command(const std::string& verb, const RunRequest& request) {
     std::string line = fmt::format("causticbench {} {} --method {}", verb,
-                                   shell_word(request.scene_file.string()), request.method.name);
+                                   shell_path(request.scene_file), request.method.name);
     for (const auto& [pointer, value] : request.overrides)
         line += " --set " + shell_word(pointer + "=" + value);
     const nlohmann::json parameters = describe(request.method);

@@ -23,9 +23,6 @@ struct RunRequest {
     int samples_per_pixel = 1;
 };
 
-/// The text as one word for a shell.
-std::string shell_word(const std::string& text);
-
 /// The command line of a verb that makes it, with every parameter in force.
 std::string command(const std::string& verb, const RunRequest& request);
 
