@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <stdexcept>
 
 #include "core/error.h"
 #include "core/picture_file.h"
@@ -68,7 +69,11 @@ bool Film::has_layer(const std::string& layer) const {
 Spectrum Film::rgb(const std::string& layer, std::size_t pixel) const {
     Spectrum value;
     Eigen::Index c = 0;
-    for (const std::string& name : rgb_channels(layer)) value[c++] = find(name)->at(pixel);
+    for (const std::string& name : rgb_channels(layer)) {
+        const std::vector<float>* const values = find(name);
+        if (values == nullptr) throw std::logic_error("a picture has no channel " + name);
+        value[c++] = values->at(pixel);
+    }
     return value;
 }
 
@@ -95,6 +100,8 @@ void write_exr(const Film& film, const fs::path& file) {
 
 Film read_exr(const fs::path& file) {
     PictureFile picture(file);
+    if (picture.format() != "openexr")
+        picture.fail("holds " + picture.format() + " values, not radiance as OpenEXR does");
     const OIIO::ImageSpec& spec = picture.spec();
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height)

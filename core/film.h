@@ -35,7 +35,8 @@ public:
     /// The plane of that channel, or nullptr.
     const std::vector<float>* find(const std::string& channel) const;
     bool has_layer(const std::string& layer) const;
-    /// R, G, B of a layer ("" = beauty) at a pixel; the layer must be there.
+    /// R, G, B of a layer ("" = beauty) at a pixel. Throws std::logic_error when there is no such
+    /// layer.
     Spectrum rgb(const std::string& layer, std::size_t pixel) const;
     void set_rgb(const std::string& layer, std::size_t pixel, const Spectrum& value);
     const std::deque<Plane>& planes() const { return planes_; }

@@ -26,6 +26,8 @@ public:
     PictureFile& operator=(const PictureFile&) = delete;
 
     const OIIO::ImageSpec& spec() const { return input_->spec(); }
+    /// OpenImageIO's name: "openexr", "png", ...
+    std::string format() const { return input_->format_name(); }
     std::size_t pixel_count() const;
     /// Hands over the values of a row after another: `spec().nchannels` floats a pixel. Colours are
     /// as written, not multiplied by alpha. Throws InputError for a broken picture.

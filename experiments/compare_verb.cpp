@@ -1,12 +1,14 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "experiments/cli_options.h"
-#include "experiments/csv.h"
 #include "experiments/files.h"
+#include "experiments/light_differences.h"
 #include "experiments/metrics.h"
 #include "experiments/pictures.h"
 #include "experiments/record.h"
@@ -37,13 +39,18 @@ PixelMask mask_from(const std::string& file, const Film& reference) {
     return counted;
 }
 
+const char* unit_of(const std::string& metric) {
+    return metric == "rmse" ? " W/(m^2 sr)" : " (no unit)";
+}
+
 void append_text(std::string& text, const char* title, const nlohmann::json& metrics) {
     text += fmt::format("{}\n", title);
     for (const auto& [name, value] : metrics.items())
         text += fmt::format("  {:<12} {}\n", name,
-                            value.is_null()           ? "undefined"
-                            : value.is_number_float() ? shortest(value.get<double>())
-                                                      : value.dump());
+                            value.is_null() ? "undefined"
+                            : value.is_number_float()
+                                ? fmt::format("{:.4g}{}", value.get<double>(), unit_of(name))
+                                : value.dump());
 }
 
 /// What the reference's own standard error leaves of a difference, in one line; empty where it tells none.
@@ -55,10 +62,22 @@ std::string said_of_reference(const Film& reference, const std::string& layer,
     const double error = *share * mean(reference, layer, reached);
     const double rmse = metrics.at("rmse").get<double>();
     return fmt::format(
-        "the reference's own standard error is {} (root mean square): {}\n", shortest(error),
+        "the reference's own standard error is {:.4g} W/(m^2 sr) (root mean square): {}\n", error,
         rmse <= 1.5 * error
             ? "the difference is within it, and tells nothing of the picture"
             : fmt::format("{:.0f} % of rmse squared", 100 * error * error / (rmse * rmse)));
+}
+
+void tell(const std::vector<std::string>& differences) {
+    constexpr std::size_t most = 5;
+    if (differences.empty()) return;
+    const std::vector<std::string> first(
+        differences.begin(),
+        differences.begin() + static_cast<std::ptrdiff_t>(std::min(differences.size(), most)));
+    const std::string more =
+        differences.size() > most ? fmt::format(", and {} more", differences.size() - most) : "";
+    print_notes({fmt::format("the two pictures ask for different light: {}{}",
+                             fmt::join(first, ", "), more)});
 }
 
 int compare(const CompareOptions& options) {
@@ -75,10 +94,13 @@ int compare(const CompareOptions& options) {
     const nlohmann::json masked = to_json(measure(picture, reference, layer, mask));
     if (!options.strip.empty()) write_png(strip(picture, reference, layer), options.strip);
 
+    const std::vector<std::string> differences = light_differences(picture, reference);
+    tell(differences);
     const std::string name = layer.empty() ? "beauty" : layer;
     const double unreached = 1 - fraction(reached);
     if (options.json) {
-        const std::optional<double> own = relative_standard_error(reference, reached);
+        const std::optional<double> own =
+            layer == "caustic" ? relative_standard_error(reference, reached) : std::nullopt;
         const nlohmann::json all = {
             {"layer", name},
             {"unreached_fraction", unreached},
@@ -86,14 +108,15 @@ int compare(const CompareOptions& options) {
             {"reference_stderr", own ? nlohmann::json(*own) : nlohmann::json()},
             {"metrics", whole},
             {"mask_metrics", masked},
+            {"light_differences", differences},
             {"formulas", metric_formulas}};
         write_stdout(all.dump(2) + "\n");
         return 0;
     }
     std::string text =
-        fmt::format("layer {}{}\nunreached pixels left out: {} of all\n", name,
+        fmt::format("layer {}{}\nunreached pixels left out: {:.4g} % of all\n", name,
                     layer.empty() ? " (RGB, because not both files have a layer \"caustic\")" : "",
-                    shortest(unreached));
+                    100 * unreached);
     append_text(text, "all pixels", whole);
     append_text(
         text,
@@ -121,7 +144,8 @@ Verb add_compare(CLI::App& app) {
         ->type_name("FILE");
     verb->footer(
         "Judges the layer \"caustic\", or RGB when not both files have it, leaving out "
-        "unreached pixels.\n" +
+        "unreached pixels.\n"
+        "A note says where the two ask for different light. --json prints every digit.\n" +
         std::string(metric_formulas) +
         "Example:\n  causticbench compare photonmap.exr lighttrace.exr --strip strip.png");
     return {verb, [options] { return compare(*options); }};

@@ -130,8 +130,9 @@ void require_finite(const Film& film, const std::string& layer, const std::strin
 std::optional<double> relative_standard_error(const Film& reference, const PixelMask& counted) {
     const bool coloured = reference.has_layer("stderr") && reference.find("stderr.R") != nullptr;
     const std::vector<float>* const grey = reference.find("stderr.Y");
+    if ((!coloured && grey == nullptr) || !reference.has_layer("caustic")) return {};
     const double mean_r = mean(reference, "caustic", counted);
-    if ((!coloured && grey == nullptr) || !(mean_r > 0)) return {};
+    if (!(mean_r > 0)) return {};
     double squares = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < counted.size(); ++i) {

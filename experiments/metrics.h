@@ -48,7 +48,7 @@ Metrics measure(const Film& film, const Film& reference, const std::string& laye
 void require_finite(const Film& film, const std::string& layer, const std::string& name);
 
 /// Standard error of a reference as a share of its mean: sqrt(mean s^2) / mean(r), s the standard
-/// error of a pixel's caustic (layer stderr). Empty without that layer, or without light.
+/// error of a pixel's caustic (layer stderr). Empty without these layers, or without light.
 std::optional<double> relative_standard_error(const Film& reference, const PixelMask& counted);
 
 }  // namespace caustics

@@ -193,25 +193,6 @@ TEST(Render, FollowsLightToTheFarthestCoordinates) {
     }
 }
 
-TEST(Compare, FindsAPictureEqualToItself) {
-    const support::TemporaryFolder folder;
-    const std::string file = folder / "a.exr";
-    const std::string strip = folder / "strip.png";
-    ASSERT_EQ(causticbench(
-                  {"render", scene, "--method", "photonmap", "--param", "photons=2000", "-o", file})
-                  .exit_code,
-              0);
-    const ProgramResult result = causticbench({"compare", file, file, "--json", "--strip", strip});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    const nlohmann::json json = nlohmann::json::parse(result.out);
-    EXPECT_EQ(json.at("layer"), "caustic");
-    EXPECT_EQ(json.at("metrics").at("rmse"), 0);
-    EXPECT_EQ(json.at("mask_metrics").at("mean_ratio"), 1);
-    EXPECT_GT(json.at("mask_fraction"), 0);
-    EXPECT_TRUE(fs::exists(strip));
-    EXPECT_NE(causticbench({"compare", file, file}).out.find("0.01 mean(r)^2"), std::string::npos);
-}
-
 // Every method that can serve it, on every scene whose answer is known.
 TEST(Verify, TheGalleryHolds) {
     const ProgramResult result = causticbench({"verify", "--gallery"});

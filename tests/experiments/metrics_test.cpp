@@ -96,6 +96,15 @@ TEST(Masks, KeepPixelsAtLeastAsBrightAsTheMean) {
               PixelMask(4, false));
 }
 
+TEST(StandardError, IsEmptyWhereThereIsNoCaustic) {
+    Film film(1, 1);
+    film.set_rgb("", 0, Spectrum::Constant(1));
+    EXPECT_FALSE(relative_standard_error(film, {true}));
+    film.plane("stderr.Y")[0] = 1;
+    EXPECT_FALSE(relative_standard_error(film, {true}));
+    EXPECT_THROW(static_cast<void>(film.rgb("caustic", 0)), std::logic_error);
+}
+
 TEST(StandardError, IsTheRootMeanSquareOverTheMean) {
     Film r = grey_film("caustic", {1, 1, 1, 5});
     EXPECT_FALSE(relative_standard_error(r, all)) << "no layer stderr";
