@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <new>
 #include <stdexcept>
 
 #include "core/error.h"

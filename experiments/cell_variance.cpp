@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/error.h"
 #include "core/hash.h"
 #include "experiments/child_process.h"
 #include "experiments/interrupt.h"
 #include "experiments/metrics.h"
+#include "experiments/pictures.h"
 
 namespace caustics {
 
@@ -21,6 +23,8 @@ using nlohmann::json;
 /// Gathers the sample variance over pictures, one at a time (Welford 1962).
 class PictureVariance {
 public:
+    /// Of pictures of one size.
+    bool takes(const Film& film) const { return count_ == 0 || film.pixel_count() == mean_.size(); }
     void add(const Film& film) {
         if (count_ == 0) {
             reached_ = reached_pixels(film, film);
@@ -70,14 +74,27 @@ std::string hash_of(const CellTrials& trials, const DonePictures& done) {
     return hex(hash);
 }
 
+/// A number, null where no pixel is reached, or text where a picture cannot be used.
+json variance_of(const CellTrials& trials, const JobStore& store) {
+    PictureVariance variance;
+    for (const auto& [seed, id] : trials) {
+        const std::filesystem::path file = store.image_of(id);
+        try {
+            const Film film = read_caustic(file);
+            if (!variance.takes(film))
+                return file.string() + ": of another size than others of its cell";
+            variance.add(film);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+    }
+    const std::optional<double> mean = variance.mean();
+    return mean ? json(*mean) : json();
+}
+
 json variances_of(const std::map<std::string, CellTrials>& cells, const JobStore& store) {
     json result = json::object();
-    for (const auto& [name, trials] : cells) {
-        PictureVariance variance;
-        for (const auto& [seed, id] : trials) variance.add(read_exr(store.image_of(id)));
-        const std::optional<double> mean = variance.mean();
-        result[name] = mean ? json(*mean) : json();
-    }
+    for (const auto& [name, trials] : cells) result[name] = variance_of(trials, store);
     return result;
 }
 
@@ -96,12 +113,14 @@ CellVariances cell_variances(const PlanFile& plan, const JobStore& store, const 
     }
     // The table of a sweep that was stopped does without.
     if (fresh.empty() || interrupt_requested()) return all;
-    const json means = json::parse(
-        run_in_child([&](const ChildProcess::Tell&) { return variances_of(fresh, store).dump(); }));
+    const json means = json::parse(run_in_child([&](const ChildProcess::Tell&) {
+        return variances_of(fresh, store).dump(-1, ' ', false, json::error_handler_t::replace);
+    }));
     for (const auto& [name, trials] : fresh) {
         CellVariance& variance = all[name];
         variance.pictures = hash_of(trials, done);
         if (means.at(name).is_number()) variance.mean = means.at(name).get<double>();
+        if (means.at(name).is_string()) variance.unreadable = means.at(name).get<std::string>();
     }
     return all;
 }

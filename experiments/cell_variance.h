@@ -15,6 +15,7 @@ struct CellVariance {
     /// Mean over reached pixels and channels of the sample variance of the caustic; empty when no
     /// pixel is reached.
     std::optional<double> mean;
+    std::string unreadable = {};  ///< why there is none: a picture that is gone or broken
 };
 
 /// By cell; cells of fewer than two seeds have none.
@@ -24,7 +25,8 @@ using CellVariances = std::map<std::string, CellVariance>;
 using DonePictures = std::map<std::string, std::string>;
 
 /// Those of a plan's cells: as they were where the pictures are the same, else computed from the
-/// pictures in a child process. Cells to compute are left out once somebody asked to stop.
+/// pictures in a child process. A picture that cannot be read leaves its cell without. Cells to
+/// compute are left out once somebody asked to stop.
 CellVariances cell_variances(const PlanFile& plan, const JobStore& store, const DonePictures& done,
                              const CellVariances& earlier);
 

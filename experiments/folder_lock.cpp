@@ -30,7 +30,7 @@ struct flock whole_file_lock() {
 }  // namespace
 
 std::string runner_at_work_on(const std::filesystem::path& folder) {
-    const int file = open(lock_file(folder).c_str(), O_RDONLY | O_CLOEXEC);
+    const int file = open(lock_file(folder).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return {};
     struct flock lock = whole_file_lock();
     const bool held = fcntl(file, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "experiments/files.h"
+#include "experiments/record.h"
 
 namespace caustics {
 
@@ -54,11 +55,22 @@ void JobStore::prepare() const {
 
 std::optional<nlohmann::json> JobStore::record(const std::string& id) const {
     const fs::path file = record_of(id);
-    if (!fs::exists(file)) return {};
+    const auto require = [&](bool whole, const std::string& flaw) {
+        if (!whole)
+            throw InputError(fmt::format("{}: broken record ({}); a sweep runs the trial again",
+                                         file.string(), flaw));
+    };
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (status.type() == fs::file_type::not_found) return {};
+    require(!error, error.message());
+    require(fs::is_regular_file(status), "not a file");
     nlohmann::json record = nlohmann::json::parse(read_whole_file(file), nullptr, false);
-    if (!record.is_object() || record.value("trial", "") != id || !record.contains("status"))
-        throw InputError(fmt::format(
-            "{}: broken record (remove the trial's folder to run it again)", file.string()));
+    require(!record.is_discarded(), "not JSON");
+    const std::string flaw = flaw_of(record);
+    require(flaw.empty(), flaw);
+    require(record.contains("trial") && record.at("trial") == nlohmann::json(id),
+            "/trial: names another trial");
     return record;
 }
 
@@ -91,6 +103,18 @@ void JobStore::commit(const std::string& id, const nlohmann::json& record) const
     } catch (const fs::filesystem_error& error) {
         cannot_be_written(place, error.code());
     }
+}
+
+std::vector<std::string> JobStore::trials() const {
+    std::vector<std::string> ids;
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(trials_, none)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(old_prefix) && !name.starts_with(new_prefix) &&
+            entry.is_directory(none))
+            ids.push_back(name);
+    }
+    return ids;
 }
 
 void JobStore::drop(const std::string& id) const {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace caustics {
 
@@ -20,6 +21,8 @@ public:
 
     /// The record of a finished trial. Throws InputError when it is there but broken.
     std::optional<nlohmann::json> record(const std::string& id) const;
+    /// The ids of all that are there, in no order.
+    std::vector<std::string> trials() const;
     std::filesystem::path folder_of(const std::string& id) const { return trials_ / id; }
     std::filesystem::path record_of(const std::string& id) const {
         return trials_ / id / "record.json";

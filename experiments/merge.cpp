@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "experiments/plan_file.h"
 #include "experiments/record_table.h"
 #include "experiments/trial_rows.h"
+#include "experiments/whole_folder.h"
 
 namespace caustics {
 
@@ -97,6 +97,23 @@ void require_whole(const Survey& survey, const PlanFile& plan) {
         throw InputError("records of different instruction sets: " + all(survey.isa));
 }
 
+/// Copies a file, or a folder with all in it. A symbolic link is refused, because it would bring in
+/// whatever it names.
+void copy_plain(const fs::path& from, const fs::path& to) {
+    const fs::file_status status = fs::symlink_status(from);
+    if (fs::is_directory(status)) {
+        fs::create_directories(to);
+        for (const fs::directory_entry& entry : fs::directory_iterator(from))
+            copy_plain(entry.path(), to / entry.path().filename());
+    } else if (fs::is_regular_file(status)) {
+        fs::copy_file(from, to, fs::copy_options::skip_existing);
+    } else {
+        throw InputError(fmt::format("{}: {}, and only plain files and folders are merged",
+                                     from.string(),
+                                     fs::is_symlink(status) ? "is a symbolic link" : "is no file"));
+    }
+}
+
 /// Files of a folder inside each of the folders, the first of each name.
 void copy_files(const std::vector<fs::path>& folders, const fs::path& inside,
                 const fs::path& target, const std::function<bool(const fs::path&)>& wanted) {
@@ -105,8 +122,7 @@ void copy_files(const std::vector<fs::path>& folders, const fs::path& inside,
         fs::create_directories(target / inside);
         for (const fs::directory_entry& file : fs::directory_iterator(folder / inside))
             if (wanted(file.path()))
-                fs::copy_file(file.path(), target / inside / file.path().filename(),
-                              fs::copy_options::skip_existing);
+                copy_plain(file.path(), target / inside / file.path().filename());
     }
 }
 
@@ -129,17 +145,22 @@ std::string environments(const std::vector<fs::path>& folders) {
     for (const fs::path& folder : folders) {
         const fs::path file = folder / "environment.json";
         if (!fs::exists(file)) continue;  // a shard without trials
-        shards.push_back(json::parse(read_whole_file(file)));
-        shards.back()["folder"] = folder.string();
+        json environment =
+            fs::is_regular_file(file) ? json::parse(read_whole_file(file), nullptr, false) : json();
+        if (!environment.is_object())
+            throw InputError(fmt::format("{}: broken (not a JSON object)", file.string()));
+        environment["folder"] = folder.string();
+        shards.push_back(std::move(environment));
     }
-    return json{{"shards", shards}}.dump(2) + "\n";
+    return json{{"shards", shards}}.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-void write_merged(const std::vector<fs::path>& folders, const PlanFile& plan, const Survey& survey,
-                  const fs::path& target) {
+/// What the tables lack, a line each.
+std::vector<std::string> write_merged(const std::vector<fs::path>& folders, const PlanFile& plan,
+                                      const Survey& survey, const fs::path& target) {
     fs::create_directories(target / "trials");
     for (const auto& [id, folder] : survey.folder_of)
-        fs::copy(folder / "trials" / id, target / "trials" / id, fs::copy_options::recursive);
+        copy_plain(folder / "trials" / id, target / "trials" / id);
     copy_files(folders, "references", target,
                [](const fs::path& file) { return file.extension() == ".exr"; });
     const std::set<std::string> figures = figures_of(plan, folders);
@@ -147,7 +168,21 @@ void write_merged(const std::vector<fs::path>& folders, const PlanFile& plan, co
                [&](const fs::path& file) { return figures.contains(file.filename().string()); });
     write_plan(plan, target);
     write_whole_file(target / "environment.json", environments(folders));
-    write_records(target, JobStore(target), plan, {}, [](const TableRow&) {});
+    return write_records(target, JobStore(target), plan, {}, [](const TableRow&) {});
+}
+
+/// Throws InputError for what the file system refuses.
+std::vector<std::string> write_whole(const std::vector<fs::path>& folders, const PlanFile& plan,
+                                     const Survey& survey, const fs::path& target) {
+    try {
+        WholeFolder whole(target);
+        std::vector<std::string> lacks = write_merged(folders, plan, survey, whole.path());
+        whole.commit();
+        return lacks;
+    } catch (const fs::filesystem_error& error) {
+        throw InputError(
+            fmt::format("{}: cannot be written ({})", target.string(), reason_of(error)));
+    }
 }
 
 }  // namespace
@@ -161,19 +196,7 @@ std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
     for (const fs::path& folder : folders) take_in(survey, plans[0], folder);
     require_whole(survey, plans[0]);
 
-    const fs::path temporary = fmt::format("{}.tmp-{}", target.string(), getpid());
-    try {
-        write_merged(folders, plans[0], survey, temporary);
-        fs::rename(temporary, target);
-    } catch (const std::exception& error) {
-        std::error_code ignored;
-        fs::remove_all(temporary, ignored);
-        if (const auto* const failed = dynamic_cast<const fs::filesystem_error*>(&error))
-            throw InputError(fmt::format("{}: cannot be written ({})", target.string(),
-                                         failed->code().message()));
-        throw;
-    }
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = write_whole(folders, plans[0], survey, target);
     if (survey.cpu.size() > 1)
         warnings.push_back("times from different processors do not compare: " + all(survey.cpu));
     return warnings;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/error.h"
 #include "experiments/metrics.h"
 
 namespace caustics {
@@ -33,6 +34,12 @@ void append(Picture& picture, double r, double g, double b) {
 }
 
 }  // namespace
+
+Film read_caustic(const std::filesystem::path& file) {
+    Film film = read_exr(file);
+    if (!film.has_layer("caustic")) throw InputError(file.string() + ": has no layer \"caustic\"");
+    return film;
+}
 
 double auto_exposure(const Film& film, const std::string& layer) {
     std::vector<double> lit;

@@ -16,6 +16,10 @@ extern const char* const tone_mapping_rule;
 /// light, to white; 0 for a black layer.
 double auto_exposure(const Film& film, const std::string& layer);
 
+/// A trial's picture. Throws InputError naming the file when it cannot be read or has no layer
+/// "caustic".
+Film read_caustic(const std::filesystem::path& file);
+
 /// An 8-bit sRGB picture, 3 bytes a pixel, row by row from the top.
 struct Picture {
     int width = 0;

@@ -1,5 +1,8 @@
 #include "experiments/record.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,25 +15,29 @@ namespace {
 
 using nlohmann::json;
 
+/// What a value of a record is, where it is there and not null.
+enum class Kind { number, count, text, any };
+
 struct Column {
     const char* name;
     const char* pointer;  ///< into record.json
+    Kind kind = Kind::number;
 };
 
 constexpr Column columns_of_all[] = {
-    {"trial", "/trial"},
-    {"status", "/status"},
-    {"scene", "/scene/name"},
-    {"method", "/method/name"},
-    {"seed", "/seed"},
-    {"repeat", "/repeat"},
-    {"threads", "/threads"},
-    {"isa", "/isa"},
+    {"trial", "/trial", Kind::text},
+    {"status", "/status", Kind::text},
+    {"scene", "/scene/name", Kind::text},
+    {"method", "/method/name", Kind::text},
+    {"seed", "/seed", Kind::count},
+    {"repeat", "/repeat", Kind::count},
+    {"threads", "/threads", Kind::count},
+    {"isa", "/isa", Kind::text},
     {"photons_emitted", "/counters/photons_emitted"},
     {"photons_stored", "/counters/photons_stored"},
-    {"nearest", "/method/parameters/nearest"},
-    {"alpha", "/swept/alpha"},
-    {"mesh_resolution", "/swept/mesh_resolution"},
+    {"nearest", "/method/parameters/nearest", Kind::any},
+    {"alpha", "/swept/alpha", Kind::any},
+    {"mesh_resolution", "/swept/mesh_resolution", Kind::any},
     {"polygons", "/scene/polygons"},
     {"beams", "/counters/beams"},
     {"cone_point_tests", "/counters/cone_point_tests"},
@@ -53,10 +60,10 @@ constexpr Column columns_of_all[] = {
     {"leak_energy", "/metrics/leak_energy"},
     {"beauty_rmse", "/beauty_rmse"},
     {"unreached_fraction", "/unreached_fraction"},
-    {"reference", "/reference/name"},
+    {"reference", "/reference/name", Kind::text},
     {"reference_stderr", "/reference/stderr"},
-    {"config_hash", "/config_hash"},
-    {"code_version", "/code_version"},
+    {"config_hash", "/config_hash", Kind::text},
+    {"code_version", "/code_version", Kind::text},
     {"mask_rmse", "/mask_metrics/rmse"},
     {"mask_relmse", "/mask_metrics/relmse"},
     {"mask_mean_ratio", "/mask_metrics/mean_ratio"},
@@ -67,7 +74,7 @@ constexpr Column columns_of_all[] = {
     {"balance_cpu_s", "/seconds/balance/cpu"},
     {"render_cpu_s", "/seconds/render/cpu"},
     {"reference_mean", "/reference/mean"},
-    {"spp", "/spp"},
+    {"spp", "/spp", Kind::count},
     {"trees", "/counters/trees"},
     {"trees_binned", "/method/resolved/trees_binned"},
     {"nodes", "/counters/nodes"},
@@ -85,19 +92,21 @@ constexpr Column columns_of_all[] = {
     {"empty_gathers", "/counters/empty_gathers"},
     {"receiver_points", "/counters/receiver_points"},
     {"lit_points", "/counters/lit_points"},
-    {"picture_hash", "/picture_hash"},
+    {"picture_hash", "/picture_hash", Kind::text},
     {"elapsed_s", "/elapsed_s"},
-    {"finished", "/finished"},
-    {"host", "/machine/host"},
-    {"cpu", "/machine/cpu"},
+    {"finished", "/finished", Kind::text},
+    {"host", "/machine/host", Kind::text},
+    {"cpu", "/machine/cpu", Kind::text},
     {"load_average", "/load/average"},
     {"other_cores", "/load/other_cores"},
     {"jobs", "/limits/jobs"},
     {"timeout_s", "/limits/timeout_s"},
     {"memory_limit_bytes", "/limits/memory_bytes"},
-    {"why_empty", "/why_empty"},
-    {"message", "/message"},
+    {"why_empty", "/why_empty", Kind::text},
+    {"message", "/message", Kind::text},
 };
+
+constexpr const char* kept_statuses[] = {"done", "failed", "timeout", "unsupported"};
 
 /// Where the columns of every trial are found in a record; built once, for tables are long.
 const std::map<std::string, json::json_pointer>& places() {
@@ -107,6 +116,26 @@ const std::map<std::string, json::json_pointer>& places() {
         return made;
     }();
     return all;
+}
+
+bool is_of_kind(const json& value, Kind kind) {
+    switch (kind) {
+        case Kind::number: return value.is_number();
+        case Kind::count: return value.is_number_unsigned();
+        case Kind::text: return value.is_string();
+        case Kind::any: break;
+    }
+    return true;
+}
+
+const char* name_of(Kind kind) {
+    switch (kind) {
+        case Kind::number: return "a number";
+        case Kind::count: return "a whole number from 0 on";
+        case Kind::text: return "text";
+        case Kind::any: break;
+    }
+    return "anything";
 }
 
 std::string cell(const json& value) {
@@ -128,6 +157,22 @@ json to_json(const Metrics& metrics) {
             {"mean_ratio", or_null(metrics.mean_ratio)},
             {"leak_energy", or_null(metrics.leak_energy)},
             {"pixels", metrics.pixels}};
+}
+
+std::string flaw_of(const json& record) {
+    if (!record.is_object()) return "not a JSON object";
+    for (const Column& column : columns_of_all) {
+        const json::json_pointer& place = places().at(column.name);
+        if (!record.contains(place) || record.at(place).is_null()) continue;
+        if (!is_of_kind(record.at(place), column.kind))
+            return fmt::format("{}: expected {}", column.pointer, name_of(column.kind));
+    }
+    const auto is_status = [&](const char* status) {
+        return record.contains("status") && record.at("status") == json(status);
+    };
+    if (std::ranges::none_of(kept_statuses, is_status))
+        return fmt::format("/status: expected one of {}", fmt::join(kept_statuses, ", "));
+    return {};
 }
 
 bool is_record_column(const std::string& name) {

@@ -14,6 +14,10 @@ inline constexpr int record_version = 1;
 /// Metrics by name; null where a formula has no value.
 nlohmann::json to_json(const Metrics& metrics);
 
+/// What makes a kept record no record, "/seed: expected ..."; empty when every value that tables show
+/// is of its kind and the status is one that is kept.
+std::string flaw_of(const nlohmann::json& record);
+
 /// Whether records.csv has a column of that name of its own.
 bool is_record_column(const std::string& name);
 /// Whether a swept scene value may fill that column (alpha, mesh_resolution).

@@ -1,5 +1,7 @@
 #include "experiments/record_table.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "core/hash.h"
@@ -48,6 +50,20 @@ DonePictures done_pictures(const TrialRows& rows, const PlanFile& plan) {
     return done;
 }
 
+/// Takes out the cells whose pictures cannot be read, so that the next table tries again. A line on
+/// them, if there are any.
+std::vector<std::string> cells_without(CellVariances& variances) {
+    std::string first;
+    const std::size_t count = std::erase_if(variances, [&](const auto& cell) {
+        if (first.empty()) first = cell.second.unreadable;
+        return !cell.second.unreadable.empty();
+    });
+    if (count == 0) return {};
+    return {
+        fmt::format("the variance of {} cell{} stays empty, whose pictures are not all there: {}",
+                    count, count == 1 ? "" : "s", first)};
+}
+
 /// The record that a row is to be made of; its stamp is of the file before it was read.
 struct RecordNow {
     std::string stamp;
@@ -64,15 +80,20 @@ RecordNow record_now(const JobStore& store, const std::string& trial,
 
 }  // namespace
 
-void write_records(const std::filesystem::path& folder, const JobStore& store, const PlanFile& plan,
-                   const std::map<std::string, json>& unfinished,
-                   const std::function<void(const TableRow& row)>& visit) {
+std::vector<std::string> write_records(const std::filesystem::path& folder, const JobStore& store,
+                                       const PlanFile& plan,
+                                       const std::map<std::string, json>& unfinished,
+                                       const std::function<void(const TableRow& row)>& visit) {
     const TrialRows rows(folder, store);
-    if (unfinished.empty() && rows.are_the_table_of(plan)) return rows.visit_table(visit);
+    if (unfinished.empty() && rows.are_the_table_of(plan)) {
+        rows.visit_table(visit);
+        return {};
+    }
 
     TableIndex index;
     index.variances = cell_variances(plan, store, done_pictures(rows, plan), rows.variances());
-    index.complete = unfinished.empty() && !interrupt_requested();
+    std::vector<std::string> lacks = cells_without(index.variances);
+    index.complete = unfinished.empty() && lacks.empty() && !interrupt_requested();
     const std::vector<std::string> columns = record_columns(plan.swept);
     SummedFile table(folder / "records.csv");
     SummedFile lines(folder / "records.jsonl");
@@ -94,6 +115,7 @@ void write_records(const std::filesystem::path& folder, const JobStore& store, c
     index.csv = table.commit();
     index.jsonl = lines.commit();
     write_table_index(index, folder);
+    return lacks;
 }
 
 }  // namespace caustics

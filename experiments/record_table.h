@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "experiments/job_store.h"
 #include "experiments/plan_file.h"
@@ -14,10 +15,12 @@ namespace caustics {
 
 /// Makes FOLDER/records.csv and records.jsonl say what the trials that are there say, one row a
 /// trial in the plan's order: leaves them when they do already, else writes them anew, reading one
-/// record at a time. `visit` sees each row. Trials of a cell that differ in their seed share
+/// record at a time. `visit` sees each row. Returns what the tables lack because pictures are gone, a
+/// line each. Trials of a cell that differ in their seed share
 /// `variance` (cell_variances). `unfinished` are records of trials that left nothing.
-void write_records(const std::filesystem::path& folder, const JobStore& store, const PlanFile& plan,
-                   const std::map<std::string, nlohmann::json>& unfinished,
-                   const std::function<void(const TableRow& row)>& visit);
+std::vector<std::string> write_records(const std::filesystem::path& folder, const JobStore& store,
+                                       const PlanFile& plan,
+                                       const std::map<std::string, nlohmann::json>& unfinished,
+                                       const std::function<void(const TableRow& row)>& visit);
 
 }  // namespace caustics

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "experiments/cli_options.h"
 #include "experiments/environment.h"
 #include "experiments/figures.h"
 #include "experiments/files.h"
@@ -50,6 +53,20 @@ void remove_leftovers(const fs::path& folder) {
             fs::remove(entry.path(), ignored);
 }
 
+std::size_t trials_of_others(const SweepPlan& plan, const JobStore& store) {
+    std::set<std::string> own;
+    for (const Trial& trial : plan.trials) own.insert(trial.id);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        store.trials(), [&](const std::string& id) { return !own.contains(id); }));
+}
+
+/// "a.json b.json"
+std::string sweep_words(const PlanFile& plan) {
+    std::string words;
+    for (const std::string& sweep : plan.sweeps) words += (words.empty() ? "" : " ") + sweep;
+    return words;
+}
+
 class Sweep {
 public:
     Sweep(const SweepPlan& plan, const SweepOptions& options)
@@ -65,6 +82,7 @@ public:
         const fs::path references = options.folder / "references";
         if (!fs::is_symlink(references)) remove_leftovers(references);
         status_ = sweep_status(plan, options, store_);
+        others_ = trials_of_others(plan, store_);
         progress_.emplace(status_.share.size(), status_.share.size() - status_.todo.size());
     }
 
@@ -83,14 +101,16 @@ public:
         progress_.reset();
         if (options_.only_references) return broken_references_.empty() ? 0 : 1;
         SweepSummary summary(plan_.swept);
-        write_table(&summary);
+        print_notes(write_table(&summary));
         const fs::path figures = figures_folder();
         fs::create_directories(figures);
-        write_figures(
+        print_notes(write_figures(
             plan_, store_, [&](const Trial& trial) { return known_status(trial) == "done"; },
-            references_, figures);
-        fmt::print("records    {}\nfigures    {}\n{}", (options_.folder / "records.csv").string(),
-                   figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall));
+            references_, figures));
+        write_stdout(fmt::format(
+            "records    {}{}\nfigures    {}\n{}", (options_.folder / "records.csv").string(),
+            others_ == 0 ? "" : fmt::format(" (without {} trials of other sweeps)", others_),
+            figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall)));
         return status_.count("failed") + status_.count("timeout") == 0 ? 0 : 1;
     }
 
@@ -102,11 +122,35 @@ private:
         return found == status_.statuses.end() ? std::string() : found->second;
     }
 
+    /// A warning of finished trials that the table leaves out, because this sweep has none such.
+    std::string others_text() const {
+        if (others_ == 0) return {};
+        return fmt::format(
+            "warning: {} holds {} trials that {} does not name, by other sweeps or by other "
+            "scenes: "
+            "records.csv leaves them out{}",
+            options_.folder.string(), others_, sweep_words(plan_file(plan_)), earlier_sweep());
+    }
+
+    /// How to get a table of both, where the plan before is one of other sweep files.
+    std::string earlier_sweep() const {
+        try {
+            const PlanFile before = read_plan_of(options_.folder);
+            const PlanFile now = plan_file(plan_);
+            if (before.sweeps == now.sweeps) return {};
+            return fmt::format(" (the plan before was of {}; name both for one table)",
+                               sweep_words(before));
+        } catch (const InputError&) {
+            return {};
+        }
+    }
+
     void warn() {
-        for (const std::string& id : status_.broken) {
-            progress_->note(fmt::format("note: {}: broken record: the trial is run again", id));
+        for (const auto& [id, what] : status_.broken) {
+            progress_->note("note: " + what);
             store_.remove(id);
         }
+        if (const std::string line = others_text(); !line.empty()) progress_->note(line);
         const std::string code = status_.code_warning();
         if (!code.empty() && !options_.force) progress_->note("warning: " + code);
         if (plan_.duplicates > 0)
@@ -251,11 +295,11 @@ private:
         return waiting_;
     }
 
-    void write_table(SweepSummary* summary) const {
-        write_records(options_.folder, store_, plan_file(plan_), unfinished_,
-                      [&](const TableRow& row) {
-                          if (summary != nullptr) summary->add(row);
-                      });
+    std::vector<std::string> write_table(SweepSummary* summary) const {
+        return write_records(options_.folder, store_, plan_file(plan_), unfinished_,
+                             [&](const TableRow& row) {
+                                 if (summary != nullptr) summary->add(row);
+                             });
     }
 
     /// What stopped the sweep is what the user must hear of, not that the table could not be
@@ -279,6 +323,7 @@ private:
     std::map<std::string, json> unfinished_;
     std::map<std::string, std::string> broken_references_;
     std::size_t ran_ = 0;
+    std::size_t others_ = 0;  ///< trials in the folder that are not in the plan
     std::optional<double> waiting_;
     std::chrono::steady_clock::time_point estimated_;
     Stopwatch watch_;

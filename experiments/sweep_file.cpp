@@ -18,8 +18,10 @@ constexpr std::size_t most_trials = 1'000'000;  ///< a plan is held in memory
 /// Of a product of lists, before it is formed.
 void require_few(double trials, const JsonNode& node) {
     if (trials > static_cast<double>(most_trials))
-        node.fail(fmt::format("makes {:.3g} trials, more than {} (split the sweep file)", trials,
-                              most_trials));
+        node.fail(fmt::format(
+            "makes {} trials, more than {} (split the sweep file)",
+            trials < 1e15 ? fmt::format("{:.0f}", trials) : fmt::format("{:.3g}", trials),
+            most_trials));
 }
 
 std::vector<JsonNode> list(const JsonNode& node) {

@@ -78,8 +78,8 @@ SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,
         try {
             const std::optional<TableRow> row = rows.row(trial.id);
             if (row) take_note(all, trial, *row, store);
-        } catch (const InputError&) {
-            all.broken.push_back(trial.id);
+        } catch (const InputError& error) {
+            all.broken[trial.id] = error.what();
         }
     }
     all.share = shard_of(run_order(plan), options.shard);

@@ -16,7 +16,7 @@ struct SweepStatus {
     std::vector<const Trial*> share;                ///< the shard's trials, in the order to run
     std::vector<const Trial*> todo;                 ///< those of them to run
     std::map<std::string, std::string> statuses;    ///< by id, of the trials with a record
-    std::vector<std::string> broken;                ///< ids of records that cannot be read
+    std::map<std::string, std::string> broken;      ///< ids of broken records, with what is wrong
     std::map<std::string, std::size_t> other_code;  ///< records by another code version
     CostEstimate costs;                             ///< from the records
 

@@ -160,6 +160,83 @@ TEST_F(Runner, WarnsOfResultsByOtherCodeAndRunsBrokenOnesAgain) {
     EXPECT_EQ(rows()[0].at("status"), "done");
 }
 
+TEST_F(Runner, RunsBrokenRecordsAgainAndNamesThem) {
+    const std::string file = write_sweep(R"([{"method": "none"}])");
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const fs::path record =
+        fs::path(out_) / "trials" / rows()[0].at("trial").get<std::string>() / "record.json";
+    const json good = json::parse(read_whole_file(record));
+    const std::vector<std::pair<std::string, json>> changes = {
+        {"trial", 16}, {"status", "interrupted"}, {"status", 1e-10}, {"seed", "1"}};
+    for (const auto& [key, value] : changes) {
+        json changed = good;
+        changed[key] = value;
+        write_whole_file(record, changed.dump());
+        const ProgramResult again = sweep(file);
+        EXPECT_EQ(again.exit_code, 0) << again.err;
+        EXPECT_NE(again.err.find("note: " + record.string() + ": broken record (/" + key),
+                  std::string::npos)
+            << again.err;
+        EXPECT_EQ(rows()[0].at("status"), "done");
+    }
+}
+
+TEST_F(Runner, GoesOnWithoutPicturesThatAreGone) {
+    const std::string file = folder_ / "sweep.json";
+    write_whole_file(file,
+                     fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1, 2],
+        "methods": [{{"method": "photonmap", "param": {{"emitted": 100}}}}],
+        "reference": {{"method": "lighttrace", "param": {{"paths": 100}}}}}})",
+                                 scene));
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const std::vector<json> before = rows();
+    for (const json& row : before)
+        fs::remove(fs::path(out_) / "trials" / row.at("trial").get<std::string>() / "image.exr");
+    const ProgramResult kept = sweep(file);
+    EXPECT_EQ(kept.exit_code, 0);
+    EXPECT_EQ(kept.err, "") << "the table and the figures know all";
+    EXPECT_EQ(rows(), before);
+
+    fs::remove(fs::path(out_) / ".table");
+    fs::remove_all(fs::path(out_) / "report");
+    const ProgramResult lacking = sweep(file, {"--rerun", "failed"});
+    EXPECT_EQ(lacking.exit_code, 0);
+    EXPECT_NE(lacking.err.find("note: the variance of 1 cell stays empty"), std::string::npos)
+        << lacking.err;
+    EXPECT_NE(lacking.err.find("note: the figures of 1 cell are not drawn"), std::string::npos)
+        << lacking.err;
+    for (const json& row : rows()) {
+        EXPECT_EQ(row.at("status"), "done");
+        EXPECT_TRUE(row.at("variance").is_null());
+    }
+    EXPECT_EQ(sweep(file, {"--force"}).exit_code, 0) << "brings them back";
+    EXPECT_EQ(rows()[0].at("variance"), before[0].at("variance"));
+}
+
+TEST_F(Runner, WarnsOfTrialsThatAreNotInTheTable) {
+    const std::string first =
+        write_sweep(R"([{"method": "photonmap", "param": {"photons": [10, 20]}}])");
+    ASSERT_EQ(sweep(first).exit_code, 0);
+    const std::string other = folder_ / "other.json";
+    write_whole_file(other, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+                                             "methods": [{{"method": "none"}}]}})",
+                                        scene));
+    const ProgramResult result = sweep(other);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(rows().size(), 1U);
+    EXPECT_NE(
+        result.err.find("warning: " + out_ + " holds 2 trials that " + other + " does not name"),
+        std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find("the plan before was of " + first), std::string::npos) << result.err;
+    EXPECT_NE(result.out.find("records.csv (without 2 trials of other sweeps)\n"),
+              std::string::npos)
+        << result.out;
+    const ProgramResult both = causticbench({"sweep", first, other, "-o", out_});
+    EXPECT_EQ(both.err.find("warning"), std::string::npos) << both.err;
+    EXPECT_EQ(rows().size(), 3U);
+}
+
 TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
     const std::string file = folder_ / "sweep.json";
     write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [7],

@@ -71,10 +71,28 @@ TEST_F(JobStores, BringBackWhatAKilledProcessWasAboutToReplace) {
 
 TEST_F(JobStores, SaySoWhenARecordIsBroken) {
     fs::create_directories(folder_ / "trials/a-1");
-    for (const char* text : {"", "{", "[]", R"({"trial": "b-2", "status": "done"})"}) {
+    for (const char* text :
+         {"", "{", "[]", R"({"trial": "b-2", "status": "done"})",
+          R"({"trial": 16, "status": "done"})", R"({"trial": "a-1", "status": "interrupted"})",
+          R"({"trial": "a-1", "status": 1e-10})", R"({"trial": "a-1"})",
+          R"({"trial": null, "status": "done"})", R"({"trial": "a-1", "status": null})",
+          R"({"trial": "a-1", "status": "done", "seed": "1"})",
+          R"({"trial": "a-1", "status": "done", "seed": -1})",
+          R"({"trial": "a-1", "status": "done", "metrics": {"rmse": [1]}})",
+          R"({"trial": "a-1", "status": "done", "machine": {"cpu": 1}})"}) {
         write_whole_file(folder_ / "trials/a-1/record.json", text);
         EXPECT_THROW(store_.record("a-1"), InputError) << text;
     }
+}
+
+TEST_F(JobStores, TakeNothingElseForARecord) {
+    fs::create_directories(folder_ / "trials/a-1/record.json");
+    EXPECT_THROW(store_.record("a-1"), InputError) << "a folder";
+    fs::remove_all(folder_ / "trials/a-1");
+    fs::create_symlink("a-1", folder_ / "trials/a-1");
+    EXPECT_THROW(store_.record("a-1"), InputError) << "a link to itself";
+    store_.remove("a-1");
+    EXPECT_FALSE(store_.record("a-1"));
 }
 
 TEST_F(JobStores, NeedAFolderTheyCanWrite) {

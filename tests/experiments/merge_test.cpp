@@ -111,6 +111,54 @@ TEST_F(Merges, WarnOfMixedProcessors) {
     EXPECT_NE(warnings[0].find("\"slow\" in " + two_.string()), std::string::npos) << warnings[0];
 }
 
+TEST_F(Merges, WriteNowhereElse) {
+    for (const std::string id :
+         {"../../out", "/tmp/out", "..", ".", "", "a/b", ".tmp-a", "-a", "a\n"}) {
+        plan_.trials[1].id = id;
+        for (const fs::path& folder : {one_, two_}) write_plan(plan_, folder);
+        EXPECT_NE(error().find("a plain name of a folder, not \"" + id.substr(0, 2)),
+                  std::string::npos)
+            << error();
+    }
+}
+
+TEST_F(Merges, FollowNoLinks) {
+    const fs::path log = JobStore(two_).folder_of("b") / "log.txt";
+    write_whole_file(folder_ / "secret", "secret");
+    fs::remove(log);
+    fs::create_symlink(folder_ / "secret", log);
+    EXPECT_NE(error().find(log.string() + ": is a symbolic link"), std::string::npos) << error();
+    fs::remove_all(log.parent_path());
+    fs::create_directory_symlink(JobStore(one_).folder_of("a"), log.parent_path());
+    EXPECT_NE(error().find("trials/b"), std::string::npos) << error();
+}
+
+TEST_F(Merges, NameABrokenFile) {
+    for (const char* text : {"{", "[]", ""}) {
+        write_whole_file(two_ / "environment.json", text);
+        EXPECT_NE(error().find((two_ / "environment.json").string() + ": broken"),
+                  std::string::npos)
+            << error();
+    }
+    fs::remove(two_ / "environment.json");
+    const fs::path record = JobStore(two_).record_of("b");
+    write_whole_file(record, R"({"trial": 16, "status": "done"})");
+    EXPECT_NE(error().find(record.string() + ": broken record (/trial: expected text)"),
+              std::string::npos)
+        << error();
+}
+
+TEST_F(Merges, TakeAnyNameOfTheTarget) {
+    for (const char* name : {"whole/", "whole//", "./x/../whole"}) {
+        merge_results({one_, two_}, folder_ / name);
+        EXPECT_TRUE(fs::exists(whole_ / "records.csv")) << name;
+        fs::remove_all(whole_);
+    }
+    fs::create_directory(whole_);
+    merge();
+    EXPECT_TRUE(fs::exists(whole_ / "records.csv"));
+}
+
 TEST_F(Merges, RefuseFoldersThatDoNotBelongTogether) {
     plan_.trials.pop_back();
     write_plan(plan_, two_);

@@ -51,7 +51,7 @@ protected:
     }
     void write(const std::map<std::string, json>& unfinished = {}) {
         visited_.clear();
-        write_records(folder_.path(), store_, plan_, unfinished, [&](const TableRow& row) {
+        lacks_ = write_records(folder_.path(), store_, plan_, unfinished, [&](const TableRow& row) {
             visited_ += row.text("trial") + " " + row.text("variance") + "\n";
         });
     }
@@ -74,6 +74,7 @@ protected:
     JobStore store_{folder_.path()};
     PlanFile plan_{{}, {"key"}, {"sweep.json"}, {}, "/"};
     std::string visited_;  ///< trials and their variances
+    std::vector<std::string> lacks_;
 };
 
 TEST_F(RecordTables, AreLeftAsTheyAreWhenNothingChanged) {
@@ -143,6 +144,46 @@ TEST_F(RecordTables, ComputeAVarianceAgainWhenItsPicturesDiffer) {
     std::erase_if(plan_.trials, [](const auto& trial) { return trial.id == "x2"; });
     write();
     EXPECT_EQ(variance_of_x(), "4.5") << "of 1 and 4, when a seed is no longer in the plan";
+}
+
+TEST_F(RecordTables, DoWithoutPicturesThatAreGone) {
+    write();
+    for (const char* id : {"x1", "x2", "x3", "y1"}) fs::remove(store_.image_of(id));
+    store_.remove("y1");  // so that the table is made again
+    write();
+    EXPECT_EQ(visited_, "x1 0\nx2 0\nx3 0\n") << "what was known stays";
+    EXPECT_TRUE(lacks_.empty());
+    fs::remove(folder_ / ".table");
+    for (int time = 0; time < 2; ++time) {
+        write();
+        EXPECT_EQ(visited_, "x1 \nx2 \nx3 \n");
+        ASSERT_EQ(lacks_.size(), 1U) << "each time";
+        EXPECT_NE(lacks_[0].find("variance of 1 cell stays empty"), std::string::npos) << lacks_[0];
+        EXPECT_NE(
+            lacks_[0].find(store_.image_of("x1").string() + ": cannot be read (no such file)"),
+            std::string::npos)
+            << lacks_[0];
+    }
+}
+
+TEST_F(RecordTables, DoWithoutPicturesThatAreBroken) {
+    const auto write_picture = [&](int width, const char* layer) {
+        run_in_child([&](const ChildProcess::Tell&) {
+            Film film(width, 1);
+            film.set_rgb(layer, 0, Spectrum::Constant(1));
+            write_exr(film, store_.image_of("x2"));
+            return std::string();
+        });
+        fs::remove(folder_ / ".table");
+        write();
+        ASSERT_EQ(lacks_.size(), 1U);
+        EXPECT_NE(lacks_[0].find(store_.image_of("x2").string() + ": "), std::string::npos)
+            << lacks_[0];
+    };
+    write_picture(1, "");
+    EXPECT_NE(lacks_[0].find("no layer \"caustic\""), std::string::npos) << lacks_[0];
+    write_picture(2, "caustic");
+    EXPECT_NE(lacks_[0].find("of another size"), std::string::npos) << lacks_[0];
 }
 
 TEST_F(RecordTables, KeepNoRowOfWhatLeftNothing) {

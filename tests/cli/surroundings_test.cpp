@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/film.h"
+#include "experiments/files.h"
+#include "tests/cli/program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+using support::ProgramResult;
+using support::shell;
+namespace fs = std::filesystem;
+
+const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+
+/// Streams that are closed or full, small limits, folders that are gone.
+class Surroundings : public testing::Test {
+protected:
+    void SetUp() override {
+        write_whole_file(sweep_, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+                                                  "methods": [{{"method": "none"}}]}})",
+                                             scene));
+    }
+    /// $D is the test's folder.
+    ProgramResult run(const std::string& line) const {
+        return shell(fmt::format("D='{}'; S='{}'; {}", folder_.path().string(), scene, line));
+    }
+    std::size_t temporary_files() const {
+        const auto all = fs::recursive_directory_iterator(folder_.path());
+        return static_cast<std::size_t>(std::ranges::count_if(all, [](const auto& entry) {
+            const std::string name = entry.path().filename();
+            return name.find(".tmp-") != std::string::npos || name.ends_with(".part");
+        }));
+    }
+    support::TemporaryFolder folder_;
+    fs::path sweep_ = folder_ / "sweep.json";
+};
+
+TEST_F(Surroundings, WithoutAStandardErrorNothingElseIsLost) {
+    for (const std::string no_errors : {"2>/dev/full", "2>&-"}) {
+        EXPECT_EQ(run("$P info /absent " + no_errors).exit_code, 2);
+        EXPECT_EQ(run("$P render $S --method none -o $D/a.exr " + no_errors).exit_code, 0);
+        EXPECT_GT(read_exr(folder_ / "a.exr").width(), 0) << "no message is written into it";
+        EXPECT_EQ(run("$P sweep $D/sweep.json -o $D/out " + no_errors).exit_code, 0);
+        EXPECT_EQ(run("$P merge $D/out -o $D/merged " + no_errors).exit_code, 0);
+        EXPECT_EQ(std::ranges::count(read_whole_file(folder_ / "merged/records.csv"), '\n'), 2);
+        fs::remove_all(folder_ / "out");
+        fs::remove_all(folder_ / "merged");
+    }
+}
+
+TEST_F(Surroundings, AnAnswerThatCannotBeWrittenIsAnError) {
+    for (const std::string verb :
+         {"--version", "--help", "sweep --help", "info $S", "sweep $D/sweep.json -o $D/out"})
+        for (const std::string no_answers : {" >/dev/full", " >&-"}) {
+            const ProgramResult result = run("$P " + verb + no_answers);
+            EXPECT_EQ(result.exit_code, 2) << verb << no_answers;
+            EXPECT_NE(result.err.find("standard output: cannot be written\n"), std::string::npos)
+                << verb << no_answers << result.err;
+        }
+}
+
+TEST_F(Surroundings, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
+    for (const std::string verb :
+         {"render $S --method none -o $D/a.exr", "sweep $D/sweep.json -o $D/out",
+          "export $S --to mitsuba -o $D/exported"}) {
+        const ProgramResult result = run("ulimit -f 1; $P " + verb);
+        EXPECT_EQ(result.exit_code, 2) << verb;
+        EXPECT_NE(result.err.find("cannot be written (File too large)"), std::string::npos)
+            << verb << result.err;
+        EXPECT_EQ(temporary_files(), 0U) << verb;
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+    EXPECT_FALSE(fs::exists(folder_ / "exported"));
+    EXPECT_EQ(run("$P sweep $D/sweep.json -o $D/out").exit_code, 0) << "and it goes on from there";
+}
+
+TEST_F(Surroundings, AWorkingFolderThatIsGoneIsNamed) {
+    const std::string gone = "mkdir $D/gone; cd $D/gone; rmdir $D/gone; ";
+    const ProgramResult sweep = run(gone + "$P sweep $D/sweep.json -o $D/out");
+    EXPECT_EQ(sweep.exit_code, 2);
+    EXPECT_NE(sweep.err.find("the working folder: No such file or directory"), std::string::npos)
+        << sweep.err;
+    EXPECT_EQ(run(gone + "$P render $S --method none -o $D/a.exr").exit_code, 0);
+}
+
+TEST_F(Surroundings, WhatTheFileSystemRefusesIsOneLineWithItsPlace) {
+    write_whole_file(folder_ / "long.json", fmt::format(R"({{"version": 1, "scenes": ["{}"],
+                                      "methods": [{{"method": "none"}}]}})",
+                                                        std::string(5000, 'a')));
+    const ProgramResult scenes = run("$P sweep $D/long.json -o $D/out");
+    EXPECT_EQ(scenes.exit_code, 2);
+    EXPECT_NE(scenes.err.find("File name too long"), std::string::npos) << scenes.err;
+    EXPECT_EQ(std::ranges::count(scenes.err, '\n'), 1) << scenes.err;
+
+    const ProgramResult report =
+        run("mkdir $D/out; : > $D/out/report; "
+            "$P sweep $D/sweep.json -o $D/out");
+    EXPECT_EQ(report.exit_code, 2);
+    EXPECT_NE(report.err.find("out/report"), std::string::npos) << report.err;
+    EXPECT_NE(report.err.find("Not a directory"), std::string::npos) << report.err;
+}
+
+TEST_F(Surroundings, SlashesAtTheEndOfAFolderMakeNoDifference) {
+    for (const std::string slashes : {"/", "//", "/."}) {
+        EXPECT_EQ(run("$P sweep $D/sweep.json -o $D/out" + slashes).exit_code, 0) << slashes;
+        EXPECT_EQ(run("$P merge $D/out" + slashes + " -o $D/merged" + slashes).exit_code, 0)
+            << slashes;
+        EXPECT_EQ(run("$P export $S --to povray -o $D/exported" + slashes).exit_code, 0) << slashes;
+        EXPECT_TRUE(fs::exists(folder_ / "merged/records.csv")) << slashes;
+        EXPECT_TRUE(fs::exists(folder_ / "exported/scene.pov")) << slashes;
+        for (const char* folder : {"out", "merged", "exported"}) fs::remove_all(folder_ / folder);
+    }
+}
+
+}  // namespace
+}  // namespace caustics
