@@ -56,6 +56,14 @@ def largest_index():
     return int(found.group(1)) - 1
 
 
+def log_name(folder):
+    """The logs' name as sbatch reads it in a script: its own words for numbers, then quotes and backslashes."""
+    text = str(folder).replace("%", "%%") + "/%A_%a.log"
+    if "\n" in text:
+        raise SlurmError(f"-o {str(folder)!r}: sbatch takes no folder with a line break in its name")
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
 def arrays(shards, largest):
     """(offset, tasks) of the arrays that number the shards from 1."""
     return [(offset, min(largest, shards - offset)) for offset in range(0, shards, largest)]
@@ -74,7 +82,7 @@ def write(options):
     files = [str(pathlib.Path(file).absolute()) for file in options.sweep_files]
     script = folder / "slurm" / "sweep.sbatch"
     script.write_text(SCRIPT.format(
-        name="causticbench", log=folder / "slurm" / "%A_%a.log", cpus=options.cpus_per_task,
+        name="causticbench", log=log_name(folder / "slurm"), cpus=options.cpus_per_task,
         program=shlex.quote(str(pathlib.Path(options.program).absolute())),
         common=shlex.join(["sweep"] + files + options.sweep),
         references=shlex.quote(str(folder / "slurm" / "references")),
