@@ -6,6 +6,7 @@
 #include "beamtree/beam_following.h"
 #include "beamtree/cut_piece.h"
 #include "beamtree/first_surface.h"
+#include "beamtree/near_light.h"
 #include "beamtree/ray_spread.h"
 #include "core/parallel.h"
 
@@ -46,7 +47,8 @@ public:
         : surface_(surface),
           bender_(surface.bender()),
           caster_(surface.caster()),
-          mesh_(surface.caster().mesh) {
+          mesh_(surface.caster().mesh),
+          near_light_(bender_, surface.light(), mesh_.triangles.size()) {
         for (const Event event : events) {
             BeamSet& set = traced_[event].set;
             set.light = surface.light();
@@ -86,6 +88,11 @@ private:
         const MeshPoint& b = vertices_[j];
         const MeshPoint& c = vertices_[k];
         const std::array<const MeshPoint*, 3> corners = {&a, &b, &c};
+        if (near_light_.is_near(corners)) {
+            for (const MeshPiece& piece : near_light_.pieces({a, b, c}))
+                trace_piece(piece, origin, most_splits);
+            return;
+        }
         const bool plain =
             sends_on(a, origin.facing, origin.event) && sends_on(b, origin.facing, origin.event) &&
             sends_on(c, origin.facing, origin.event) && !part_widely(corners, origin.event, true) &&
@@ -105,9 +112,11 @@ private:
         const auto& [a, b, c, d] = quad.corners;
         const std::array<const MeshPoint*, 4> corners = {&vertices_[a], &vertices_[b],
                                                          &vertices_[c], &vertices_[d]};
+        const bool near_light = near_light_.is_near({corners[0], corners[1], corners[2]}) ||
+                                near_light_.is_near({corners[0], corners[2], corners[3]});
         for (const Event event : events) {
             const Origin whole{quad.triangle, 2, sides[0], event};
-            bool is_whole = alike && !part_widely(corners, event, true);
+            bool is_whole = alike && !near_light && !part_widely(corners, event, true);
             for (const std::size_t i : {0U, 1U, 2U})
                 is_whole = is_whole && sends_on(*corners[i], sides[0], event);
             for (const std::size_t i : {0U, 2U, 3U})
@@ -198,6 +207,7 @@ private:
     const LightBender& bender_;
     const CasterMesh& caster_;
     const TriangleMesh& mesh_;
+    NearLight near_light_;
     std::vector<MeshPoint> vertices_;
     std::array<std::vector<std::uint32_t>, 2> ray_of_vertex_;
     std::array<TracedSet, 2> traced_;

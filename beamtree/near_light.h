@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "beamtree/bent_light.h"
+
+namespace caustics {
+
+/// Divides triangles of a caster's mesh to which a light is so near that their corners tell little of
+/// what lies between: below a lamp just above water all corners of a triangle are lit at a grazing
+/// angle, and nearly all light enters in its middle.
+///
+/// An edge is halved where the light sees it under more than 30 degrees, or where it is four times as
+/// long as it would be if the mesh's triangles were spread evenly over all directions round the light.
+/// So the mesh bounds the number of pieces, however near the light is. Whether an edge is halved
+/// depends on the edge alone: triangles that share it meet in the same points.
+class NearLight {
+public:
+    NearLight(const LightBender& bender, const LightSample& light, std::size_t triangles);
+
+    /// Whether the triangle has to be divided.
+    bool is_near(const PieceCorners& corners) const;
+    /// The pieces of one that has to be.
+    std::vector<MeshPiece> pieces(const MeshPiece& triangle) const;
+
+private:
+    bool is_wide(const MeshPoint& a, const MeshPoint& b) const;
+    void divide(const MeshPiece& piece, std::vector<MeshPiece>& pieces) const;
+
+    const LightBender& bender_;
+    const LightSample& light_;
+    double most_;  ///< of the square of an edge's angle times the cosine at the surface
+};
+
+}  // namespace caustics

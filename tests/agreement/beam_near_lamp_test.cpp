@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "beamtree/beam_tree.h"
+#include "core/tessellate.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/flat_pool.h"
+
+namespace caustics {
+namespace {
+
+// A lamp much nearer to a caster than its polygons are wide: nearly all of the light goes through the
+// middle of one of them.
+
+constexpr std::size_t floor_shape = 0;
+// Off the mesh's vertices and edges.
+constexpr double lamp_x = 0.013;
+constexpr double lamp_y = 0.021;
+
+/// Of the found over the true irradiance.
+struct Ratio {
+    double mean = 0;
+    double worst = 0;  ///< off 1
+};
+
+template <typename Truth>
+Ratio ratio(const Scene& scene, const CausticEstimator& method, double floor_z,
+            const Truth& truth) {
+    Ratio ratio;
+    constexpr int count = 64;
+    for (int i = 0; i < count; ++i) {
+        const double r = 0.05 + 0.75 * i / count;
+        const double angle = 2.4 * i;
+        const Vec3d p(lamp_x + r * std::cos(angle), lamp_y + r * std::sin(angle), floor_z);
+        const ReceiverPoint point = support::probe(scene, floor_shape, p, Vec3d::UnitZ(), 0);
+        const double one =
+            static_cast<double>(support::irradiance(method, {point})[0].value.mean()) / truth(r);
+        ratio.mean += one / count;
+        ratio.worst = std::max(ratio.worst, std::abs(one - 1));
+    }
+    return ratio;
+}
+
+Scene pool(double light, bool mesh) {
+    using namespace support::flat_pool;
+    Shape water = support::horizontal("water", 0, 3, true, support::glass(1.333F));
+    if (mesh) water = support::mesh("water", tessellate_rectangle(64), water.to_world, water.bsdf);
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", -depth, 5, true, support::diffuse(0.5F)), water};
+    desc.point_lights = {
+        support::point_light({lamp_x, lamp_y, light}, static_cast<float>(intensity))};
+    return Scene(std::move(desc));
+}
+
+TEST(NearLamp, ShinesThroughWaterAsItDoesFromAfar) {
+    for (const bool mesh : {true, false})
+        for (const double light : {0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6})
+            for (const PolygonKind kind : {PolygonKind::triangle, PolygonKind::quad}) {
+                const Scene scene = pool(light, mesh);
+                BeamTreeParams params;
+                params.polygons = kind;
+                const auto tree = build(scene, params, {});
+                const Ratio found = ratio(scene, *tree, -support::flat_pool::depth, [&](double r) {
+                    return support::flat_pool::floor_irradiance(r, light);
+                });
+                EXPECT_NEAR(found.mean, 1, 0.02) << light;
+                EXPECT_LT(found.worst, 0.12) << light;
+                // Reflected and refracted beams of 8192 triangles, and three times as many at most.
+                EXPECT_LT(tree->build_report().counters["beams"], 3 * 2 * 8192U) << light;
+            }
+}
+
+// From the image of the light: I h / d^3.
+TEST(NearLamp, ShinesFromALargeMirrorAsItDoesFromAfar) {
+    for (const double half : {1.5, 20.0})
+        for (const double light : {0.01, 1e-3, 1e-4, 1e-5}) {
+            SceneDesc desc;
+            desc.shapes = {support::horizontal("floor", 0, 5, true, support::diffuse(0.5F)),
+                           support::horizontal("mirror", 2, half, false, support::mirror())};
+            desc.point_lights = {support::point_light({lamp_x, lamp_y, 2 - light}, 10)};
+            const Scene scene(std::move(desc));
+            const auto tree = build(scene, BeamTreeParams{}, {});
+            const Ratio found = ratio(scene, *tree, 0, [&](double r) {
+                const double h = 2 + light;
+                return 10 * h / std::pow(r * r + h * h, 1.5);
+            });
+            EXPECT_NEAR(found.mean, 1, 0.04) << half << ' ' << light;
+            EXPECT_LT(found.worst, 0.25) << half << ' ' << light;
+        }
+}
+
+}  // namespace
+}  // namespace caustics
