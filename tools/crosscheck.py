@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Renders the scenes of experiments/scenes/crosscheck here, in Mitsuba 3 and in POV-Ray 3.7, and compares.
 
 Usage: .venv/bin/python tools/crosscheck.py [--bench PROGRAM] [-o DIR] [--seeds N] [--threads N] [--scene NAME]...

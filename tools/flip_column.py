@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Fills the column `flip` of a sweep's records: how different its pictures look beside their references.
 
 Usage: .venv/bin/python tools/flip_column.py DIR [--references FOLDER]

@@ -10,7 +10,7 @@ QUANTITIES = {"photons": "stored photons", "time": "time", "alpha": "alpha", "me
 # Okabe and Ito's palette without its yellow: told apart by every kind of colour vision.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 MARKERS = "osD^vPX*"
-LINES = ("-", "--", "-.")
+LINES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)))  # series differ by more than colour
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Series:
         self.one_method = len(methods) == 1
         keys = sorted({self.key(cell) for cell in cells}, key=lambda key: [natural(part) for part in key])
         self.styles = {key: (COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)],
-                             LINES[i // len(COLOURS) % len(LINES)]) for i, key in enumerate(keys)}
+                             LINES[i % len(LINES)]) for i, key in enumerate(keys)}
 
     def key(self, cell):
         return (cell.method, *(cell.parameters.get(name, "") for name in ("nearest", *self.own_parameters)))

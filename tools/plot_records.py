@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes plots (SVG), tables (CSV, Markdown, LaTeX) and a page from DIR/records.csv, and from nothing else.
 
 The same records give the same bytes. Exit codes: 0 done, 2 bad input or usage.

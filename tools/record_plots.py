@@ -11,7 +11,7 @@ import matplotlib
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, NullFormatter, NullLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, MaxNLocator, NullFormatter, NullLocator
 
 from plot_panels import KINDS, MARKERS, QUANTITIES, Series, arrange, counted, note
 from records import FORMULAS, UNITS, natural
@@ -144,11 +144,11 @@ def draw_panel(kind, ax, cells, series):
         spreads = [cell.spread(kind.y) for cell in group]
         y = [spread.median for spread in spreads]
         if kind.x == "time":
-            ax.plot(x, y, line, color=colour, linewidth=0.7)
+            ax.plot(x, y, linestyle=line, color=colour, linewidth=0.7)
             for cell, spread in zip(group, spreads):
                 bars(ax, cell.spread("total_s"), spread, colour, *photon_mark(cell))
         else:
-            ax.plot(x, y, line, marker=marker, color=colour)
+            ax.plot(x, y, linestyle=line, marker=marker, color=colour)
             low, high = [spread.low for spread in spreads], [spread.high for spread in spreads]
             if len(x) > 1:
                 ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
@@ -237,16 +237,24 @@ def set_scales(kind, ax, cells):
         ax.xaxis.set_minor_locator(NullLocator())
 
 
+def nice_log_ticks(low, high):
+    """1, 2 and 5 of each decade below two decades, all whole digits where those are too few; else powers of ten."""
+    for digits in ((1,), (1, 2, 5), range(1, 10)):
+        ticks = [digit * 10.0 ** power for power in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+                 for digit in digits]
+        ticks = [tick for tick in ticks if low <= tick * (1 + 1e-9) and tick <= high * (1 + 1e-9)]
+        if len(ticks) >= 3:
+            return ticks
+    return ticks if len(ticks) > 1 else [tick for tick in MaxNLocator(4).tick_values(low, high) if low <= tick <= high]
+
+
 def few_ticks(axis):
-    """Labels 1, 2 and 5 of a decade where the range is short, only powers of ten where it is long."""
-    low, high = axis.get_view_interval()
-    if high / low < 30:
-        plain = FuncFormatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "125" else "")
-        axis.set_major_formatter(plain)
-        axis.set_minor_formatter(plain)
-    else:
-        axis.set_major_formatter(LogFormatterSciNotation())
-        axis.set_minor_formatter(NullFormatter())
+    """Labels that a short range has several of and a long one not too many."""
+    ticks = nice_log_ticks(*axis.get_view_interval())
+    powers = all(math.log10(tick) == round(math.log10(tick)) for tick in ticks)
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_major_formatter(LogFormatterSciNotation() if powers else FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def draw_energy(cells, series):

@@ -25,10 +25,10 @@ PASSES_OF = 20000  # photons
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("directory", metavar="DIR", help="folder with records.csv, as the sweep leaves it")
-    parser.add_argument("-o", "--output", metavar="OUT", default="results/photonmap", help="default: %(default)s")
+    parser.add_argument("-o", "--output", metavar="OUT", help="default: DIR/report")
     arguments = parser.parse_args()
-    return report("time_tables", "the plots", arguments.output,
-                  lambda: write_all(arguments.directory, arguments.output))
+    output = arguments.output or os.path.join(arguments.directory, "report")
+    return report("time_tables", "the plots", output, lambda: write_all(arguments.directory, output))
 
 
 def write_all(directory, output):
