@@ -68,8 +68,14 @@ def select(cells, **wanted):
 
 def microseconds(cell, eye_pass):
     """CPU time a point beyond that of the same eye pass with the method `none` [us]."""
-    seconds = cell.cpu["render"].median - eye_pass.cpu["render"].median
-    return 1e6 * seconds / cell.counters["camera_rays"]
+    return microseconds_range(cell, eye_pass)[0]
+
+
+def microseconds_range(cell, eye_pass):
+    """The same and its ends over the repeats: (median, low, high) [us]."""
+    own, other = cell.cpu["render"], eye_pass.cpu["render"]
+    ends = (own.median - other.median, own.low - other.high, own.high - other.low)
+    return tuple(1e6 * seconds / cell.counters["camera_rays"] for seconds in ends)
 
 
 def exponent(x, y):

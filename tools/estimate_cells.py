@@ -22,7 +22,8 @@ class Estimate:
         self.adaptive = own.get("adaptive") == "true"
         self.passes = int(own.get("passes", 1))
         rows = cell.records
-        self.error = statistics.median(math.sqrt(float(row["relmse"])) for row in rows)
+        errors = [math.sqrt(float(row["relmse"])) for row in rows]
+        self.error, self.least, self.greatest = statistics.median(errors), min(errors), max(errors)
         shares = [float(row["rmse"]) / float(row["reference_mean"]) for row in rows]
         self.rmse = statistics.median(shares)
         self.square = statistics.mean(share * share for share in shares)

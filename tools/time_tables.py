@@ -69,10 +69,10 @@ def power(points):
 
 
 def curves_of(cells):
-    """{what a user would call it: [(seconds, error)] in the order of seconds}."""
+    """{what a user would call it: [(seconds, error, least, greatest)] in the order of seconds}."""
     curves = {}
     for cell in cells:
-        curves.setdefault(words(cell), []).append((cell.seconds, cell.error))
+        curves.setdefault(words(cell), []).append((cell.seconds, cell.error, cell.least, cell.greatest))
     return {name: sorted(curves[name]) for name in sorted(curves)}
 
 
@@ -95,7 +95,7 @@ def equal_time(curves_by_scene):
         yield "| method | " + " | ".join(f"{time:g} s" for time in TIMES) + " |"
         yield "|---|" + "---|" * len(TIMES)
         for name, curve in curves.items():
-            values = [along(curve, time) for time in TIMES]
+            values = [along([point[:2] for point in curve], time) for time in TIMES]
             yield f"| {name} | " + " | ".join("–" if value is None else f"{value:.3f}" for value in values) + " |"
 
 
