@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <clocale>
@@ -121,7 +122,8 @@ int main(int argc, char** argv) {
     } catch (const std::filesystem::filesystem_error& error) {
         return report(reason_of(error), bad_input);
     } catch (const std::bad_alloc&) {
-        return report("out of memory", failed);
+        return report(fmt::format("out of memory: {}", fmt::join(argv + 1, argv + argc, " ")),
+                      failed);
     } catch (const std::exception& error) {
         return report(error.what(), failed);
     }

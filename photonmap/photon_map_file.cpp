@@ -169,7 +169,8 @@ void save_photon_map(const TracedPhotons& photons, const PhotonOrigin& origin,
 }
 
 bool is_photon_map(const std::filesystem::path& file) {
-    if (!std::filesystem::is_regular_file(file)) return false;
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(file, unknown)) return false;
     std::ifstream in(file, std::ios::binary);
     std::string start(magic.size(), '\0');
     in.read(start.data(), static_cast<std::streamsize>(start.size()));

@@ -270,9 +270,6 @@ std::vector<Broken> broken_scenes() {
         {"device_as_mesh",
          with(R"({"type": "ply", "filename": "/dev/zero"})"),
          {"/it/filename: ", "/dev/zero", "not a regular file"}},
-        {"device_as_include",
-         with(R"({"$include": "/dev/zero"})"),
-         {"/dev/zero", "not a regular file", "/it/$include"}},
         {"huge_picture",
          with_bsdf(
              R"({"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "huge.tga"}})"),
@@ -293,8 +290,8 @@ class BrokenScene : public testing::TestWithParam<Broken> {
 protected:
     static void SetUpTestSuite() {
         // The header of a TGA picture of 12,000 x 12,000 pixels.
-        const unsigned char huge[] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
-                                      0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
+        const unsigned char huge[100] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
+                                         0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
         write("huge.tga", {reinterpret_cast<const char*>(huge), sizeof huge});
         write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
         Film bright(1, 1);

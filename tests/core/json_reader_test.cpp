@@ -220,6 +220,10 @@ TEST(JsonInclude, WhatIsWrongWithItIsNamed) {
     const std::string absent = error(R"({"a": {"$include": "absent.json"}})");
     EXPECT_NE(absent.find("absent.json: cannot be read"), std::string::npos) << absent;
     EXPECT_NE(absent.find("(included by "), std::string::npos) << absent;
+    const std::string device = error(R"({"a": {"$include": "/dev/zero"}})");
+    EXPECT_NE(device.find("/dev/zero: cannot be read (a pipe or device, not a regular file"),
+              std::string::npos)
+        << device;
     write("broken.json", "{");
     EXPECT_NE(error(R"({"a": {"$include": "broken.json"}})").find("broken.json: parse error"),
               std::string::npos);

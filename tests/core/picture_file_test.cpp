@@ -61,9 +61,9 @@ TEST(PictureFile, PrintsNothingOfItsOwnWhereThePictureIsBroken) {
 
 TEST(PictureFile, HasNoMorePixelsThanAFilm) {
     const support::TemporaryFolder folder;
-    // The header of a TGA picture of 12,000 x 12,000 pixels: 18 bytes that ask for 1.7 GB.
-    const unsigned char header[] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
-                                    0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
+    // The header of a TGA picture of 12,000 x 12,000 pixels: 100 bytes that ask for 1.7 GB.
+    const unsigned char header[100] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
+                                       0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
     write_whole_file(folder / "a.tga", {reinterpret_cast<const char*>(header), sizeof header});
     try {
         PictureFile(folder / "a.tga");
