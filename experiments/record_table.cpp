@@ -45,7 +45,10 @@ DonePictures done_pictures(const TrialRows& rows, const PlanFile& plan) {
     DonePictures done;
     for (const PlanFile::Entry& trial : plan.trials) {
         const std::optional<TableRow> row = rows.row(trial.id);
-        if (row && row->text("status") == "done") done[trial.id] = row->text("picture_hash");
+        if (!row || row->text("status") != "done") continue;
+        // "method:key"
+        const std::string& reference = row->text("reference");
+        done[trial.id] = {row->text("picture_hash"), reference.substr(reference.find(':') + 1)};
     }
     return done;
 }
@@ -91,7 +94,7 @@ std::vector<std::string> write_records(const std::filesystem::path& folder, cons
     }
 
     TableIndex index;
-    index.variances = cell_variances(plan, store, done_pictures(rows, plan), rows.variances());
+    index.variances = cell_variances(plan, folder, done_pictures(rows, plan), rows.variances());
     std::vector<std::string> lacks = cells_without(index.variances);
     index.complete = unfinished.empty() && lacks.empty() && !interrupt_requested();
     const std::vector<std::string> columns = record_columns(plan.swept);

@@ -99,9 +99,7 @@ void ask_for_reference(const SweepFile& sweep, SceneVariant& variant) {
     ReferenceRequest reference;
     reference.request = {variant.file, variant.overrides, sweep.reference->method,
                          sweep.reference->seed, sweep.reference->spp};
-    reference.kept_folder =
-        (std::filesystem::absolute(sweep.file).parent_path().parent_path() / "references")
-            .lexically_normal();
+    reference.kept_folder = kept_references(sweep.file);
     variant.reference = reference;
 }
 
@@ -200,6 +198,11 @@ void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {
 }
 
 }  // namespace
+
+std::filesystem::path kept_references(const std::filesystem::path& sweep_file) {
+    return (std::filesystem::absolute(sweep_file).parent_path().parent_path() / "references")
+        .lexically_normal();
+}
 
 SweepPlan read_plan(const std::vector<std::filesystem::path>& files, const Isolation& isolation) {
     SweepPlan plan;

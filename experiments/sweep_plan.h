@@ -48,6 +48,9 @@ struct SweepPlan {
     std::size_t duplicates = 0;      ///< trials named more than once
 };
 
+/// The folder beside the sweep files' own in which references may be kept for all of them.
+std::filesystem::path kept_references(const std::filesystem::path& sweep_file);
+
 /// Does some work and returns what it answered: at once, or in a process of its own.
 using Isolation = std::function<std::string(const std::function<std::string()>& work)>;
 

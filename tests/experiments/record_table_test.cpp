@@ -32,23 +32,35 @@ protected:
         plan_.trials.push_back({"y1", "y", 1, true});
         for (const char* id : {"x1", "x2", "x3", "y1"}) add(id, 1);
     }
-    /// A done trial with a picture of one pixel.
-    void add(const std::string& id, float grey) {
-        Film film(1, 1);
-        film.set_rgb("caustic", 0, Spectrum::Constant(grey));
-        const fs::path folder = store_.begin(id);
+    static void write_picture(const Film& film, const fs::path& file) {
+        fs::create_directories(file.parent_path());
         run_in_child([&](const ChildProcess::Tell&) {  // for it may begin threads
-            write_exr(film, folder / "image.exr");
+            write_exr(film, file);
             return std::string();
         });
-        store_.commit(id, {{"trial", id},
-                           {"status", "done"},
-                           {"scene", {{"name", "a, \"b\"\nc"}}},
-                           {"method", {{"name", "none"}}},
-                           {"swept", {{"key", id}}},
-                           {"elapsed_s", 0.25},
-                           {"picture_hash", fmt::format("{}", grey)}});
     }
+    /// A row of pixels of which some are marked `unreached`, where `unreached` is not empty.
+    static Film picture(const std::vector<float>& greys, const std::vector<float>& unreached = {}) {
+        Film film(static_cast<int>(greys.size()), 1);
+        for (std::size_t i = 0; i < greys.size(); ++i)
+            film.set_rgb("caustic", i, Spectrum::Constant(greys[i]));
+        if (!unreached.empty()) film.plane("unreached.Y") = unreached;
+        return film;
+    }
+    /// A done trial.
+    void add(const std::string& id, const Film& film, const std::string& reference = "") {
+        write_picture(film, store_.begin(id) / "image.exr");
+        json record = {{"trial", id},
+                       {"status", "done"},
+                       {"scene", {{"name", "a, \"b\"\nc"}}},
+                       {"method", {{"name", "none"}}},
+                       {"swept", {{"key", id}}},
+                       {"elapsed_s", 0.25},
+                       {"picture_hash", fmt::format("{}", film.rgb("caustic", 0)[0])}};
+        if (!reference.empty()) record["reference"] = {{"name", "lighttrace:" + reference}};
+        store_.commit(id, record);
+    }
+    void add(const std::string& id, float grey) { add(id, picture({grey})); }
     void write(const std::map<std::string, json>& unfinished = {}) {
         visited_.clear();
         lacks_ = write_records(folder_.path(), store_, plan_, unfinished, [&](const TableRow& row) {
@@ -167,7 +179,7 @@ TEST_F(RecordTables, DoWithoutPicturesThatAreGone) {
 }
 
 TEST_F(RecordTables, DoWithoutPicturesThatAreBroken) {
-    const auto write_picture = [&](int width, const char* layer) {
+    const auto break_picture = [&](int width, const char* layer) {
         run_in_child([&](const ChildProcess::Tell&) {
             Film film(width, 1);
             film.set_rgb(layer, 0, Spectrum::Constant(1));
@@ -180,10 +192,44 @@ TEST_F(RecordTables, DoWithoutPicturesThatAreBroken) {
         EXPECT_NE(lacks_[0].find(store_.image_of("x2").string() + ": "), std::string::npos)
             << lacks_[0];
     };
-    write_picture(1, "");
+    break_picture(1, "");
     EXPECT_NE(lacks_[0].find("no layer \"caustic\""), std::string::npos) << lacks_[0];
-    write_picture(2, "caustic");
+    break_picture(2, "caustic");
     EXPECT_NE(lacks_[0].find("of another size"), std::string::npos) << lacks_[0];
+}
+
+TEST_F(RecordTables, VaryOverThePixelsThatAllPicturesReach) {
+    // A pixel's variances: 1 of (1, 2, 3), 12 of (0, 0, 6), 27 of (0, 9, 0), 0 of (5, 5, 5).
+    add("x1", picture({1, 0, 0, 5}));
+    add("x2", picture({2, 0, 9, 5}));
+    add("x3", picture({3, 6, 0, 5}));
+    write();
+    EXPECT_EQ(variance_of_x(), "10.0");
+    add("x1", picture({1, 0, 0, 5}, {0, 0, 0.25F, 0}));
+    add("x2", picture({2, 0, 9, 5}, {0, 0, 0, 0}));
+    add("x3", picture({4, 6, 0, 5}, {0, 0.5F, 0, 0}));
+    write();
+    EXPECT_EQ(variance_of_x(), "1.1666666666666667") << "7/3 of (1, 2, 4), and 0, by two pixels";
+}
+
+TEST_F(RecordTables, VaryOverThePixelsThatTheReferenceReaches) {
+    const std::string key = "00c0ffee00c0ffee";
+    add("x1", picture({1, 0}), key);
+    add("x2", picture({2, 0}), key);
+    add("x3", picture({3, 6}), key);
+    write();
+    EXPECT_EQ(variance_of_x(), "null") << "without the reference none knows what counts";
+    write_picture(picture({9, 9}, {0, 1}), folder_ / "references" / (key + ".exr"));
+    add("y1", 2);
+    write();
+    EXPECT_EQ(variance_of_x(), "1.0") << "of (1, 2, 3): errors leave the other pixel out";
+
+    fs::create_directories(folder_ / "beside" / "sweeps");
+    fs::rename(folder_ / "references", folder_ / "beside" / "references");
+    plan_.sweeps = {(folder_ / "beside" / "sweeps" / "sweep.json").string()};
+    fs::remove(folder_ / ".table");
+    write();
+    EXPECT_EQ(variance_of_x(), "1.0") << "a reference kept beside the sweep files";
 }
 
 TEST_F(RecordTables, KeepNoRowOfWhatLeftNothing) {
