@@ -14,8 +14,8 @@ const char* most_frequent_end(const LightPathCounts& counts) {
     if (counts.missed == counts.aimed)
         return "no light path met a caster: other surfaces are in the way, or the casters are "
                "small";
-    const std::uint64_t most =
-        std::max({counts.depth_limited, counts.on_black_side, counts.absorbed, counts.escaped});
+    const std::uint64_t most = std::max({counts.depth_limited, counts.on_black_side,
+                                         counts.absorbed, counts.misdirected, counts.escaped});
     if (most == counts.depth_limited) return "max_bounces cut the light paths among the casters";
     if (most == counts.on_black_side)
         return "light arrived only where receivers are black: on the back of one-sided ones";
@@ -23,6 +23,9 @@ const char* most_frequent_end(const LightPathCounts& counts) {
         return counts.refracted + counts.reflected == 0
                    ? "the casters absorbed all light that met them"
                    : "light was absorbed on its way through the casters";
+    if (most == counts.misdirected)
+        return "smooth normals over hard edges sent the light to the wrong side of the casters "
+               "(face_normals: true shades their triangles flat)";
     return counts.refracted == 0 && counts.reflected > 0
                ? "all light was reflected at the casters, none refracted, and met no receiver"
                : "light that left the casters met no receiver";
@@ -44,7 +47,8 @@ std::string ends_of(const LightPathCounts& counts) {
     std::ostringstream text;
     text << counts.emitted - counts.aimed << " thinned out at the light, " << counts.missed
          << " met no caster first, " << counts.escaped << " left the scene, " << counts.absorbed
-         << " absorbed, " << counts.on_black_side << " on black sides, " << counts.depth_limited
+         << " absorbed, " << counts.misdirected << " misdirected by smooth normals, "
+         << counts.on_black_side << " on black sides, " << counts.depth_limited
          << " cut at max_bounces";
     return text.str();
 }

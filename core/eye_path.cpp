@@ -67,11 +67,11 @@ FirstHit first_hit(const SurfacePoint& hit, const Bsdf& bsdf) {
 
 }  // namespace
 
-EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, Rng& rng,
-                       std::vector<WeightedPoint>& points) {
+EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum& absorption,
+                       Rng& rng, std::vector<WeightedPoint>& points) {
     EyePath path;
     BranchStack stack;
-    stack.push({camera_ray, Spectrum::Ones(), {}, 0});
+    stack.push({camera_ray, Spectrum::Ones(), &absorption, 0});
     while (stack.size > 0) {
         Branch branch = stack.pop();
         const auto hit = scene.intersect(branch.ray);

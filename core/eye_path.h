@@ -28,11 +28,12 @@ struct EyePath {
     Spectrum emitted = black();  ///< L S* E: lights seen directly or through the chain
 };
 
-/// Follows a camera ray through specular surfaces to every receiver point it sees. A dielectric
+/// Follows a camera ray, which starts in a medium of that absorption [1/m] (eye_medium), through
+/// specular surfaces to every receiver point it sees. A dielectric
 /// splits the path while both parts matter, later one of them is drawn by its weight; radiance is
 /// scaled by (n on the eye's side / n on the far side)^2 at each refraction and by Beer's law
 /// along each segment. Appends the points found; their ids are left 0.
-EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, Rng& rng,
-                       std::vector<WeightedPoint>& points);
+EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum& absorption,
+                       Rng& rng, std::vector<WeightedPoint>& points);
 
 }  // namespace caustics

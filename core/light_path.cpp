@@ -20,6 +20,7 @@ void for_each_count(Counts& counts, const Visit& visit) {
     visit("photons_missed", counts.missed);
     visit("photons_escaped", counts.escaped);
     visit("photons_absorbed", counts.absorbed);
+    visit("photons_misdirected", counts.misdirected);
     visit("photons_on_black_side", counts.on_black_side);
     visit("photons_depth_limited", counts.depth_limited);
     visit("photons_stored", counts.stored);
@@ -37,6 +38,7 @@ void LightPathCounts::add(const LightPathCounts& other) {
     missed += other.missed;
     escaped += other.escaped;
     absorbed += other.absorbed;
+    misdirected += other.misdirected;
     on_black_side += other.on_black_side;
     depth_limited += other.depth_limited;
     stored += other.stored;
@@ -144,11 +146,15 @@ SpecularSplit split_at(const Scene& scene, const SurfacePoint& hit, const Flight
                           -flight.ray.direction);
 }
 
-// One decision for reflection, refraction or absorption; the survivor's channels are rescaled so
-// that the mean over many particles is the split's weights [C11, after Jensen 2004].
-const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux) {
+// One decision for reflection, refraction or an end, which is counted; the survivor's channels are
+// rescaled so that the mean over many particles is the split's weights [C11, after Jensen 2004].
+const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux,
+                     LightPathCounts& counts) {
     const float before = flux.sum();
-    if (!(before > 0)) return nullptr;
+    if (!(before > 0)) {
+        ++counts.absorbed;
+        return nullptr;
+    }
     const Spectrum reflected = split.reflected_weight * flux;
     const Spectrum refracted = split.refracted_weight * flux;
     const float reflected_share = reflected.sum() / before;
@@ -162,6 +168,8 @@ const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux) {
         flux = refracted / refracted_share;
         return &split.refracted;
     }
+    const float lost_share = Spectrum(split.lost_weight * flux).sum() / before;
+    ++(u < reflected_share + refracted_share + lost_share ? counts.misdirected : counts.absorbed);
     return nullptr;
 }
 
@@ -169,11 +177,8 @@ const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux) {
 bool goes_on_from(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng,
                   LightPathCounts& counts) {
     const SpecularSplit split = split_at(scene, hit, flight);
-    const Vec3* const direction = roulette(split, rng, flight.flux);
-    if (direction == nullptr) {
-        ++counts.absorbed;
-        return false;
-    }
+    const Vec3* const direction = roulette(split, rng, flight.flux, counts);
+    if (direction == nullptr) return false;
     ++(direction == &split.reflected ? counts.reflected : counts.refracted);
     leave(scene, hit, *direction, flight);
     return true;
@@ -272,7 +277,8 @@ public:
                 follow(reflected);
             }
             if (!refracts) {
-                counts_.absorbed += reflects ? 0 : 1;
+                if (!reflects)
+                    ++(is_black(split.lost_weight) ? counts_.absorbed : counts_.misdirected);
                 return;
             }
             ++counts_.refracted;

@@ -20,11 +20,11 @@ struct LightParticle {
 
 /// A particle's arrival on a receiver after at least one specular event.
 struct Deposit {
-    Vec3 position;
-    Vec3 geometric_normal;  ///< unit, on the side of arrival
-    Vec3 shading_normal;    ///< unit, on the side of arrival
-    Vec3 wi;                ///< unit, away from the surface, where the particle came from
-    Vec2 uv;
+    Vec3 position = Vec3::Zero();
+    Vec3 geometric_normal = Vec3::Zero();  ///< unit, on the side of arrival
+    Vec3 shading_normal = Vec3::Zero();    ///< unit, on the side of arrival
+    Vec3 wi = Vec3::Zero();  ///< unit, away from the surface, where the particle came from
+    Vec2 uv = Vec2::Zero();
     float offset = 0;  ///< as SurfacePoint::offset
     Spectrum flux = black();
     std::uint32_t shape = 0;
@@ -35,14 +35,16 @@ struct Deposit {
 /// What became of emitted particles. Each branch of a split path has its own end: the ends (missed
 /// to dropped) add up to `aimed` + `branched`.
 struct LightPathCounts {
-    std::uint64_t emitted = 0;        ///< drawn, including those thinned out at the light
-    std::uint64_t aimed = 0;          ///< sent on their way
-    std::uint64_t branched = 0;       ///< second branches begun by splitting
-    std::uint64_t reflected = 0;      ///< specular events that went on by reflection
-    std::uint64_t refracted = 0;      ///< and by refraction
-    std::uint64_t missed = 0;         ///< met no caster first
-    std::uint64_t escaped = 0;        ///< left the scene after a caster
-    std::uint64_t absorbed = 0;       ///< by roulette, a medium, or a dropped shading normal
+    std::uint64_t emitted = 0;    ///< drawn, including those thinned out at the light
+    std::uint64_t aimed = 0;      ///< sent on their way
+    std::uint64_t branched = 0;   ///< second branches begun by splitting
+    std::uint64_t reflected = 0;  ///< specular events that went on by reflection
+    std::uint64_t refracted = 0;  ///< and by refraction
+    std::uint64_t missed = 0;     ///< met no caster first
+    std::uint64_t escaped = 0;    ///< left the scene after a caster
+    std::uint64_t absorbed = 0;   ///< by roulette, a medium, or a coloured surface
+    /// Sent to the wrong side of the surface by a smooth normal (SpecularSplit::lost_weight).
+    std::uint64_t misdirected = 0;
     std::uint64_t on_black_side = 0;  ///< arrived where a receiver is black, behind it as a rule
     std::uint64_t depth_limited = 0;  ///< met one more caster after `max_bounces`
     std::uint64_t stored = 0;

@@ -47,13 +47,17 @@ SpecularSplit split_dielectric(const Dielectric& d, bool front, const Vec3& ng, 
     const bool refracts = sin2_t < 1;
     const float cos_t = refracts ? std::sqrt(1 - sin2_t) : 0;
     const float reflectance = refracts ? fresnel_reflectance(cos_i, cos_t, split.eta) : 1;
-    if ((ng.dot(split.reflected) > 0) == front)
-        split.reflected_weight = d.specular_reflectance * reflectance;
+    const Spectrum reflected = d.specular_reflectance * reflectance;
+    ((ng.dot(split.reflected) > 0) == front ? split.reflected_weight : split.lost_weight) =
+        reflected;
     if (refracts) {
         const Vec3 t = (cos_i * inverse_eta - cos_t) * n - inverse_eta * w;
         split.refracted = t * (1 / t.norm());
+        const Spectrum refracted = d.specular_transmittance * (1 - reflectance);
         if ((ng.dot(t) > 0) != front)
-            split.refracted_weight = d.specular_transmittance * (1 - reflectance);
+            split.refracted_weight = refracted;
+        else
+            split.lost_weight += refracted;
     }
     return split;
 }
@@ -62,7 +66,11 @@ SpecularSplit split_dielectric(const Dielectric& d, bool front, const Vec3& ng, 
 
 SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w) {
     const bool front = ng.dot(w) > 0;
-    if ((ns.dot(w) > 0) != front) return {};
+    if ((ns.dot(w) > 0) != front) {
+        SpecularSplit nothing;
+        nothing.lost_weight = Spectrum::Ones();
+        return nothing;
+    }
     const Vec3 n = front ? ns : Vec3(-ns);
     if (const auto* dielectric = std::get_if<Dielectric>(&bsdf.model))
         return split_dielectric(*dielectric, front, ng, n, w);
@@ -70,8 +78,8 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
     const auto* mirror = std::get_if<Conductor>(&bsdf.model);
     if (mirror == nullptr || !scatters_from(bsdf, front)) return split;
     split.reflected = reflect(w, n);
-    if ((ng.dot(split.reflected) > 0) == front)
-        split.reflected_weight = mirror->specular_reflectance;
+    ((ng.dot(split.reflected) > 0) == front ? split.reflected_weight : split.lost_weight) =
+        mirror->specular_reflectance;
     return split;
 }
 

@@ -25,14 +25,15 @@ Spectrum transmittance(const Spectrum& absorption, float distance);
 
 /// What a perfectly specular surface does with light along `w` (unit, away from the surface):
 /// up to two continuations. Directions are by the shading normal; one that would leave on the
-/// wrong side of the geometric surface is dropped and its weight lost (symmetrically for light
-/// and eye paths).
+/// wrong side of the geometric surface is dropped, and so is all light that arrives on different
+/// sides by the two normals: its weight is lost (symmetrically for light and eye paths).
 struct SpecularSplit {
     Vec3 reflected = Vec3::Zero();
     Vec3 refracted = Vec3::Zero();
     Spectrum reflected_weight = black();  ///< of flux; includes Fresnel and colour
     Spectrum refracted_weight = black();
-    float eta = 1;  ///< ior on the far side / ior on w's side
+    Spectrum lost_weight = black();  ///< of what was dropped
+    float eta = 1;                   ///< ior on the far side / ior on w's side
 };
 /// `ng`, `ns`: the surface's geometric and shading normals as stored (not turned towards w).
 SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w);

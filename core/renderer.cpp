@@ -8,6 +8,7 @@
 
 #include "core/direct_light.h"
 #include "core/error.h"
+#include "core/eye_medium.h"
 #include "core/eye_path.h"
 #include "core/film_layers.h"
 #include "core/parallel.h"
@@ -48,6 +49,7 @@ public:
     EyePass(const Scene& scene, const RunOptions& options)
         : scene_(scene),
           options_(options),
+          eye_absorption_(eye_medium(scene).absorption),
           adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
           most_samples_(adaptive_ ? scene.sampling().max_sample_count : options.samples_per_pixel),
           tiles_(all_tiles()),
@@ -256,7 +258,7 @@ private:
         const Camera& camera = scene_.camera();
         const Ray ray = spawn_ray({camera.position()}, camera.direction(at.x(), at.y()));
         worker.found.clear();
-        const EyePath path = trace_eye_path(scene_, ray, rng, worker.found);
+        const EyePath path = trace_eye_path(scene_, ray, eye_absorption_, rng, worker.found);
         ++worker.camera_rays;
         std::uint64_t branch = 0;
         for (WeightedPoint& found : worker.found) {
@@ -320,6 +322,7 @@ private:
     const Scene& scene_;
     const CausticEstimator* estimator_ = nullptr;
     RunOptions options_;
+    Spectrum eye_absorption_;  ///< of the medium that camera rays start in
     bool adaptive_;
     int most_samples_;
     bool with_caustic_ = true;

@@ -75,4 +75,19 @@ void complete_normals(TriangleMesh& mesh) {
     }
 }
 
+double largest_bend(const TriangleMesh& mesh) {
+    if (mesh.normals.empty()) return 0;
+    double cosine = 1;
+    for (const auto& triangle : mesh.triangles) {
+        const Vec3d a = mesh.positions[triangle[0]].cast<double>();
+        const Vec3d cross = (mesh.positions[triangle[1]].cast<double>() - a)
+                                .cross(mesh.positions[triangle[2]].cast<double>() - a);
+        if (cross.isZero(0)) continue;
+        const Vec3d normal = cross.stableNormalized();
+        for (const std::uint32_t corner : triangle)
+            cosine = std::min(cosine, normal.dot(mesh.normals[corner].cast<double>()));
+    }
+    return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
 }  // namespace caustics

@@ -14,4 +14,8 @@ std::vector<std::uint32_t> number_positions(const std::vector<Vec3>& positions);
 /// degenerate, or else +z.
 void complete_normals(TriangleMesh& mesh);
 
+/// The largest angle between a triangle's normal and that of one of its corners [rad]; 0 for a mesh
+/// without normals, pi where one points backwards. Degenerate triangles do not count.
+double largest_bend(const TriangleMesh& mesh);
+
 }  // namespace caustics

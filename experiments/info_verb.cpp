@@ -12,6 +12,7 @@
 #include "experiments/files.h"
 #include "experiments/interrupt.h"
 #include "experiments/map_info.h"
+#include "experiments/notes.h"
 #include "experiments/number_option.h"
 #include "experiments/verbs.h"
 
@@ -98,6 +99,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
         const auto reason = why_unsupported(scene, parse_method(name, parameters_node({})));
         text += fmt::format("  {:<16} {}\n", name, reason ? "no: " + *reason : "yes");
     }
+    for (const std::string& note : notes_on(scene)) text += "note     " + note + "\n";
     return text;
 }
 

@@ -46,7 +46,7 @@ std::string describe_map(const std::filesystem::path& file, const SavedPhotons& 
     const PhotonOrigin& origin = saved.origin;
     const bool stratified = origin.emission == PhotonMapParams::Emission::stratified;
     std::string text = fmt::format("photon map {}, format version {}, {} bytes\n", file.string(),
-                                   photon_map_version, std::filesystem::file_size(file));
+                                   saved.version, std::filesystem::file_size(file));
     text += fmt::format("transport  {} (info SCENE shows whether a scene's is the same)\n",
                         hex(origin.transport));
     text += fmt::format("photons    {} stored by {} emitted light paths\n", counts.stored,
@@ -54,10 +54,11 @@ std::string describe_map(const std::filesystem::path& file, const SavedPhotons& 
     text += extent(saved.photons);
     text += fmt::format(
         "paths      {} aimed, {} branched, {} times reflected, {} times refracted, {} missed, "
-        "{} escaped, {} absorbed, {} on black sides, {} cut at max_bounces, {} photons dropped\n",
+        "{} escaped, {} absorbed, {} misdirected by smooth normals, {} on black sides, "
+        "{} cut at max_bounces, {} photons dropped\n",
         counts.aimed, counts.branched, counts.reflected, counts.refracted, counts.missed,
-        counts.escaped, counts.absorbed, counts.on_black_side, counts.depth_limited,
-        counts.dropped);
+        counts.escaped, counts.absorbed, counts.misdirected, counts.on_black_side,
+        counts.depth_limited, counts.dropped);
     text += fmt::format("traced     emission {}, interaction {}, max_bounces {}, seed {}\n",
                         stratified ? "stratified" : "random",
                         origin.interaction == Interaction::split ? "split" : "roulette",

@@ -8,6 +8,10 @@
 #include <optional>
 #include <variant>
 
+#include "core/eye_medium.h"
+#include "core/light_path.h"
+#include "core/vertex_normals.h"
+
 namespace caustics {
 
 namespace {
@@ -77,11 +81,89 @@ private:
     json defaults_;
 };
 
+
+/// From here on a smooth normal is a guess over a hard edge.
+constexpr double hard_bend = 30 * pi_d / 180;
+
+/// A caster, and by how much its smooth normals differ from its triangles.
+struct BentCaster {
+    std::string name;
+    double bend = 0;  ///< [rad]
+
+    std::string text() const {
+        return fmt::format("{}, by up to {:.0f} degrees", name, bend * 180 / pi_d);
+    }
+};
+
+std::vector<BentCaster> bent_casters(const Scene& scene) {
+    std::vector<BentCaster> casters;
+    for (const std::uint32_t i : scene.casters()) {
+        const Shape& shape = scene.shapes()[i];
+        casters.push_back({shape.name, largest_bend(shape.mesh)});
+    }
+    return casters;
+}
+
+/// Of the light that met casters, what a smooth normal sent to the wrong side, if the method counts it.
+std::optional<double> misdirected_share(const BuildReport& report) {
+    if (!report.counters.contains("photons_misdirected")) return {};
+    const LightPathCounts counts = light_path_counts(report.counters);
+    const std::uint64_t met = counts.aimed + counts.branched - counts.missed;
+    if (met == 0) return {};
+    return static_cast<double>(counts.misdirected) / static_cast<double>(met);
+}
+
+void note_misdirected(const Scene& scene, const BuildReport& report,
+                      std::vector<std::string>& all) {
+    const double share = misdirected_share(report).value_or(0);
+    if (share < least_share_told) return;
+    const std::vector<BentCaster> casters = bent_casters(scene);
+    const auto most = std::ranges::max_element(casters, {}, &BentCaster::bend);
+    all.push_back(fmt::format(
+        "{:.1f} % of the light paths that met casters are lost where smooth normals send them to "
+        "the wrong side of a surface; the normals differ most from the triangles on {} "
+        "(face_normals: true shades the triangles of a mesh flat; a finer resolution bends less)",
+        100 * share, most->text()));
+}
+
+void note_photons(const BuildReport& report, std::vector<std::string>& all) {
+    if (const auto faint = resolved(report, "faint_flux_share"))
+        all.push_back(fmt::format(
+            "{:.0f} % of the light in the weakest channel is carried by photons in which that "
+            "channel is below 1/128 of the greatest: they hold it in whole units, at random, so "
+            "that its mean is right and its noise larger than that of the other channels",
+            100 * *faint));
+    if (const auto version = resolved(report, "photon_map_version"))
+        all.push_back(fmt::format(
+            "the photon map's file has version {}: it does not say where the photons' surfaces "
+            "face, so that photons of a floor count at the foot of its walls (trace and save it "
+            "again)",
+            *version));
+}
+
 }  // namespace
+
+std::vector<std::string> notes_on(const Scene& scene) {
+    std::vector<std::string> all;
+    for (const BentCaster& caster : bent_casters(scene))
+        if (caster.bend > hard_bend)
+            all.push_back(fmt::format(
+                "smooth normals differ from the triangles of {}: where a mesh has none, they are "
+                "averaged over hard edges too, and light that they send to the wrong side of the "
+                "surface is lost (face_normals: true shades the triangles flat)",
+                caster.text()));
+    if (eye_medium(scene).ambiguous)
+        all.push_back(
+            "the dielectrics about the eye disagree on the medium it is in: what it sees directly "
+            "is not attenuated (ext_absorption says what is round a dielectric)");
+    return all;
+}
 
 std::vector<std::string> notes(const Scene& scene, const Method& method,
                                const BuildReport& report) {
     std::vector<std::string> all;
+    note_misdirected(scene, report, all);
+    note_photons(report, all);
     const std::optional<double> captured = resolved(report, "flux_share_captured");
     if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
         all.push_back(*far);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "experiments/environment.h"
@@ -88,8 +89,11 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
 
     RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}};
     result.counters = result.report.counters;
-    result.notes = notes(scene, request.method, result.report);
     for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
+    BuildReport all = result.report;
+    all.counters = result.counters;
+    result.notes = notes(scene, request.method, all);
+    std::ranges::copy(notes_on(scene), std::back_inserter(result.notes));
     result.why_empty =
         why_empty(scene, request.method, result.film, result.report, result.counters);
     return result;

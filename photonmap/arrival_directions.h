@@ -7,28 +7,30 @@
 
 namespace caustics {
 
-/// A cone that holds the directions from which a map's photons came. Most points of a receiver have
-/// all of it in front, and then no photon needs to be tested by itself.
+/// A cone that holds the directions from which a map's photons came, and one that holds the normals of
+/// the surfaces they landed on. At most points of a receiver all that is in them counts, and then no
+/// photon needs to be tested by itself.
 class ArrivalDirections {
 public:
     /// Throws InputError naming the first photon whose position is not finite.
     explicit ArrivalDirections(std::span<const Photon> photons);
 
-    /// Whether certainly no photon came from behind `normal` (unit).
-    bool all_in_front(const Vec3& normal) const;
+    /// Whether certainly all photons count at a point of that normal (unit): none came from behind
+    /// it, or landed on another surface (is_same_surface).
+    bool all_count(const Vec3& normal) const;
 
 private:
     bool empty_ = true;
     Vec3 axis_ = Vec3::UnitZ();
     float sine_ = 1;  ///< of half the opening angle; at least 1 when that is not acute
+    Vec3 facing_ = Vec3::UnitZ();
+    /// Above this cosine to `facing_` a normal is that of every surface; below -1: of any known one.
+    float facing_cosine_ = -2;
 };
-
-/// Whether the photon came from the side of `normal`, as every tree decides it.
-bool came_from_front(const Photon& photon, const Vec3& normal);
 
 SideTest side_test(const Vec3& normal);
 
-/// Whether photons of all these direction codes came from the side of the test's normal.
-bool all_in_front(const SideTest& side, std::span<const std::uint16_t> directions);
+/// Whether the first `count` of these photons pass the test; they must have flags.
+bool all_count(const SideTest& side, const CopiedPhotons& photons, std::size_t count);
 
 }  // namespace caustics

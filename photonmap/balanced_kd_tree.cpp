@@ -9,7 +9,6 @@ namespace caustics {
 
 namespace {
 
-constexpr std::uint16_t axis_mask = 3U;
 constexpr std::uint16_t placed_flag = 0x8000U;
 
 /// Orders the photons as an in-order walk of their tree meets them.
@@ -18,7 +17,7 @@ void order_subtree(std::span<Photon> photons, const TreeKernels& kernels, OrderS
         const unsigned axis = widest_axis(photons, kernels);
         const std::size_t middle = left_size(photons.size());
         select_photon(photons, middle, axis);
-        photons[middle].flags = static_cast<std::uint16_t>(axis);
+        set_axis(photons[middle], axis);
         order_subtree(photons.first(middle), kernels, scratch);
         photons = photons.subspan(middle + 1);
     }
@@ -40,7 +39,7 @@ void move_to_heap(std::span<Photon> photons) {
             place = source;
         }
     }
-    for (Photon& photon : photons) photon.flags &= axis_mask;
+    for (Photon& photon : photons) photon.flags &= static_cast<std::uint16_t>(~placed_flag);
 }
 
 /// The heap's nodes are numbered from 1.

@@ -29,11 +29,12 @@ class CopyArrays {
 public:
     /// Makes room for so many photons; forgets those held.
     void reserve(std::size_t count, bool positions);
-    CopiedPhotons copied(bool positions);
+    CopiedPhotons copied(bool positions, bool flags = false);
 
 private:
     AlignedArray<std::uint32_t> energy_;
     AlignedArray<std::uint16_t> direction_;
+    AlignedArray<std::uint16_t> flags_;
     AlignedArray<float> position_[3];
 };
 

@@ -12,8 +12,8 @@ namespace caustics {
 class NeighbourBound {
 public:
     /// Squared distance within which the N nearest of `point` lie [m^2], at most `max`.
-    /// `tested` tells whether photons behind `normal` are left out; then only an answer for the same
-    /// normal is of use, because none of its photons lies behind.
+    /// `tested` says whether photons that do not count at `normal` are left out; then only an answer
+    /// for the same normal is of use, because all of its photons count.
     float at(const Vec3& point, const Vec3& normal, bool tested, float max) const {
         if (!known_ || (tested && normal != normal_)) return max;
         return std::min(max, reached(distance_ + (point - point_).norm()));
@@ -29,17 +29,17 @@ public:
     void forget() { known_ = false; }
     bool known() const { return known_; }
     float distance() const { return distance_; }
-    /// Whether a search met photons behind its point, so that further ones will: they had better look
-    /// at each photon's side.
-    bool met_behind() const { return met_behind_; }
-    void meet_behind() { met_behind_ = true; }
+    /// Whether a search met photons that do not count at its point, so that further ones will: they
+    /// had better test each photon.
+    bool met_foreign() const { return met_foreign_; }
+    void meet_foreign() { met_foreign_ = true; }
 
     /// A distance squared, enlarged by more than rounding can take off.
     static float reached(float distance) { return distance * distance * 1.000004F + 1e-37F; }
 
 private:
     bool known_ = false;
-    bool met_behind_ = false;
+    bool met_foreign_ = false;
     Vec3 point_ = Vec3::Zero();
     Vec3 normal_ = Vec3::UnitZ();
     float distance_ = 0;

@@ -62,13 +62,14 @@ bool PackedGather::answer_together(Group group, const Box& box) {
     for (const std::uint32_t i : group)
         radius = std::max(radius, (batch_.points[i].position - centre).norm());
     const Vec3& normal = batch_.points[group.front()].geometric_normal;
-    tested_ = batch_.bound.met_behind();
+    certain_ = all_certain(group);
+    tested_ = batch_.bound.met_foreign();
     if (!tested_) {
         if (!collect(centre, normal, radius, nullptr)) return false;
-        tested_ = !members_in_front(group);
+        tested_ = !certain_ && !all_count_at(group);
     }
     if (tested_) {
-        batch_.bound.meet_behind();
+        batch_.bound.meet_foreign();
         const bool same = std::ranges::all_of(
             group, [&](std::uint32_t i) { return batch_.points[i].geometric_normal == normal; });
         const SideTest side = side_test(normal);
@@ -78,8 +79,8 @@ bool PackedGather::answer_together(Group group, const Box& box) {
     return true;
 }
 
-/// Copies the photons of all members; those behind `side`, when there is one, are left out. False
-/// when there are too many.
+/// Copies the photons of all members; those that do not pass `side`, when there is one, are left out.
+/// False when there are too many.
 bool PackedGather::collect(const Vec3& centre, const Vec3& normal, float radius,
                            const SideTest* side) {
     NearestQuery query = batch_.query_at(centre);
@@ -100,22 +101,35 @@ bool PackedGather::collect(const Vec3& centre, const Vec3& normal, float radius,
     return true;
 }
 
-/// Whether no collected photon lies behind a member.
-bool PackedGather::members_in_front(Group group) const {
+/// Whether something holds for the normal of each member; equal ones in a row are asked once.
+template <typename Holds>
+bool PackedGather::holds_for_normals(Group group, const Holds& holds) const {
     const Vec3* last = nullptr;
     return std::ranges::all_of(group, [&](std::uint32_t i) {
         const Vec3& normal = batch_.points[i].geometric_normal;
         if (last != nullptr && *last == normal) return true;
         last = &normal;
-        return tree_.directions_.all_in_front(normal) ||
-               all_in_front(side_test(normal), {columns_.direction, column_count_});
+        return holds(normal);
+    });
+}
+
+/// Whether the whole map's photons count at each member.
+bool PackedGather::all_certain(Group group) const {
+    return holds_for_normals(
+        group, [&](const Vec3& normal) { return tree_.directions_.all_count(normal); });
+}
+
+/// Whether all collected photons count at each member.
+bool PackedGather::all_count_at(Group group) const {
+    return holds_for_normals(group, [&](const Vec3& normal) {
+        return all_count(side_test(normal), columns_, column_count_);
     });
 }
 
 void PackedGather::copy_for_group(const Candidates& collected) {
     column_count_ = collected.count;
     batch_.scratch.group_copies.reserve(column_count_, true);
-    columns_ = batch_.scratch.group_copies.copied(true);
+    columns_ = batch_.scratch.group_copies.copied(true, !certain_);
     tree_.copy_out(collected, columns_);
     // A member's candidates may be all of them.
     batch_.scratch.reserve(column_count_, batch_.limits.positions);

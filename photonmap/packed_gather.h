@@ -21,16 +21,20 @@ private:
     bool answer_together(Group group, const Box& box);
     void answer_one_by_one(Group group);
     bool collect(const Vec3& centre, const Vec3& normal, float radius, const SideTest* side);
-    bool members_in_front(Group group) const;
+    bool all_certain(Group group) const;
+    bool all_count_at(Group group) const;
     void answer_member(std::uint32_t i, const Vec3& centre);
     void choose_among_ties(std::size_t nearest, Candidates& found, const CopiedPhotons& to) const;
     void copy_for_group(const Candidates& collected);
+    template <typename Holds>
+    bool holds_for_normals(Group group, const Holds& holds) const;
 
     const PackedKdTree& tree_;
     PackedKdTree::Batch batch_;
     float last_distance_;  ///< of the N-th photon in the answer before, or the maximum radius
     // Of a group.
-    bool tested_ = false;        ///< whether photons behind its normal were left out
+    bool certain_ = false;       ///< whether all photons of the map count at all members
+    bool tested_ = false;        ///< whether photons that do not count were left out
     float centre_distance_ = 0;  ///< within which the centre's N nearest lie
     CopiedPhotons columns_{};
     std::size_t column_count_ = 0;

@@ -72,6 +72,9 @@ void PackedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) co
         std::memcpy(copies.energy + i, x + 12 * bucket_photons, 4);
         std::memcpy(copies.direction + i,
                     x + 16 * bucket_photons - 2 * (all.index[i] % bucket_photons), 2);
+        if (copies.flags != nullptr)
+            std::memcpy(copies.flags + i,
+                        x + 18 * bucket_photons - 2 * (all.index[i] % bucket_photons), 2);
         if (copies.position[0] == nullptr) continue;
         for (std::size_t axis = 0; axis < 3; ++axis)
             std::memcpy(copies.position[axis] + i, x + 4 * axis * bucket_photons, 4);
@@ -82,7 +85,7 @@ std::uint64_t PackedKdTree::code_of(std::uint32_t photon) const {
     std::uint32_t energy = 0;
     std::uint16_t direction = 0;
     const Candidates one{nullptr, &photon, 1, 1};
-    copy_out(one, {&energy, &direction, {nullptr, nullptr, nullptr}});
+    copy_out(one, {&energy, &direction, {nullptr, nullptr, nullptr}, nullptr});
     return code(energy, direction);
 }
 

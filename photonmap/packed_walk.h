@@ -147,12 +147,15 @@ private:
 
     void drop_back_side(const unsigned char* bucket, uint32_t first_index, size_t before) {
         const unsigned char* const direction = bucket + 16 * bucket_photons;
+        const unsigned char* const facing = bucket + 18 * bucket_photons;
         size_t kept = before;
         for (size_t i = before; i < found_.count; ++i) {
-            const unsigned char* const code = direction + 2 * (found_.index[i] - first_index);
+            const size_t at = 2 * (found_.index[i] - first_index);
+            uint16_t flags;
+            memcpy(&flags, facing + at, sizeof flags);
             found_.squared_distance[kept] = found_.squared_distance[i];
             found_.index[kept] = found_.index[i];
-            kept += on_front_side(*query_.side, code[0], code[1]) ? 1 : 0;
+            kept += counts_at(*query_.side, direction[at], direction[at + 1], flags) ? 1 : 0;
         }
         found_.count = kept;
     }

@@ -14,10 +14,17 @@ struct Photon {
     Rgbe energy;         ///< flux in the map's unit (see TracedPhotons)
     std::uint8_t theta;  ///< direction code of wi, from the surface to where the photon came from
     std::uint8_t phi;
-    std::uint16_t flags;  ///< low two bits: axis of the splitting plane; the rest is kd_tree's
+    /// Low two bits: axis of the splitting plane; 13 bits: where the surface faces that it landed on
+    /// (facing_code.h); the highest is the balanced tree's while it is built.
+    std::uint16_t flags;
 };
 static_assert(sizeof(Photon) == 20);
 
+constexpr std::uint16_t axis_mask = 3U;
+
+inline void set_axis(Photon& photon, unsigned axis) {
+    photon.flags = static_cast<std::uint16_t>((photon.flags & ~unsigned{axis_mask}) | axis);
+}
 inline Vec3 position(const Photon& photon) {
     return {photon.position[0], photon.position[1], photon.position[2]};
 }

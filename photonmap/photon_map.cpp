@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "photonmap/faint_channels.h"
 #include "photonmap/kept_photons.h"
 #include "photonmap/max_radius.h"
 #include "photonmap/photon_tree.h"
@@ -156,16 +157,21 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     settings.limits = limits(params, scene, photons.store, pass);
     settings.flux_unit = photons.flux_per_energy();
 
+    BuildReport report;
+    // What changes no picture is not told of.
+    if (const double faint = faint_flux_share(photons.store.photons()); faint >= 0.01)
+        report.resolved["faint_flux_share"] = faint;
+
     options.phase("balance");
     std::unique_ptr<const PhotonTree> tree =
         build_tree(params.tree, std::move(photons.store), options.isa);
-    BuildReport report;
     report.bytes = tree->bytes();
     photons.counts.add_to(report.counters);
     tree->add_to(report.counters);
     if (params.radius == 0)
         report.resolved["max_radius"] = static_cast<double>(settings.limits.max_radius);
     if (!params.load.empty()) report.resolved["max_bounces"] = kept.origin.max_bounces;
+    if (kept.version != photon_map_version) report.resolved["photon_map_version"] = kept.version;
     return std::make_unique<PhotonMap>(std::move(tree), std::move(report), settings, options.isa,
                                        params.tables);
 }

@@ -19,7 +19,12 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "photons are written as they lie");
 
 constexpr std::string_view magic = "causticbench photon map\n";
-constexpr std::size_t header_numbers = 14 * sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t);
+/// Of the header, without the command.
+std::size_t header_numbers(std::uint32_t version) {
+    const std::size_t counts = version == 2 ? 12 : 13;
+    return (2 + counts) * sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t);
+}
+
 constexpr std::size_t longest_header = 1 << 20;
 
 template <typename T>
@@ -31,14 +36,15 @@ std::string_view bytes_of(std::span<const Photon> photons) {
     return {reinterpret_cast<const char*>(photons.data()), photons.size_bytes()};
 }
 
-/// The counts in the order of the file.
+/// The counts in the order of a file of that version.
 template <typename Counts, typename Visit>
-void for_each_count(Counts& counts, const Visit& visit) {
+void for_each_count(std::uint32_t version, Counts& counts, const Visit& visit) {
     for (auto* count :
          {&counts.emitted, &counts.aimed, &counts.branched, &counts.reflected, &counts.refracted,
           &counts.missed, &counts.escaped, &counts.absorbed, &counts.on_black_side,
           &counts.depth_limited, &counts.stored, &counts.dropped})
         visit(*count);
+    if (version > 2) visit(counts.misdirected);
 }
 
 std::string header_bytes(const TracedPhotons& photons, const PhotonOrigin& origin) {
@@ -49,7 +55,7 @@ std::string header_bytes(const TracedPhotons& photons, const PhotonOrigin& origi
     put(static_cast<std::uint32_t>(origin.emission));
     put(static_cast<std::uint32_t>(origin.interaction));
     put(static_cast<std::uint32_t>(origin.max_bounces));
-    for_each_count(photons.counts, put);
+    for_each_count(photon_map_version, photons.counts, put);
     for (int c = 0; c < 3; ++c) put(photons.flux_unit[c]);
     return header + origin.command.substr(0, longest_header - header.size());
 }
@@ -96,26 +102,31 @@ private:
 };
 
 struct Header {
+    std::uint32_t version;
     PhotonOrigin origin;
     LightPathCounts counts;
     Spectrum flux_unit;
 };
 
-void read_start(Reader& in) {
+/// Returns the version.
+std::uint32_t read_start(Reader& in) {
     std::string start(magic.size(), '\0');
     if (in.left() >= magic.size()) in.read(start.data(), start.size());
     if (start != magic) in.fail("is no photon map of causticbench");
-    if (const auto found = in.read<std::uint32_t>(); found != photon_map_version)
+    const auto found = in.read<std::uint32_t>();
+    if (found < oldest_photon_map_version || found > photon_map_version)
         in.fail("is a photon map of version " + std::to_string(found) +
-                " (known: " + std::to_string(photon_map_version) + ")");
+                " (known: " + std::to_string(oldest_photon_map_version) + " to " +
+                std::to_string(photon_map_version) + ")");
+    return found;
 }
 
 Header read_header(Reader& in) {
-    read_start(in);
+    const std::uint32_t version = read_start(in);
     const auto fail = [&in] { in.fail("is damaged: its header has no sense"); };
     const auto length = in.read<std::uint32_t>();
-    if (length < header_numbers || length > longest_header) fail();
-    Header header;
+    if (length < header_numbers(version) || length > longest_header) fail();
+    Header header{version, {}, {}, black()};
     header.origin.transport = in.read<std::uint64_t>();
     header.origin.seed = in.read<std::uint64_t>();
     const auto emission = in.read<std::uint32_t>();
@@ -125,9 +136,10 @@ Header read_header(Reader& in) {
     header.origin.emission = static_cast<PhotonMapParams::Emission>(emission);
     header.origin.interaction = static_cast<Interaction>(interaction);
     header.origin.max_bounces = static_cast<int>(max_bounces);
-    for_each_count(header.counts, [&](std::uint64_t& count) { count = in.read<std::uint64_t>(); });
+    for_each_count(version, header.counts,
+                   [&](std::uint64_t& count) { count = in.read<std::uint64_t>(); });
     for (int c = 0; c < 3; ++c) header.flux_unit[c] = in.read<float>();
-    header.origin.command.resize(length - header_numbers);
+    header.origin.command.resize(length - header_numbers(version));
     in.read(header.origin.command.data(), header.origin.command.size());
     return header;
 }
@@ -194,7 +206,7 @@ SavedPhotons load_photon_map(const std::filesystem::path& file) {
     if (in.read<std::uint64_t>() != hash || in.left() != 0 || header.counts.stored != count)
         in.fail("is damaged: its checksum does not fit");
     require_sense(in, photons);
-    return {std::move(photons), std::move(header.origin)};
+    return {std::move(photons), std::move(header.origin), header.version};
 }
 
 std::uint64_t photon_map_checksum(const std::filesystem::path& file) {

@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "photonmap/facing_code.h"
 
 namespace caustics {
 
@@ -104,7 +105,7 @@ private:
             return done_ || chunk < placed_chunks_ + threads_ * (1 + chunks_ahead_per_thread);
         });
         if (done_) return {};
-        if (spare_.empty()) return std::make_unique<PhotonChunk>(energy_per_flux_);
+        if (spare_.empty()) return std::make_unique<PhotonChunk>(energy_per_flux_, options_.seed);
         Scratch scratch = std::move(spare_.back());
         spare_.pop_back();
         scratch->clear();
@@ -150,7 +151,7 @@ private:
     /// Counts of the paths from `path` on, before the one that would store photon `limit` + 1.
     LightPathCounts counts_up_to(std::uint64_t path, std::uint64_t limit) const {
         LightPathCounts sum;
-        PhotonChunk one(energy_per_flux_);
+        PhotonChunk one(energy_per_flux_, options_.seed);
         for (;; ++path) {
             one.clear();
             tracer_.trace(path, path + 1, one);
@@ -200,7 +201,20 @@ std::uint64_t uniform_below(std::uint64_t bound, Rng& rng) {
 
 void PhotonChunk::clear() {
     counts = {};
+    last_path_.reset();
     photons_.clear();
+}
+
+std::array<double, 3> PhotonChunk::chance(std::uint64_t path) {
+    deposits_of_path_ = path == last_path_ ? deposits_of_path_ + 1 : 0;
+    last_path_ = path;
+    // No path draws so many numbers that it comes here.
+    const std::uint32_t dimension = ~deposits_of_path_;
+    const auto words =
+        philox4x32({dimension, static_cast<std::uint32_t>(Stage::photons),
+                    static_cast<std::uint32_t>(path), static_cast<std::uint32_t>(path >> 32U)},
+                   {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32U)});
+    return {words[0] * 0x1p-32, words[1] * 0x1p-32, words[2] * 0x1p-32};
 }
 
 void PhotonChunk::add(std::uint64_t path, const Deposit& deposit) {
@@ -212,8 +226,12 @@ void PhotonChunk::add(std::uint64_t path, const Deposit& deposit) {
         sum - sum == 0 || (x.allFinite() && deposit.wi.allFinite() && is_finite(flux));
     if (!fine || !(flux.minCoeff() >= 0)) fail_not_finite(path, deposit);
     const DirectionCode wi = encode_direction(deposit.wi);
-    photons_.push_back(
-        {{x.x(), x.y(), x.z()}, encode_rgbe(flux * energy_per_flux_), wi.theta, wi.phi, 0});
+    const Vec3& n = deposit.geometric_normal;
+    photons_.push_back({{x.x(), x.y(), x.z()},
+                        encode_rgbe(flux * energy_per_flux_, chance(path)),
+                        wi.theta,
+                        wi.phi,
+                        facing_flags({n.x(), n.y(), n.z()})});
 }
 
 void give_up(const LightPathCounts& counts, std::uint64_t wanted) {

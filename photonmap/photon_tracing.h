@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/caustic_estimator.h"
@@ -24,10 +26,13 @@ struct PhotonTarget {
 /// What a run of consecutive paths brought.
 class PhotonChunk {
 public:
-    /// Photons' energies are flux x `energy_per_flux`.
-    explicit PhotonChunk(const Spectrum& energy_per_flux) : energy_per_flux_(energy_per_flux) {}
+    /// Photons' energies are flux x `energy_per_flux`, rounded at random (encode_rgbe) by the far end
+    /// of the path's own random numbers.
+    PhotonChunk(const Spectrum& energy_per_flux, std::uint64_t seed)
+        : energy_per_flux_(energy_per_flux), seed_(seed) {}
 
-    /// Stores a deposit. Throws std::runtime_error naming the path when it is not finite.
+    /// Stores a deposit; those of a path follow each other. Throws std::runtime_error naming the
+    /// path when it is not finite.
     void add(std::uint64_t path, const Deposit& deposit);
     void clear();
     std::span<const Photon> photons() const { return photons_; }
@@ -36,7 +41,12 @@ public:
     std::vector<Deposit> deposits;  ///< scratch of a path tracer
 
 private:
+    std::array<double, 3> chance(std::uint64_t path);
+
     Spectrum energy_per_flux_;
+    std::uint64_t seed_;
+    std::optional<std::uint64_t> last_path_;
+    std::uint32_t deposits_of_path_ = 0;
     std::vector<Photon> photons_;
 };
 

@@ -26,7 +26,8 @@ struct GatherLimits {
 };
 
 /// The photons of a map, ordered. Every tree gives the same answers on every instruction set: of
-/// the photons that did not come from behind the point's geometric normal, the N nearest
+/// the photons that did not come from behind the point's geometric normal, and did not land on a
+/// surface that faces elsewhere (is_same_surface), the N nearest
 /// (distances in float, rounded step by step, equal distances included up to the limit). Of photons
 /// at the N-th distance those with the smaller (energy, direction) codes are taken, so that which
 /// photons are found does not depend on their order either.

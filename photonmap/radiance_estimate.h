@@ -35,7 +35,8 @@ struct EstimateScratch {
 /// so neither does the outermost one, for `raw` as for `unbiased`, and the mean stays what it is
 /// for `unbiased`.
 ///
-/// Photons that came from behind the point's geometric normal do not count. Photons carry flux,
+/// Photons that came from behind the point's geometric normal do not count, and neither do those of
+/// surfaces that face elsewhere: the floor's at the foot of a wall (same_surface.h). Photons carry flux,
 /// so density is per area of the geometric surface, and f_r is taken about the shading normal.
 /// A photon that grazes within the direction code's error may be taken for the other side.
 class RadianceEstimate {

@@ -21,6 +21,12 @@ struct Rgbe {
 /// are negative, not finite, or too large (2^126 and more).
 Rgbe encode_rgbe(const Spectrum& value);
 
+/// Rounds each channel up or down at random such that the mean of the codes is the value, however
+/// weak a channel is beside the largest: up where `chance`, uniform in [0, 1), is below what a
+/// mantissa has beyond a whole number. A mantissa that is whole but for float's rounding needs no
+/// chance. Exact to 1e-6 of the value and to the finest step of `chance`; else as above.
+Rgbe encode_rgbe(const Spectrum& value, const std::array<double, 3>& chance);
+
 Spectrum decode_rgbe(const Rgbe& code);
 
 }  // namespace caustics

@@ -262,7 +262,7 @@ private:
         const ScenePaths tracer(scene_, emission_, pilot_settings);
         Pilot pilot{plan.emitted, {}};
         parallel_for(options_.threads, pilot_parts, [&](std::size_t part, std::size_t) {
-            PhotonChunk chunk(Spectrum::Ones() / emission_.total_power().maxCoeff());
+            PhotonChunk chunk(Spectrum::Ones() / emission_.total_power().maxCoeff(), options_.seed);
             tracer.trace(part * plan.emitted, (part + 1) * plan.emitted, chunk);
             pilot.parts[part] = chunk.counts;
         });

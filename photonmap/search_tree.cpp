@@ -61,7 +61,8 @@ void SearchTree::answer(Batch& batch, std::size_t i) const {
     const Vec3& x = batch.points[i].position;
     const Vec3& normal = batch.points[i].geometric_normal;
     const Candidates& found = scratch.found.candidates();
-    const CopiedPhotons copied = scratch.copies.copied(limits.positions);
+    const bool certain = directions_.all_count(normal);
+    const CopiedPhotons copied = scratch.copies.copied(limits.positions, !certain);
     const auto find_all = [&](const SideTest* side) {
         NearestQuery query = batch.query_at(x);
         query.max_squared_distance =
@@ -70,14 +71,14 @@ void SearchTree::answer(Batch& batch, std::size_t i) const {
         find(query, scratch);
         copy_out(found, copied);
     };
-    if (directions_.all_in_front(normal)) {
+    if (certain) {
         find_all(nullptr);
     } else {
-        // Where none of the nearest lies behind, they need no test one by one.
+        // Where all of the nearest count, they need no test one by one.
         const SideTest side = side_test(normal);
-        if (!bound.met_behind()) find_all(nullptr);
-        if (bound.met_behind() || !all_in_front(side, {copied.direction, found.count})) {
-            bound.meet_behind();
+        if (!bound.met_foreign()) find_all(nullptr);
+        if (bound.met_foreign() || !all_count(side, copied, found.count)) {
+            bound.meet_foreign();
             find_all(&side);
         }
     }

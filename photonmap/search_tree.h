@@ -29,6 +29,7 @@ inline void copy_code(const Photon& photon, std::uint32_t& energy, std::uint16_t
 /// Copies a photon to place i.
 inline void copy_photon(const Photon& photon, std::size_t i, const CopiedPhotons& to) {
     copy_code(photon, to.energy[i], to.direction[i]);
+    if (to.flags != nullptr) to.flags[i] = photon.flags;
     if (to.position[0] == nullptr) return;
     for (std::size_t axis = 0; axis < 3; ++axis) to.position[axis][i] = photon.position[axis];
 }

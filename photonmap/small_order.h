@@ -187,9 +187,10 @@ private:
         const Columns& columns = scratch_.columns[from];
         unsigned char* const to = photons_ + 20 * i;
         for (unsigned a = 0; a < 3; ++a) memcpy(to + 4 * a, &columns.position[a][i], 4);
-        memcpy(to + 12, &scratch_.payload[columns.source[i]], 6);
-        const auto flags = static_cast<uint16_t>(axis);
-        memcpy(to + 18, &flags, sizeof flags);
+        const uint64_t payload = scratch_.payload[columns.source[i]];
+        // The axis takes the lowest two bits of the flags, the last two bytes.
+        const uint64_t with_axis = (payload & ~(uint64_t{3} << 48U)) | uint64_t{axis} << 48U;
+        memcpy(to + 12, &with_axis, sizeof with_axis);
     }
 
     void fill(unsigned from, size_t begin, size_t count, uint64_t node, uint64_t leaves) {

@@ -5,6 +5,7 @@
 
 #include "photonmap/count_choice.h"
 #include "photonmap/direction_tables.h"
+#include "photonmap/facing_code.h"
 
 namespace caustics {
 
@@ -23,7 +24,8 @@ struct Candidates {
     size_t capacity = 0;
 };
 
-/// Which photons count: those whose direction of arrival lies on the normal's side.
+/// Which photons count: those whose direction of arrival lies on the normal's side, and which landed
+/// on a surface that may be the normal's.
 struct SideTest {
     const DirectionTables* tables;
     float normal[3];
@@ -36,6 +38,10 @@ static inline bool on_front_side(const SideTest& side, unsigned theta, unsigned 
     const SineCosine p = side.tables->phi[phi];
     const float rest = t.sine * p.sine * side.normal[1] + t.cosine * side.normal[2];
     return t.sine * p.cosine * side.normal[0] + rest > 0;
+}
+
+static inline bool counts_at(const SideTest& side, unsigned theta, unsigned phi, unsigned flags) {
+    return on_front_side(side, theta, phi) && is_same_surface(flags, side.normal);
 }
 
 /// Leaves, of candidates at equal largest distance, as many as make `nearest` in all.
@@ -90,6 +96,7 @@ struct CopiedPhotons {
     uint32_t* energy;
     uint16_t* direction;
     float* position[3];  ///< null where positions are not wanted
+    uint16_t* flags;     ///< null where they are not wanted; find_in_columns copies none
 };
 
 struct Farthest {

@@ -79,7 +79,7 @@ void UnbalancedKdTree::insert(std::uint32_t number) {
             at = child;
         }
     }
-    photon.flags = static_cast<std::uint16_t>(axis);
+    set_axis(photon, axis);
     depth_ = std::max(depth_, level);
 }
 

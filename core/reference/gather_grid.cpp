@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/same_surface.h"
+
 namespace caustics {
 
 GatherGrid::GatherGrid(std::span<const ReceiverPoint> points, std::span<const float> radii)
@@ -31,12 +33,14 @@ std::uint64_t GatherGrid::key(const Cell& cell) {
     return part(cell.x()) | part(cell.y()) << 21U | part(cell.z()) << 42U;
 }
 
-bool GatherGrid::contains(std::uint32_t index, const Vec3& position, const Vec3& wi) const {
+bool GatherGrid::contains(std::uint32_t index, const Deposit& deposit) const {
     const ReceiverPoint& p = points_[index];
-    const Vec3 offset = position - p.position;
+    const Vec3 offset = deposit.position - p.position;
     const float height = p.geometric_normal.dot(offset);
     const float radius = radii_[index];
-    return wi.dot(p.geometric_normal) > 0 && std::abs(height) <= radius &&
+    return deposit.wi.dot(p.geometric_normal) > 0 &&
+           deposit.geometric_normal.dot(p.geometric_normal) > same_surface_cosine &&
+           std::abs(height) <= radius &&
            (offset - height * p.geometric_normal).squaredNorm() <= radius * radius;
 }
 

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/caustic_estimator.h"
+#include "core/light_path.h"
 
 namespace caustics {
 
@@ -15,20 +15,21 @@ class GatherGrid {
 public:
     GatherGrid(std::span<const ReceiverPoint> points, std::span<const float> radii);
 
-    /// Calls found(index) for the discs that contain `position` and face `wi`, by index.
+    /// Calls found(index), by index, for the discs that contain the deposit's position, face the way
+    /// it came from, and lie on a surface that faces as the deposit's does (same_surface.h).
     template <typename Found>
-    void for_each_containing(const Vec3& position, const Vec3& wi, const Found& found) const {
-        const auto cell = cells_.find(key(cell_of(position)));
+    void for_each_containing(const Deposit& deposit, const Found& found) const {
+        const auto cell = cells_.find(key(cell_of(deposit.position)));
         if (cell == cells_.end()) return;
         for (const std::uint32_t i : cell->second)
-            if (contains(i, position, wi)) found(i);
+            if (contains(i, deposit)) found(i);
     }
 
 private:
     using Cell = Eigen::Vector3i;
     Cell cell_of(const Vec3& p) const;
     static std::uint64_t key(const Cell& cell);
-    bool contains(std::uint32_t index, const Vec3& position, const Vec3& wi) const;
+    bool contains(std::uint32_t index, const Deposit& deposit) const;
 
     std::span<const ReceiverPoint> points_;
     std::span<const float> radii_;

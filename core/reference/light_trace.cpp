@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/eye_medium.h"
+#include "core/optics.h"
 #include "core/reference/gather_grid.h"
 #include "core/reference/ordered_paths.h"
 
@@ -49,7 +51,8 @@ public:
           params_(params),
           options_(options),
           emission_(scene),
-          film_(scene.camera()) {}
+          film_(scene.camera()),
+          eye_absorption_(eye_medium(scene).absorption) {}
 
     std::optional<CameraLayer> camera_layer(const RunOptions& options) const override {
         const Camera& camera = scene_.camera();
@@ -122,7 +125,9 @@ private:
         const auto pixel =
             static_cast<std::size_t>(seen->y) * static_cast<std::size_t>(camera.width) +
             static_cast<std::size_t>(seen->x);
-        return Arrival{pixel, d.flux * scattering * static_cast<float>(weight)};
+        const Spectrum left =
+            segment_transmittance(nullptr, &eye_absorption_, static_cast<float>(seen->distance));
+        return Arrival{pixel, d.flux * scattering * static_cast<float>(weight) * left};
     }
 
     template <typename Value>
@@ -138,7 +143,7 @@ private:
         }
         const GatherGrid grid(points, radii);
         const auto collect = [&](const Deposit& d, std::vector<Arrival>& arrivals) {
-            grid.for_each_containing(d.position, d.wi, [&](std::size_t i) {
+            grid.for_each_containing(d, [&](std::size_t i) {
                 const float area = pi * radii[i] * radii[i];
                 arrivals.push_back({i, value(points[i], d) / area});
             });
@@ -154,6 +159,7 @@ private:
     RunOptions options_;
     AimedEmission emission_;
     FilmProjection film_;
+    Spectrum eye_absorption_;
 };
 
 }  // namespace

@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/aimed_emission.h"
+#include "photonmap/rgbe.h"
+#include "photonmap/scene_photons.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
 #include "tests/support/light_flux.h"
+#include "tests/support/statistics.h"
 
 namespace caustics {
 namespace {
@@ -120,6 +124,36 @@ TEST(Slab, BeersLawEachChannel) {
             const double a = std::exp(-static_cast<double>(absorption[c]) * path);
             EXPECT_NEAR(static_cast<double>(t[c]) / support::slab(r, a).transmitted, 1, 0.005)
                 << degrees << " degrees, channel " << c;
+        }
+    }
+}
+
+// What photons hold of a channel that the slab weakens to a share of 0.3 to 0.00012, against Beer's
+// law; all fluxes of one order of reflection are alike, so that rounding to the nearest code would err on
+// all of them alike.
+TEST(Slab, PhotonsKeepBeersLawInWeakChannels) {
+    const double r = support::fresnel(1, 1.5);
+    for (const Spectrum& share :
+         {Spectrum(1, 0.0025F, 0.00012F), Spectrum(0.3F, 0.001F, 0.0039F)}) {
+        SceneDesc desc = single_slab(1.5F, -share.log() / static_cast<float>(thickness));
+        desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+        const TracedPhotons traced =
+            trace_scene(Scene(std::move(desc)), PhotonMapParams{.photons = 200'000}, RunOptions{});
+        std::array<support::Moments, 3> energy;
+        for (const Photon& photon : traced.store.photons()) {
+            const Spectrum held = decode_rgbe(photon.energy);
+            for (std::size_t c = 0; c < 3; ++c)
+                energy[c].add(static_cast<double>(held[static_cast<int>(c)]));
+        }
+        const auto expected = [&](int c) {
+            return support::slab(r, static_cast<double>(share[c])).transmitted;
+        };
+        for (std::size_t c = 1; c < 3; ++c) {
+            const double truth = expected(static_cast<int>(c)) / expected(0);
+            const double error = energy[c].standard_error() / energy[c].mean();
+            EXPECT_LT(error, 0.02);
+            EXPECT_NEAR(energy[c].mean() / energy[0].mean() / truth, 1, 4 * error + 0.002)
+                << share.transpose() << ", channel " << c;
         }
     }
 }

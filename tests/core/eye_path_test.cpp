@@ -30,7 +30,7 @@ support::Moments emitted(const Scene& scene, const Vec3& origin, const Vec3& dir
         const Vec3 aside(rng.next() - 0.5F, rng.next() - 0.5F, rng.next() - 0.5F);
         points.clear();
         const Ray ray{origin, (direction + spread * aside).normalized()};
-        const EyePath path = trace_eye_path(scene, ray, rng, points);
+        const EyePath path = trace_eye_path(scene, ray, black(), rng, points);
         EXPECT_TRUE(is_finite(path.emitted));
         moments.add(static_cast<double>(path.emitted[0]));
     }
@@ -74,7 +74,8 @@ TEST(EyePath, ASlabShowsTheReceiverBehindByItsTransmittance) {
     for (std::uint64_t i = 0; i < 20'000; ++i) {
         Rng rng(1, Stage::test, i);
         points.clear();
-        const EyePath path = trace_eye_path(scene, {Vec3(0, 0, 2), direction}, rng, points);
+        const EyePath path =
+            trace_eye_path(scene, {Vec3(0, 0, 2), direction}, black(), rng, points);
         EXPECT_TRUE(path.first.caster);
         EXPECT_NEAR(path.first.depth, std::sqrt(2.0F), 1e-5F);
         double sum = 0;
@@ -95,7 +96,8 @@ TEST(EyePath, FindsTheFirstHitAndNothingInTheVoid) {
     const Scene scene(std::move(desc));
     Rng rng(1, Stage::test, 0);
     std::vector<WeightedPoint> points;
-    const EyePath seen = trace_eye_path(scene, {Vec3(0, 0, 2), -Vec3::UnitZ()}, rng, points);
+    const EyePath seen =
+        trace_eye_path(scene, {Vec3(0, 0, 2), -Vec3::UnitZ()}, black(), rng, points);
     EXPECT_FLOAT_EQ(seen.first.albedo[0], 0.25F);
     EXPECT_FLOAT_EQ(seen.first.depth, 2);
     EXPECT_EQ(seen.first.normal, Vec3(0, 0, 1));
@@ -104,11 +106,12 @@ TEST(EyePath, FindsTheFirstHitAndNothingInTheVoid) {
     EXPECT_TRUE((points[0].weight == 1).all());
 
     points.clear();
-    const EyePath empty = trace_eye_path(scene, {Vec3(0, 0, 2), Vec3::UnitZ()}, rng, points);
+    const EyePath empty =
+        trace_eye_path(scene, {Vec3(0, 0, 2), Vec3::UnitZ()}, black(), rng, points);
     EXPECT_EQ(empty.first.depth, 0);
     EXPECT_TRUE(is_black(empty.emitted) && points.empty());
     // From below the one-sided floor is black.
-    trace_eye_path(scene, {Vec3(0, 0, -2), Vec3::UnitZ()}, rng, points);
+    trace_eye_path(scene, {Vec3(0, 0, -2), Vec3::UnitZ()}, black(), rng, points);
     EXPECT_TRUE(points.empty());
 }
 
@@ -121,7 +124,7 @@ TEST(EyePath, AbsorbsAlongSegmentsAndEndsLongChains) {
     const Scene scene(std::move(desc));
     Rng rng(1, Stage::test, 0);
     std::vector<WeightedPoint> points;
-    trace_eye_path(scene, {Vec3(0, 0, 2), -Vec3::UnitZ()}, rng, points);
+    trace_eye_path(scene, {Vec3(0, 0, 2), -Vec3::UnitZ()}, black(), rng, points);
     ASSERT_EQ(points.size(), 1U);
     EXPECT_NEAR(points[0].weight[0], std::exp(-0.5F), 1e-5F);
 
@@ -131,7 +134,8 @@ TEST(EyePath, AbsorbsAlongSegmentsAndEndsLongChains) {
         return cavity;
     }());
     points.clear();
-    const EyePath lost = trace_eye_path(mirrors, {Vec3::Zero(), Vec3::UnitX()}, rng, points);
+    const EyePath lost =
+        trace_eye_path(mirrors, {Vec3::Zero(), Vec3::UnitX()}, black(), rng, points);
     EXPECT_TRUE(lost.first.caster && points.empty() && is_black(lost.emitted));
 }
 

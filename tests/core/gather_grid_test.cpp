@@ -21,13 +21,14 @@ Vec3 random_direction(Rng& rng) {
     return uniform_cap(2, u0, rng.next()).normalized();
 }
 
-// The definition: in the tangent plane within the radius, not farther from the plane than it.
-bool in_disc(const ReceiverPoint& p, float radius, const Vec3& x, const Vec3& wi) {
-    const Vec3 offset = x - p.position;
+// The definition: in the tangent plane within the radius, not farther from the plane than it, on a
+// surface that faces within 60 degrees of the disc's.
+bool in_disc(const ReceiverPoint& p, float radius, const Deposit& d) {
+    const Vec3 offset = d.position - p.position;
     const float height = p.geometric_normal.dot(offset);
     const float across2 = (offset - height * p.geometric_normal).squaredNorm();
-    return wi.dot(p.geometric_normal) > 0 && std::abs(height) <= radius &&
-           across2 <= radius * radius;
+    return d.wi.dot(p.geometric_normal) > 0 && d.geometric_normal.dot(p.geometric_normal) > 0.5F &&
+           std::abs(height) <= radius && across2 <= radius * radius;
 }
 
 void expect_same_as_scan(const Vec3& centre, float smallest, float largest) {
@@ -44,14 +45,16 @@ void expect_same_as_scan(const Vec3& centre, float smallest, float largest) {
     for (int i = 0; i < 5000; ++i) {
         // Half of the tries near a point, where small discs are found too.
         const auto near = static_cast<std::size_t>(rng.next() * 300);
-        const Vec3 x = i % 2 == 0 ? Vec3(centre + random_vector(rng, 1.3F))
-                                  : Vec3(points[near].position + random_vector(rng, radii[near]));
-        const Vec3 wi = random_direction(rng);
+        Deposit d;
+        d.position = i % 2 == 0 ? Vec3(centre + random_vector(rng, 1.3F))
+                                : Vec3(points[near].position + random_vector(rng, radii[near]));
+        d.wi = random_direction(rng);
+        d.geometric_normal = i % 4 == 1 ? points[near].geometric_normal : random_direction(rng);
         std::vector<std::uint32_t> found, scanned;
-        grid.for_each_containing(x, wi, [&](std::uint32_t at) { found.push_back(at); });
+        grid.for_each_containing(d, [&](std::uint32_t at) { found.push_back(at); });
         for (std::uint32_t at = 0; at < points.size(); ++at)
-            if (in_disc(points[at], radii[at], x, wi)) scanned.push_back(at);
-        ASSERT_EQ(found, scanned) << x.transpose();
+            if (in_disc(points[at], radii[at], d)) scanned.push_back(at);
+        ASSERT_EQ(found, scanned) << d.position.transpose();
         found_in_all += found.size();
     }
     EXPECT_GT(found_in_all, 500U);
@@ -66,7 +69,7 @@ TEST(GatherGrid, FindsTheSameDiscsAsALinearScan) {
 
 TEST(GatherGrid, OfNoPointsFindsNothing) {
     const GatherGrid grid({}, {});
-    grid.for_each_containing(Vec3::Zero(), Vec3::UnitZ(), [](std::uint32_t) { FAIL(); });
+    grid.for_each_containing(Deposit(), [](std::uint32_t) { FAIL(); });
 }
 
 }  // namespace

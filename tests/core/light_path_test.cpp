@@ -9,6 +9,7 @@
 #include "core/aimed_emission.h"
 #include "core/sampling.h"
 #include "core/tessellate.h"
+#include "core/vertex_normals.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 
@@ -305,6 +306,37 @@ TEST(LightPath, RouletteKeepsTheMeanOfEveryChannel) {
     EXPECT_NEAR(flux[1].mean(), 0.8, 4 * flux[1].standard_error());
     EXPECT_EQ(flux[2].mean(), 0);
     EXPECT_EQ(counts.absorbed + counts.stored, paths);
+}
+
+// A cube of glass whose smooth normals run over its edges, and the same shaded flat.
+TEST(LightPath, CountsWhatSmoothNormalsMisdirect) {
+    for (const bool smooth : {true, false}) {
+        TriangleMesh cube = tessellate_cube(2);
+        cube.normals.clear();
+        if (smooth) complete_normals(cube);
+        SceneDesc desc;
+        desc.shapes = {support::mesh("cube", cube, Transform::Identity(), support::glass(1.5F)),
+                       support::enclosure(10, support::diffuse(0.5F))};
+        desc.point_lights = {support::point_light({0, 0.3, 4}, 1)};
+        const Scene scene(std::move(desc));
+        LightPathCounts by_chance, branches;
+        std::vector<Deposit> deposits;
+        send(AimedEmission(scene), [&](const LightParticle& particle, Rng& rng) {
+            trace_light_path(scene, particle, {100}, rng, by_chance);
+            trace_split_path(scene, particle, {100, Interaction::split}, rng, branches, deposits);
+        });
+        EXPECT_GT(by_chance.refracted, 1'000U);
+        for (const LightPathCounts& counts : {by_chance, branches}) {
+            Counters named;
+            counts.add_to(named);
+            EXPECT_EQ(named.at("photons_misdirected"), counts.misdirected);
+            if (smooth)
+                EXPECT_GT(counts.misdirected, by_chance.stored / 50);
+            else
+                EXPECT_EQ(counts.misdirected, 0U);
+        }
+        EXPECT_EQ(by_chance.absorbed, 0U) << "nothing here absorbs";
+    }
 }
 
 TEST(LightPath, BlackParticlesAndDeepChainsEnd) {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/rng.h"
 #include "core/tessellate.h"
+#include "core/vertex_normals.h"
 #include "experiments/methods.h"
 #include "tests/support/build_scene.h"
 
@@ -63,6 +65,53 @@ SceneDesc panes() {
     }
     desc.point_lights = {support::point_light({0, 0, 3}, 1)};
     return desc;
+}
+
+bool any_holds(const std::vector<std::string>& notes, const std::vector<std::string>& words) {
+    return std::ranges::any_of(notes, [&](const std::string& note) {
+        return std::ranges::all_of(
+            words, [&](const std::string& word) { return note.find(word) != std::string::npos; });
+    });
+}
+
+TEST(Notes, NameTheShapeWhoseSmoothNormalsLoseLight) {
+    TriangleMesh cube = tessellate_cube(2);
+    cube.normals.clear();
+    SceneDesc desc = flat_mirror();
+    desc.point_lights = {support::point_light({0, 0.3, 4}, 1)};
+    desc.shapes[0] = support::mesh("crystal", cube, Transform(Eigen::Translation3d(0, 0, 2)),
+                                   support::glass(1.5F));
+    const std::vector<std::string> photons = {"photons=2000"};
+    EXPECT_EQ(notes_of(desc, "photonmap", photons), std::vector<std::string>{});
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    complete_normals(cube);
+    desc.shapes[0] = support::mesh("crystal", cube, Transform(Eigen::Translation3d(0, 0, 2)),
+                                   support::glass(1.5F));
+    EXPECT_TRUE(
+        any_holds(notes_of(desc, "photonmap", photons),
+                  {"% of the light paths", "crystal, by up to 55 degrees", "face_normals"}));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"crystal, by up to 55", "face_normals: true"}));
+}
+
+TEST(Notes, NameAChannelThatIsTooWeakToBeStoredWhole) {
+    SceneDesc desc = flat_mirror();
+    desc.shapes[0].bsdf = support::mirror();
+    auto& mirror = std::get<Conductor>(desc.shapes[0].bsdf.model);
+    const std::vector<std::string> photons = {"photons=2000"};
+    mirror.specular_reflectance = Spectrum(1, 0.1F, 0);
+    EXPECT_EQ(notes_of(desc, "photonmap", photons), std::vector<std::string>{});
+    mirror.specular_reflectance = Spectrum(1, 0.1F, 0.002F);
+    EXPECT_TRUE(any_holds(notes_of(desc, "photonmap", photons), {"100 %", "weakest channel"}));
+}
+
+TEST(Notes, SayWhereTheEyesMediumCannotBeTold) {
+    SceneDesc desc = flat_mirror();
+    const Spectrum ink = Spectrum::Constant(0.5F);
+    desc.shapes[0] = support::horizontal("water", 1, 1, true, support::glass(1.33F, 1, ink));
+    desc.camera = support::camera({0, 0, 0.5}, {0, 0.1, 0}, {0, 0, 1}, 60, 4, 4);
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    desc.shapes.push_back(support::sphere("ball", {0.5, 0, 0.3}, 0.2, support::glass(1.5F)));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"eye", "ext_absorption"}));
 }
 
 TEST(Notes, NameTheLightThatBeamsLose) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/whole_file.h"
 #include "photon_sets.h"
 #include "tests/support/temporary_folder.h"
@@ -26,6 +27,7 @@ TracedPhotons traced(std::size_t count) {
                       .missed = 7,
                       .escaped = 6,
                       .absorbed = 5,
+                      .misdirected = 13,
                       .on_black_side = 12,
                       .depth_limited = 4,
                       .stored = count,
@@ -145,6 +147,38 @@ TEST_F(PhotonMapFile, RefusesPhotonsThatAreNoLightThoughTheChecksumFits) {
     EXPECT_NE(bright.find("the flux of photon 1 is not finite"), std::string::npos) << bright;
 }
 
+/// The same content as version 2 had it: 12 counts, and photons whose surfaces are not known.
+std::string as_version_2(std::string text) {
+    const std::size_t numbers = std::string_view("causticbench photon map\n").size() + 8;
+    text[numbers - 8] = 2;
+    std::uint32_t length = 0;
+    std::memcpy(&length, text.data() + numbers - 4, sizeof length);
+    length -= 8;
+    std::memcpy(text.data() + numbers - 4, &length, sizeof length);
+    text.erase(numbers + 2 * 8 + 3 * 4 + 12 * 8, 8);
+    text.resize(text.size() - 8);
+    const std::uint64_t hash = fnv1a(text);
+    text.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+    return text;
+}
+
+TEST_F(PhotonMapFile, OfTheVersionBeforeIsRead) {
+    save(100);
+    const SavedPhotons now = load_photon_map(file_);
+    EXPECT_EQ(now.version, 3U);
+    EXPECT_EQ(now.photons.counts.misdirected, 13U);
+    write_whole_file(file_, as_version_2(content(file_)));
+    const SavedPhotons before = load_photon_map(file_);
+    EXPECT_EQ(before.version, 2U);
+    EXPECT_EQ(before.photons.counts.misdirected, 0U);
+    EXPECT_EQ(before.photons.counts.dropped, now.photons.counts.dropped);
+    EXPECT_TRUE((before.photons.flux_unit == now.photons.flux_unit).all());
+    EXPECT_EQ(before.origin.command, now.origin.command);
+    EXPECT_EQ(std::memcmp(before.photons.store.photons().data(), now.photons.store.photons().data(),
+                          now.photons.store.bytes()),
+              0);
+}
+
 TEST_F(PhotonMapFile, NamesWhatIsWrong) {
     write_whole_file(file_, "a picture, say, and a long one at that");
     EXPECT_FALSE(is_photon_map(file_));
@@ -154,7 +188,8 @@ TEST_F(PhotonMapFile, NamesWhatIsWrong) {
     std::string text = content(file_);
     text[24] = 1;
     write_whole_file(file_, text);
-    EXPECT_NE(refusal(file_).find("version 1 (known: 2)"), std::string::npos) << refusal(file_);
+    EXPECT_NE(refusal(file_).find("version 1 (known: 2 to 3)"), std::string::npos)
+        << refusal(file_);
     save(3);
     text = content(file_);
     write_whole_file(file_, std::string_view(text).substr(0, text.size() - 30));

@@ -89,6 +89,13 @@ inline Found found(const Photon& photon, const Vec3& point) {
     return f;
 }
 
+/// Whether the photon's surface is not known, or faces within 60 degrees of the normal.
+inline bool may_be_on(const Photon& photon, const Vec3& normal) {
+    if ((photon.flags & facing_mask) == 0) return true;
+    const Facing at = facing_of(photon.flags);
+    return Vec3d(at.x, at.y, at.z).normalized().dot(normal.cast<double>()) > 0.5;
+}
+
 /// The answer at a point by looking at all photons, nearest first.
 inline std::vector<Found> linear_scan(std::span<const Photon> photons, const ReceiverPoint& point,
                                       const GatherLimits& limits) {
@@ -96,7 +103,8 @@ inline std::vector<Found> linear_scan(std::span<const Photon> photons, const Rec
     for (const Photon& photon : photons) {
         const Found f = found(photon, point.position);
         if (f.squared_distance <= limits.max_radius * limits.max_radius &&
-            incoming(photon).dot(point.geometric_normal) > 0)
+            incoming(photon).dot(point.geometric_normal) > 0 &&
+            may_be_on(photon, point.geometric_normal))
             all.push_back(f);
     }
     std::ranges::sort(all);

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "photon_sets.h"
+#include "photonmap/balanced_kd_tree.h"
 
 namespace caustics {
 namespace {
@@ -153,6 +154,42 @@ TEST(PhotonTree, NeedsNoSideTestWhereAllPhotonsComeFromAbove) {
             expect_same_as_scan(set.photons, trees, 20, normal, 18);
             if (testing::Test::HasFatalFailure()) return;
         }
+    }
+}
+
+TEST(PhotonTree, LeavesOutPhotonsOfSurfacesThatFaceElsewhere) {
+    const Vec3 normals[] = {{0, 0, 1}, {0.6F, 0, 0.8F}, {1, 0, 0}, {0, -1, 0}};
+    for (auto& set : photon_sets(2'000, 23)) {
+        for (std::size_t i = 0; i < set.photons.size(); ++i) {
+            const Vec3& n = normals[i / 7 % 4];
+            set.photons[i].flags = facing_flags({n.x(), n.y(), n.z()});
+            set.photons[i].theta /= 3;
+        }
+        const auto trees = all_trees(set.photons);
+        for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0.6F, 0.8F), Vec3(-1, 0, 0)}) {
+            SCOPED_TRACE(set.name);
+            expect_same_as_scan(set.photons, trees, 20, normal, 24);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(PhotonTree, KeepsWhereSurfacesFace) {
+    for (auto& set : photon_sets(5'000, 25)) {
+        Rng rng(26, Stage::test, 0);
+        for (Photon& photon : set.photons)
+            photon.flags = static_cast<std::uint16_t>(rng.next_word() & facing_mask);
+        balance(set.photons);
+        std::vector<unsigned> kept, given;
+        Rng again(26, Stage::test, 0);
+        for (const Photon& photon : set.photons) {
+            ASSERT_LE(photon.flags & ~facing_mask, 2U);
+            kept.push_back(photon.flags & facing_mask);
+            given.push_back(again.next_word() & facing_mask);
+        }
+        std::ranges::sort(kept);
+        std::ranges::sort(given);
+        EXPECT_EQ(kept, given) << set.name;
     }
 }
 

@@ -52,6 +52,36 @@ TEST(Rgbe, CarriesIntoTheNextExponentWhenRoundingUp) {
     EXPECT_TRUE((decode_rgbe(encode_rgbe(value)) == Spectrum::Ones()).all());
 }
 
+TEST(Rgbe, RoundedAtRandomKeepsTheMeanOfEveryChannel) {
+    constexpr int draws = 200'000;
+    for (const Spectrum& value :
+         {Spectrum(1, 0.0025F, 0.00012F), Spectrum(0.6021F, 0.1234F, 0.6F),
+          Spectrum(3e-7F, 255.49F / 256, 255.01F / 256), Spectrum(1e-30F, 2e-33F, 0)}) {
+        Rng rng(5, Stage::test, 0);
+        SpectrumSum sum = SpectrumSum::Zero(), squares = SpectrumSum::Zero();
+        for (int i = 0; i < draws; ++i) {
+            const double a = rng.next_fine(), b = rng.next_fine(), c = rng.next_fine();
+            const SpectrumSum got = decode_rgbe(encode_rgbe(value, {a, b, c})).cast<double>();
+            sum += got;
+            squares += got.square();
+        }
+        const SpectrumSum mean = sum / draws, truth = value.cast<double>();
+        const SpectrumSum error = ((squares / draws - mean.square()).max(0) / draws).sqrt();
+        for (int c = 0; c < 3; ++c)
+            EXPECT_LE(std::abs(mean[c] - truth[c]), 4 * error[c] + 2e-6 * truth[c])
+                << value.transpose() << ", channel " << c;
+    }
+}
+
+TEST(Rgbe, WholeMantissasNeedNoChance) {
+    const float typical = 255.0F / 256;
+    const float above = std::nextafter(std::nextafter(typical, 1.0F), 1.0F);
+    for (const float value : {typical, std::nextafter(typical, 0.0F), above, 3.0F / 256, 64.0F})
+        for (const double chance : {0.0, 0.5, 1 - 0x1p-32})
+            EXPECT_EQ(encode_rgbe(Spectrum(value, 0, value), {chance, chance, chance}),
+                      encode_rgbe(Spectrum(value, 0, value)));
+}
+
 TEST(Rgbe, LosesWhatIsBelowItsRangeAndRefusesTheRest) {
     EXPECT_EQ(encode_rgbe(Spectrum::Constant(1e-40F)), Rgbe{});
     EXPECT_THROW(encode_rgbe(Spectrum::Constant(2e38F)), std::range_error);
