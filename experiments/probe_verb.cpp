@@ -7,6 +7,7 @@
 #include "experiments/files.h"
 #include "experiments/probe.h"
 #include "experiments/run.h"
+#include "experiments/run_progress.h"
 #include "experiments/verbs.h"
 
 namespace caustics {
@@ -21,6 +22,12 @@ struct ProbeOptions {
     std::string output = "-";
 };
 
+ProbeAnswers probe_shown(const Scene& scene, const Method& method, const ProbeList& list,
+                         RunOptions options) {
+    const RunProgress progress(options);
+    return probe(scene, method, list, options);
+}
+
 int probe_points(const ProbeOptions& options) {
     const bool to_file = options.output != "-";
     if (to_file) require_writable_place(options.output);
@@ -31,7 +38,7 @@ int probe_points(const ProbeOptions& options) {
     RunOptions run = options.run.options(1);
     run.origin = command("probe", {options.scene.file, options.scene.overrides(), method,
                                    options.run.seed, run.samples_per_pixel});
-    const ProbeAnswers answers = probe(scene, method, list, run);
+    const ProbeAnswers answers = probe_shown(scene, method, list, run);
     print_notes(answers.notes);
     const std::string table = probe_table(list, answers);
     if (to_file)

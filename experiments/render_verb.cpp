@@ -11,6 +11,7 @@
 #include "experiments/number_option.h"
 #include "experiments/pictures.h"
 #include "experiments/run.h"
+#include "experiments/run_progress.h"
 #include "experiments/verbs.h"
 
 namespace caustics {
@@ -63,6 +64,13 @@ std::string told_counts(const Counters& counters) {
     return text;
 }
 
+RunResult run_shown(const Scene& scene, const RunRequest& request, const RunFlags& flags,
+                    Stopwatch& stopwatch) {
+    RunOptions options = flags.options(request.samples_per_pixel);
+    const RunProgress progress(options);
+    return run(scene, request, options, stopwatch);
+}
+
 int render_picture(const RenderOptions& options) {
     check_outputs(options.outputs);
     const SceneFile file = options.scene.load();
@@ -70,8 +78,7 @@ int render_picture(const RenderOptions& options) {
                              options.run.seed, samples_per_pixel(file.desc.sampling, options.spp)};
     const Scene scene(file.desc);
     Stopwatch stopwatch;
-    RunResult result =
-        run(scene, request, options.run.options(request.samples_per_pixel), stopwatch);
+    RunResult result = run_shown(scene, request, options.run, stopwatch);
 
     for (const auto& layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
     write_stderr(told_counts(result.counters) + "\n");

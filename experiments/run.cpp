@@ -66,11 +66,12 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
     options.samples_per_pixel = request.samples_per_pixel;
     options.origin = command("render", request);
     std::string stage;
+    const auto on_phase = options.begin_phase;
     const auto begin_stage = [&](const char* name) {
         stage = name;
         stopwatch.begin(stage);
+        if (on_phase) on_phase(stage);
     };
-    const auto on_phase = options.begin_phase;
     options.begin_phase = [&](std::string_view phase) {
         stopwatch.begin(fmt::format("{}/{}", stage, phase));
         if (on_phase) on_phase(phase);

@@ -43,7 +43,8 @@ struct RunResult {
 };
 
 /// Builds the method and renders, cutting the time into "precompute", "precompute/PHASE", "render"
-/// and "render/PHASE" by the phases the method names. `options` brings threads and progress.
+/// and "render/PHASE" by the phases the method names. `options` brings threads and progress, and
+/// hears of both stages and of the phases.
 RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
               Stopwatch& stopwatch);
 

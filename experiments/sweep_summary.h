@@ -11,7 +11,7 @@
 
 namespace caustics {
 
-/// What the table of a sweep has to say in five lines, gathered one row at a time.
+/// What the table of a sweep has to say in some lines, gathered one row at a time.
 class SweepSummary {
 public:
     /// `swept`: the columns by which trials are told apart.
@@ -19,7 +19,7 @@ public:
 
     void add(const TableRow& row);
 
-    /// The five lines; `ran` of the `planned` trials ran now, in so many seconds.
+    /// The lines; `ran` of the `planned` trials ran now, in so many seconds.
     std::string text(std::size_t planned, std::size_t ran, double seconds) const;
 
 private:
@@ -29,17 +29,26 @@ private:
         void take_in(std::optional<double> value);
         std::string text() const;
     };
+    using Values = std::map<std::string, std::string>;  ///< of swept columns, where they apply
     struct Best {
         double rmse = std::numeric_limits<double>::infinity();
-        std::string words;  ///< "photonmap, nearest 50, photons 10000"
+        std::string method;
+        Values values;
     };
-    std::string words_of(const TableRow& row) const;
+    /// A scene as it was set, which is what has one reference: errors of two are not comparable.
+    struct Judged {
+        Best best;
+        Values common;  ///< what all its rows have in common
+    };
+    Values values_of(const TableRow& row) const;
+    std::string words(const Values& values) const;
     std::string statuses_text() const;
     std::string best_text() const;
+    std::string best_line(const std::string& scene, const Judged& judged) const;
 
     std::vector<std::string> swept_;
     std::map<std::string, std::size_t> statuses_;
-    std::map<std::string, Best> best_of_scene_;
+    std::map<std::string, std::map<std::string, Judged>> scenes_;  ///< by name, then reference
     Range energy_;
     Range seconds_;
     Range memory_;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "core/empty_caustic.h"
 #include "core/error.h"
@@ -16,6 +17,7 @@
 #include "experiments/methods.h"
 #include "experiments/metrics.h"
 #include "experiments/step_progress.h"
+#include "experiments/stopwatch.h"
 
 namespace caustics {
 
@@ -140,7 +142,8 @@ public:
         progress.end("done");
         for (const std::string& name : methods_) {
             progress.begin(name + " by threads");
-            check_threads(name);
+            check_threads(name, progress);
+            progress.expect_later(Eta(comparing(served_).seconds, true));
             progress.end("done");
         }
         compare(progress);
@@ -194,28 +197,59 @@ private:
                 : "not straight: " + why_unseen(survey));
     }
 
-    void check_threads(const std::string& name) {
+    /// A picture, while the progress of its step stays up to date.
+    Film picture_of(const Method& method, RunOptions options, std::uint64_t seed,
+                    StepProgress& progress, double share) const {
+        options.progress = [&](double) { progress.share(share); };
+        return picture(scene_, method, options, seed);
+    }
+
+    void check_threads(const std::string& name, StepProgress& progress) {
         if (const auto reason = why_unsupported(scene_, with_effort(name))) {
             add("threads: " + name, Verdict::told, "cannot serve the scene: " + *reason);
             return;
         }
         RunOptions options = options_;
         options.threads = 1;
-        const Film alone = picture(scene_, with_effort(name), options, 1);
+        const Stopwatch watch;
+        const Film alone = picture_of(with_effort(name), options, 1, progress, 0);
+        seconds_of_picture_[name] = watch.total().wall;
         bool same = true;
         for (options.threads = 2; options.threads <= std::max(2, options_.threads);
-             options.threads = std::max(options.threads + 1, options_.threads))
-            same = same && same_bits(alone, picture(scene_, with_effort(name), options, 1));
+             options.threads = std::max(options.threads + 1, options_.threads)) {
+            const Stopwatch again;
+            const Film other = picture_of(with_effort(name), options, 1, progress, 0.5);
+            if (options_.threads > 1) seconds_of_picture_[name] = again.total().wall;
+            same = same && same_bits(alone, other);
+        }
         add("threads: " + name, verdict(same),
             same ? "the same picture with one and more" : "pictures with one and more differ");
         served_.push_back(name);
     }
 
-    std::vector<Film> films_of(const std::string& name, bool more = false) const {
+    std::vector<Film> films_of(const std::string& name, bool more, StepProgress& progress) const {
         std::vector<Film> films;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed)
-            films.push_back(picture(scene_, with_effort(name, more), options_, seed));
+            films.push_back(picture_of(with_effort(name, more), options_, seed, progress,
+                                       static_cast<double>(seed - 1) / seeds));
         return films;
+    }
+
+    /// Seconds that the pictures of a method's first effort take, as far as one was timed.
+    std::optional<double> seconds_of(const std::string& method) const {
+        const auto found = seconds_of_picture_.find(method);
+        if (found == seconds_of_picture_.end()) return {};
+        return seeds * found->second;
+    }
+
+    /// What comparing these methods takes, at least: which will want more effort, nothing tells.
+    Eta comparing(std::span<const std::string> methods) const {
+        Eta eta(0);
+        for (const std::string& name : methods) {
+            eta.seconds += seconds_of(name).value_or(0);
+            eta.at_least = eta.at_least || !is_reference(name);
+        }
+        return eta;
     }
 
     void compare(StepProgress& progress) {
@@ -223,23 +257,25 @@ private:
         const bool has_area_lights_alone =
             !why_unsupported(scene_, with_effort("pathtrace")).has_value();
         const std::string reference = has_area_lights_alone ? "pathtrace" : "lighttrace";
-        progress.begin("reference");
-        const std::vector<Film> truth = films_of(reference);
+        std::erase(served_, reference);
+        progress.expect_later(comparing(served_));
+        progress.begin("reference", seconds_of(reference));
+        const std::vector<Film> truth = films_of(reference, false, progress);
         progress.end("done");
         const PixelMask counted = reached_pixels(truth.front(), truth.front());
         add("reference", Verdict::told,
             fmt::format("{}, {} seeds, {:.0f} % of the pixels reached", reference, seeds,
                         100 * fraction(counted)));
-        for (const std::string& name : served_) {
-            if (name == reference) continue;
-            progress.begin(name);
-            compare(name, truth);
+        for (std::size_t i = 0; i < served_.size(); ++i) {
+            progress.expect_later(comparing(std::span(served_).subspan(i + 1)));
+            progress.begin(served_[i], seconds_of(served_[i]));
+            compare(served_[i], truth, progress);
             progress.end("done");
         }
     }
 
-    void compare(const std::string& name, const std::vector<Film>& truth) {
-        const std::vector<Film> films = films_of(name);
+    void compare(const std::string& name, const std::vector<Film>& truth, StepProgress& progress) {
+        const std::vector<Film> films = films_of(name, false, progress);
         const PixelMask counted = reached_pixels(films.front(), truth.front());
         const CellLight known = cell_light(truth, counted);
         const Gap first = gap(name, cell_light(films, counted), known);
@@ -247,7 +283,9 @@ private:
             add("against the reference: " + name, verdict(first.holds), first.text);
             return;
         }
-        const Gap second = gap(name, cell_light(films_of(name, true), counted), known);
+        progress.begin(name + " with more effort");
+        const std::vector<Film> better = films_of(name, true, progress);
+        const Gap second = gap(name, cell_light(better, counted), known);
         const bool shrinks = second.whole <= most_while_shrinking &&
                              1.3 * second.whole <= first.whole &&
                              second.cells_off <= first.cells_off;
@@ -289,6 +327,7 @@ private:
     RunOptions options_;
     std::vector<std::string> methods_;
     std::vector<std::string> served_;
+    std::map<std::string, double> seconds_of_picture_;  ///< with all threads
     SceneReport report_;
 };
 
