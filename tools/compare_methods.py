@@ -3,8 +3,8 @@
 method is best at equal time and at equal error, with ties where the seeds do not tell.
 
 Reads DIR/records.csv, writes statistics.csv, statistics.md, equal_time.md and equal_error.md. Wants five seeds; a cell
-of one seed has no interval, and with fewer than five no method is called the best. Times are CPU seconds of the whole trial without reading
-the scene, so compare records of one machine. The same records give the same bytes.
+of one seed has no interval, and with fewer than five no method is called the best. Times are CPU seconds of the whole
+trial without reading the scene, so compare records of one machine. The same records give the same bytes.
 Exit codes: 0 done, 2 bad input or usage.
 """
 import argparse
@@ -75,7 +75,7 @@ class Scored:
         return None if self.variance is None else self.square() - self.variance - self.reference_square
 
     def bias_square_error(self):
-        """Its standard error, by how the squares scatter from seed to seed; None for one seed."""
+        """The standard error of bias², by how the squares scatter from seed to seed; None for one seed."""
         if self.variance is None or len(self.errors) < 2:
             return None
         return statistics.stdev(error * error for error in self.errors) / math.sqrt(len(self.errors))
