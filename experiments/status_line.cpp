@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "experiments/files.h"
+
 namespace caustics {
 
 namespace {
@@ -35,13 +37,10 @@ StatusLine::StatusLine()
     : terminal_(isatty(fileno(stderr)) == 1),
       last_shown_(terminal_ ? 0 : Clock::now().time_since_epoch().count()) {}
 
-StatusLine::~StatusLine() {
-    clear();
-    std::fflush(stderr);
-}
+StatusLine::~StatusLine() { clear(); }
 
 void StatusLine::clear() const {
-    if (terminal_) std::fputs("\r\033[K", stderr);
+    if (terminal_) write_stderr("\r\033[K");
 }
 
 bool StatusLine::is_due() const {
@@ -54,16 +53,15 @@ void StatusLine::show(const std::string& line) {
     clear();
     // A character in the last column would make some terminals wrap.
     if (terminal_)
-        std::fputs(first_characters(line, terminal_columns() - 1).c_str(), stderr);
+        write_stderr(first_characters(line, terminal_columns() - 1));
     else
-        std::fputs((line + "\n").c_str(), stderr);
-    std::fflush(stderr);
+        write_stderr(line + "\n");
     last_shown_ = Clock::now().time_since_epoch().count();
 }
 
 void StatusLine::note(const std::string& line) {
     clear();
-    std::fputs((line + "\n").c_str(), stderr);
+    write_stderr(line + "\n");
 }
 
 }  // namespace caustics
