@@ -40,8 +40,9 @@ TEST(FacingCode, CountsWithinSixtyDegrees) {
         const double angle = degrees * pi_d / 180;
         const float normal[3] = {static_cast<float>(std::sin(angle)), 0,
                                  static_cast<float>(std::cos(angle))};
-        if (degrees != 60)
+        if (degrees != 60) {
             EXPECT_EQ(is_same_surface(facing_flags({0, 0, 1}), normal), degrees < 60) << degrees;
+        }
         EXPECT_TRUE(is_same_surface(3, normal)) << "a tree's axis alone says nothing";
     }
 }
