@@ -81,7 +81,7 @@ TEST(Corner, PhotonsOfTheFloorDoNotLightTheWall) {
     for (const TreeKind tree : {TreeKind::balanced, TreeKind::unbalanced, TreeKind::packed}) {
         SCOPED_TRACE(name(tree));
         const auto map =
-            build(scene, PhotonMapParams{.photons = 400'000, .tree = tree, .radius = radius},
+            build(scene, PhotonMapParams{.photons = 150'000, .tree = tree, .radius = radius},
                   RunOptions{});
         expect_no_light_round_the_corner(scene, truth, *map);
     }
@@ -90,7 +90,7 @@ TEST(Corner, PhotonsOfTheFloorDoNotLightTheWall) {
 TEST(Corner, PathsToTheFloorDoNotLightTheWall) {
     const Corner truth = corner();
     const Scene scene(truth.desc);
-    const auto paths = build(scene, LightTraceParams{.paths = 1'000'000}, RunOptions{});
+    const auto paths = build(scene, LightTraceParams{.paths = 500'000}, RunOptions{});
     expect_no_light_round_the_corner(scene, truth, *paths);
 }
 
@@ -106,11 +106,11 @@ TEST(Corner, ABallLosesNoPhotons) {
     const Scene scene(desc);
     for (const double r : {0.2, 0.5, 0.9}) {
         const auto map =
-            build(scene, PhotonMapParams{.photons = 400'000, .radius = r}, RunOptions{});
+            build(scene, PhotonMapParams{.photons = 200'000, .radius = r}, RunOptions{});
         const std::vector<ReceiverPoint> top = {
             support::probe(scene, 1, {0, 0, 1}, Vec3d::UnitZ(), 0)};
         const double expected = (1 - support::fresnel(1, index)) * (1 - r * r / 4);
-        const double photons = 400'000 * r * r * (1 - r * r / 4);
+        const double photons = 200'000 * r * r * (1 - r * r / 4);
         EXPECT_NEAR(static_cast<double>(support::irradiance(*map, top)[0].value[0]), expected,
                     expected * (4 / std::sqrt(photons) + 0.002))
             << r;
