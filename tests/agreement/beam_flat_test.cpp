@@ -219,14 +219,14 @@ TEST(BeamFlatPool, IsTheClosedForm) {
     }
 }
 
-// A lamp on the floor lights a mirror above: E = I H / |p - S'|^3 from its image S' at the height H. What
+// A lamp on the floor lights a mirror above: E = I 2H / |p - S'|^3 from its image S' at 2H. What
 // it lies on does not hide it.
 TEST(BeamFlat, LampOnTheFloor) {
-    constexpr double height = 2;
+    constexpr double above = 2;
     const Vec3d lamp(0.013, 0.021, 0);
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
-                   support::horizontal("mirror", height, 1.5, false, support::mirror())};
+                   support::horizontal("mirror", above, 1.5, false, support::mirror())};
     desc.point_lights = {support::point_light(lamp, static_cast<float>(intensity))};
     const Scene scene(std::move(desc));
     BeamTreeParams params;
@@ -234,8 +234,8 @@ TEST(BeamFlat, LampOnTheFloor) {
     const auto method = build(scene, params, RunOptions{});
     for (const double x : {-0.9, -0.2, 0.3, 1.1})
         expect_cell(scene, *method, {x, 0.4 * x, 0}, [&](const Vec3d& p) {
-            return intensity * 2 * height /
-                   std::pow((p - lamp).squaredNorm() + 4 * height * height, 1.5);
+            return intensity * 2 * above /
+                   std::pow((p - lamp).squaredNorm() + 4 * above * above, 1.5);
         });
 }
 

@@ -78,7 +78,7 @@ TEST(ReferenceTruths, LightTraceUnderAPool) {
     desc.point_lights = {support::point_light({0, 0, support::flat_pool::height},
                                               static_cast<float>(support::flat_pool::intensity))};
     expect_is(picture(std::move(desc), LightTraceParams{.paths = 1'200'000}, 1),
-              support::flat_pool::floor_irradiance);
+              [](double r) { return support::flat_pool::floor_irradiance(r); });
 }
 
 // A sky of radiance 1 all round: the floor sees it through the cone of total reflection, whose foot the

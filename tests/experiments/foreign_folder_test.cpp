@@ -140,8 +140,8 @@ std::vector<json> values_for(const json& value, std::size_t round) {
 }
 
 TEST_F(ForeignFolders, MayHoldAnyValueAnywhere) {
-    for (const std::string name :
-         {"plan.json", "environment.json", "trials/" + trial() + "/record.json"}) {
+    for (const std::string& name : std::vector<std::string>{"plan.json", "environment.json",
+                                                            "trials/" + trial() + "/record.json"}) {
         json file;
         std::size_t round = 0;
         check(name + " as it is",
