@@ -8,7 +8,7 @@ namespace caustics {
 
 /// Where the surface faces on which a photon landed, in the 13 bits of its flags between the tree's
 /// two and the highest: the unit octahedron's net [Meyer et al. 2010] in 89 x 89 points, so that the
-/// six axes are exact and others are off by 1.3 degrees at most. 0: not known.
+/// six axes are exact and others are off by 2.8 degrees at most. 0: not known.
 constexpr unsigned facing_shift = 2;
 constexpr unsigned facing_mask = 0x1FFFU << facing_shift;
 

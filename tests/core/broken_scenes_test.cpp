@@ -171,7 +171,7 @@ std::vector<Broken> broken_scenes() {
         {"nested_point", with(R"({"type": "disk", "a": {"type": "point"}})"), {"/it/a", "area"}},
         {"no_mesh",
          with(R"({"type": "ply", "filename": "absent.ply"})"),
-         {"/it/filename", "no file", "absent.ply"}},
+         {"/it/filename", "no such file", "absent.ply"}},
         {"broken_mesh",
          with(R"({"type": "ply", "filename": "broken.ply"})"),
          {"/it/filename", "broken.ply"}},

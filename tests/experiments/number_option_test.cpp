@@ -72,7 +72,7 @@ TEST(NumberOptions, RefuseAnEmptyText) {
 TEST(NumberOptions, AreTakenByOneMechanism) {
     for (const Option& option : options_with_values())
         for (const std::string type : {"INT", "UINT", "FLOAT"})
-            EXPECT_EQ(option.type.find(type), std::string::npos)
+            EXPECT_FALSE(option.type.starts_with(type))
                 << option.verb << " " << option.name << ": use add_number";
 }
 

@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <thread>
 
@@ -32,10 +34,16 @@ public:
     std::string text() {
         if (kept_ < 0) return {};
         std::fflush(stderr);
-        fcntl(master_, F_SETFL, O_NONBLOCK);
-        std::string all(65536, '\0');
-        const ssize_t count = read(master_, all.data(), all.size());
-        all.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+        // A terminal hands over what was written when the system finds time.
+        constexpr int patience = 300;  // [ms]
+        std::string all;
+        std::array<char, 4096> part;
+        pollfd waiting{master_, POLLIN, 0};
+        while (poll(&waiting, 1, patience) > 0) {
+            const ssize_t count = read(master_, part.data(), part.size());
+            if (count <= 0) break;
+            all.append(part.data(), static_cast<std::size_t>(count));
+        }
         dup2(kept_, STDERR_FILENO);
         close(kept_);
         close(master_);

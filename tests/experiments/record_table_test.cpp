@@ -209,7 +209,8 @@ TEST_F(RecordTables, VaryOverThePixelsThatAllPicturesReach) {
     add("x2", picture({2, 0, 9, 5}, {0, 0, 0, 0}));
     add("x3", picture({4, 6, 0, 5}, {0, 0.5F, 0, 0}));
     write();
-    EXPECT_EQ(variance_of_x(), "1.1666666666666667") << "7/3 of (1, 2, 4), and 0, by two pixels";
+    EXPECT_NEAR(std::stod(variance_of_x()), 7.0 / 6, 1e-12)
+        << "7/3 of (1, 2, 4), and 0, by two pixels";
 }
 
 TEST_F(RecordTables, VaryOverThePixelsThatTheReferenceReaches) {

@@ -159,7 +159,7 @@ TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
         {none + R"(, "version": 2)", "version"},
         {none + R"(, "repeats": 0)", "/repeats"},
         {none + R"(, "spq": 4)", "spq"},
-        {none + R"(, "repeats": 1000000000)", "makes 1e+09 trials, more than 1000000"},
+        {none + R"(, "repeats": 1000000000)", "makes 1000000000 trials, more than 1000000"},
         {R"("methods": [{"method": "photonmpa"}])", "/methods/0/method"},
         {R"("methods": [{"method": "photonmap", "param": {"photons": []}}])", "photons"},
         {R"("methods": [{"method": "photonmap", "param": {"photns": 5}}])", "photns"},

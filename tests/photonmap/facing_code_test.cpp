@@ -32,7 +32,9 @@ TEST(FacingCode, KeepsTheAxesExactlyAndOthersWithinItsStep) {
         ASSERT_EQ(flags & ~facing_mask, 0U);
         worst = std::min(worst, decoded(flags).dot(n.cast<double>().normalized()));
     }
-    EXPECT_LT(std::acos(worst) * 180 / pi_d, 1.3);
+    // Half a step of both coordinates, 1/88, moves (x, y, z) by up to sqrt(6)/88 where its length is
+    // least, 1/sqrt(3).
+    EXPECT_LT(std::acos(worst), std::sqrt(18.0) / 88);
 }
 
 TEST(FacingCode, CountsWithinSixtyDegrees) {

@@ -140,8 +140,8 @@ TEST(ScenePhotons, CountsAreExactAndEndsAddUp) {
             EXPECT_EQ(photons.store.size(), wanted);
             EXPECT_EQ(photons.counts.stored, wanted);
             const LightPathCounts& c = photons.counts;
-            EXPECT_EQ(c.missed + c.escaped + c.absorbed + c.on_black_side + c.depth_limited +
-                          c.stored + c.dropped,
+            EXPECT_EQ(c.missed + c.escaped + c.absorbed + c.misdirected + c.on_black_side +
+                          c.depth_limited + c.stored + c.dropped,
                       c.aimed + c.branched);
             EXPECT_EQ(c.branched > 0, mode.interaction == Interaction::split);
         }
@@ -193,7 +193,8 @@ TEST(ScenePhotons, DepthLimitsAreCounted) {
         p.max_bounces = 1;
         EXPECT_GT(trace(scene, p).counts.depth_limited, 1'000U);
         p.max_bounces = 1'000;
-        EXPECT_EQ(trace(scene, p).counts.depth_limited, 0U);
+        // But for a few that smooth normals on the bubble's facets hold inside by total reflection.
+        EXPECT_LE(trace(scene, p).counts.depth_limited, 10U);
     }
 }
 
