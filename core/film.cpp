@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <new>
-#include <new>
 #include <stdexcept>
 
 #include "core/error.h"

@@ -81,7 +81,6 @@ private:
     json defaults_;
 };
 
-
 /// From here on a smooth normal is a guess over a hard edge.
 constexpr double hard_bend = 30 * pi_d / 180;
 

@@ -38,8 +38,9 @@ void find_nearest(const Tree& tree, const TreeKernels& kernels, const NearestQue
         while (tree.exists(node)) {
             const Photon& photon = tree.photon(node);
             const float distance2 = squared_distance(photon, query.point);
-            if (distance2 <= bound && (query.side == nullptr || counts_at(*query.side, photon.theta,
-                                                                       photon.phi, photon.flags))) {
+            if (distance2 <= bound &&
+                (query.side == nullptr ||
+                 counts_at(*query.side, photon.theta, photon.phi, photon.flags))) {
                 found.squared_distance[found.count] = distance2;
                 found.index[found.count++] = tree.index(node);
                 if (found.count >= (shrunk ? trigger : nearest)) shrink(nearest + nearest / 8);

@@ -51,15 +51,7 @@ std::vector<GalleryScene> mirrors();
 std::vector<GalleryScene> lenses();
 std::vector<GalleryScene> laws();
 
-/// Still water on a floor under a point light, and what its points and methods are asked.
-struct StillWater {
-    double sigma = 0;             ///< absorption [1/m]
-    double light_height = 2;      ///< above the water [m]
-    double inner = 0.1;           ///< of the ring on the floor that is asked for [m]
-    double outer = 1.5;
-    double disc = 0.1;            ///< of methods that gather over one [m]
-};
-GalleryScene still_water(const std::string& name, const std::string& answer,
-                         const StillWater& water);
+/// Still water that absorbs `sigma` [1/m], on a floor under a point light.
+GalleryScene still_water(const std::string& name, const std::string& answer, double sigma);
 
 }  // namespace caustics

@@ -119,7 +119,7 @@ GalleryScene nearest_photons() {
 }  // namespace
 
 std::vector<GalleryScene> laws() {
-    return {furnace(), still_water("beer", "flat water times exp(-sigma d)", {.sigma = 0.8}), schlick_floor(),
+    return {furnace(), still_water("beer", "flat water times exp(-sigma d)", 0.8), schlick_floor(),
             nearest_photons()};
 }
 

@@ -196,38 +196,34 @@ GalleryScene prism() {
 
 }  // namespace
 
-// n = 1.333, one metre deep: Snell and Fresnel, and exp(-sigma d) on the d metres to the floor [Beer].
-GalleryScene still_water(const std::string& name, const std::string& answer,
-                         const StillWater& water) {
+// n = 1.333, one metre deep, under a light two metres above it: Snell and Fresnel, and exp(-sigma d) on
+// the d metres to the floor [Beer].
+GalleryScene still_water(const std::string& name, const std::string& answer, double sigma) {
     static constexpr double n = 1.333, intensity = 10;
-    const double sigma = water.sigma, top = water.light_height;
     GalleryScene scene{name, answer, {}, {}, {}};
-    scene.make = [sigma, top](int) {
+    scene.make = [sigma](int) {
         SceneDesc desc;
         desc.shapes = {square("floor", -1, 5, true, grey()),
                        square("water", 0, 3, true, glass(n, sigma))};
-        desc.point_lights = {point_light({0, 0, top}, intensity)};
+        desc.point_lights = {point_light({0, 0, 2}, intensity)};
         return desc;
     };
-    const auto land = [sigma, top](double u) -> std::optional<Landing> {
-        PlaneRay ray = from_light(top, u);
+    const auto land = [sigma](double u) -> std::optional<Landing> {
+        PlaneRay ray = from_light(2, u);
         ray.reach_plane(0);
         ray.refract(up, n);
         const Vec2d entry = ray.origin;
         ray.reach_plane(-1);
         return Landing{ray.origin.x(), ray.share * std::exp(-sigma * (ray.origin - entry).norm())};
     };
-    scene.points =
-        known_on_ring({land, of_angle(intensity), 0, 0.95}, -1, true, water.inner, water.outer);
-    scene.series = usual_series(water.disc, 2, 0.05);
+    scene.points = known_on_ring({land, of_angle(intensity), 0, 0.95}, -1, true, 0.1, 1.5);
+    scene.series = usual_series(0.1, 2, 0.05);
     return scene;
 }
 
 std::vector<GalleryScene> lenses() {
     return {slab(),
-            still_water("flat_water", "one refraction by a plane", {}),
-            still_water("lamp_at_water", "the same, 1 mm below the light",
-                        {.light_height = 0.001, .outer = 0.6, .disc = 0.05}),
+            still_water("flat_water", "one refraction by a plane", 0),
             sine_water(),
             ball_lens(),
             plano_convex_lens(),

@@ -142,7 +142,7 @@ TEST_F(Sweeps, LeaveATableAndPicturesBehind) {
         figures += entry.path().extension() == ".png" ? 1 : 0;
     EXPECT_EQ(figures, 2U * 3) << "one a cell";
     EXPECT_TRUE(fs::exists(fs::path(out_) / "environment.json"));
-    EXPECT_EQ(std::ranges::count(result.out, '\n'), 7) << result.out;
+    EXPECT_EQ(std::ranges::count(result.out, '\n'), 8) << result.out;
 }
 
 TEST_F(Sweeps, SkipWhatIsDone) {
