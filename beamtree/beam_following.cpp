@@ -11,10 +11,18 @@ namespace {
 // Of the flux of all first events, and of one of their beams on average: less is not followed.
 constexpr double least_set_share = 1e-4;
 constexpr double least_beam_share = 1e-3;
+// Of the work on a level and all after it, that on the level itself.
+constexpr double own = 0.3;
 
 double flux_of(const BeamSet& set) {
     double sum = 0;
     for (const Beam& beam : set.beams) sum += static_cast<double>(beam.flux.mean());
+    return sum;
+}
+
+double count_of(const std::vector<Level>& levels) {
+    double sum = 0;
+    for (const Level& level : levels) sum += static_cast<double>(level.traced.set.beams.size());
     return sum;
 }
 
@@ -48,29 +56,34 @@ public:
           max_bounces_(max_bounces),
           traced_(traced) {}
 
-    void follow(Level& level, double first_flux, double mean_flux) {
+    void follow(Level& level, double first_flux, double mean_flux, const ProgressPart& part) {
         BeamSet& set = level.traced.set;
         const std::size_t place = traced_.sets.size();
         traced_.sets.emplace_back();
         if (level.bounces() < max_bounces_) {
             NextSets next =
-                next_sets(scene_, surface_, level, least_beam_share * mean_flux, traced_.balance);
+                next_sets(scene_, surface_, level, least_beam_share * mean_flux, traced_.balance,
+                          part.of(own));
+            const double beams = count_of(next.sets);
             for (Level& one : next.sets) {
                 const double flux = flux_of(one.traced.set);
-                if (flux < least_set_share * first_flux) {
+                if (one.clear_flux < least_set_share * first_flux) {
                     traced_.balance.lost += flux;
                     traced_.balance.pruned += flux;
                 } else {
-                    follow(one, first_flux, mean_flux);
+                    follow(one, first_flux, mean_flux,
+                           part.of((1 - own) * static_cast<double>(one.traced.set.beams.size()) /
+                                   beams));
                 }
             }
-            if (neighbours_ != nullptr) refine(set, level.traced.origins, *neighbours_);
+            if (neighbours_ != nullptr)
+                refine(set, level.traced.origins, *neighbours_, part.of(0));
             std::vector<bool> kept = std::move(next.stays);
             for (std::size_t i = 0; i < kept.size(); ++i)
                 kept[i] = kept[i] || comes_near_a_receiver(level, set.beams[i]);
             keep_only(set, kept);
         } else if (neighbours_ != nullptr) {
-            refine(set, level.traced.origins, *neighbours_);
+            refine(set, level.traced.origins, *neighbours_, part.of(1));
         }
         traced_.sets[place] = std::move(set);
     }
@@ -107,7 +120,7 @@ BeamFollower::BeamFollower(const Scene& scene, const FirstSurface& surface,
         if (is_receiver(shape.bsdf)) receivers_.push_back(bounds(shape));
 }
 
-void BeamFollower::follow(std::array<TracedSet, 2> first) {
+void BeamFollower::follow(std::array<TracedSet, 2> first, const ProgressPart& part) {
     double flux = 0;
     std::size_t beams = 0;
     for (const TracedSet& one : first) {
@@ -122,7 +135,9 @@ void BeamFollower::follow(std::array<TracedSet, 2> first) {
         level.departures = first_departures(level.traced);
         Follower(scene_, surface_, neighbours_, receivers_, static_cast<std::size_t>(max_bounces_),
                  traced_)
-            .follow(level, flux, flux / static_cast<double>(beams));
+            .follow(level, flux, flux / static_cast<double>(beams),
+                    part.of(static_cast<double>(level.traced.set.beams.size()) /
+                            static_cast<double>(beams)));
     }
 }
 

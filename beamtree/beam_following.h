@@ -9,6 +9,7 @@
 #include "beamtree/landing.h"
 #include "beamtree/mesh_neighbours.h"
 #include "beamtree/ray_origin.h"
+#include "beamtree/trace_progress.h"
 
 namespace caustics {
 
@@ -31,7 +32,8 @@ struct TracedBeams {
 /// beams stay for that, but those which no receiver can come near before their light goes on.
 ///
 /// Sets with less than 1e-4 of the first events' flux, and beams with less than 1e-3 of those of the
-/// first events on average, are not kept; `balance` counts them.
+/// first events on average, are not kept; `balance` counts them. What media absorb counts for neither:
+/// light that comes through dark glass is weak, and all there is.
 class BeamFollower {
 public:
     /// With `neighbours` the sets are refined by them.
@@ -39,7 +41,7 @@ public:
                  int max_bounces);
 
     /// Keeps the sets of the first events and those of all events after them.
-    void follow(std::array<TracedSet, 2> first);
+    void follow(std::array<TracedSet, 2> first, const ProgressPart& part);
     /// Sets in the order of their light: each before those that its light goes on to.
     TracedBeams take() { return std::move(traced_); }
 

@@ -54,6 +54,7 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
         const Landing landing = land(scene_, point.ray, point.from);
         if (!same_piece(landing, *step.where)) return point;
         point.origin.weight *= landing.weight[step.event];
+        point.origin.left *= landing.left;
         if (is_black(point.origin.weight)) return point;
         point.ray = {landing.position, landing.direction[step.event]};
         point.from = {landing.shape, landing.geometric_normal, landing.offset};

@@ -29,6 +29,9 @@ struct Level {
     std::vector<std::uint32_t>
         ray_of_parent;  ///< for rays of the parent: the one that goes on here
 
+    /// Of its beams, were the media clear: what they are worth following for [W].
+    double clear_flux = 0;
+
     std::size_t bounces() const { return traced.set.path.size(); }
 };
 

@@ -8,6 +8,7 @@
 #include "beamtree/first_surface.h"
 #include "beamtree/near_light.h"
 #include "beamtree/ray_spread.h"
+#include "beamtree/trace_progress.h"
 #include "core/parallel.h"
 
 namespace caustics {
@@ -61,17 +62,20 @@ public:
         }
     }
 
-    std::array<TracedSet, 2> run() {
+    std::array<TracedSet, 2> run(const ProgressPart& part) {
         vertices_.reserve(mesh_.positions.size());
         for (std::uint32_t i = 0; i < mesh_.positions.size(); ++i) {
             vertices_.push_back(bender_.at(mesh_.positions[i], mesh_.normals[i]));
             vertices_.back().vertex = i;
         }
         auto quad = caster_.quads.begin();
+        ProgressSteps steps(part, mesh_.triangles.size());
         for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+            steps.step();
             if (quad != caster_.quads.end() && quad->triangle == i) {
                 trace_quad(*quad++);
                 ++i;
+                steps.step();
             } else if (!caster_.left_out[i]) {
                 const Facing facing = surface_.facing(i);
                 for (const Event event : events) trace_triangle({i, 1, facing, event});
@@ -214,17 +218,19 @@ private:
 };
 
 TracedBeams trace_one(const Scene& scene, const CasterMesh& caster,
-                      const MeshNeighbours* neighbours, const LightSample& light, int max_bounces) {
+                      const MeshNeighbours* neighbours, const LightSample& light, int max_bounces,
+                      const ProgressPart& part) {
     const FirstSurface surface(scene, caster, light);
-    std::array<TracedSet, 2> first = BeamTracer(surface).run();
+    const bool follows = max_bounces > 1;
+    std::array<TracedSet, 2> first = BeamTracer(surface).run(part.of(follows ? 0.1 : 0.9));
     TracedBeams traced;
-    if (max_bounces > 1) {
+    if (follows) {
         BeamFollower follower(scene, surface, neighbours, max_bounces);
-        follower.follow(std::move(first));
+        follower.follow(std::move(first), part.of(0.9));
         traced = follower.take();
     } else {
         for (auto& [set, origins] : first) {
-            if (neighbours != nullptr) refine(set, origins, *neighbours);
+            if (neighbours != nullptr) refine(set, origins, *neighbours, part.of(0.05));
             traced.sets.push_back(std::move(set));
         }
     }
@@ -235,7 +241,10 @@ TracedBeams trace_one(const Scene& scene, const CasterMesh& caster,
 
 std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light) {
-    std::array<TracedSet, 2> traced = BeamTracer(FirstSurface(scene, caster, light)).run();
+    const RunOptions options;
+    TraceProgress progress(options);
+    std::array<TracedSet, 2> traced =
+        BeamTracer(FirstSurface(scene, caster, light)).run({progress, 1});
     return {std::move(traced[0].set), std::move(traced[1].set)};
 }
 
@@ -246,11 +255,13 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
     if (settings.intensity == Intensity::refined)
         for (const CasterMesh& caster : casters) neighbours.emplace_back(caster);
     std::vector<TracedBeams> parts(lights.size() * casters.size());
+    TraceProgress progress(options);
+    const ProgressPart one{progress, 1 / static_cast<double>(parts.size())};
     parallel_for(options.threads, parts.size(), [&](std::size_t i, std::size_t) {
         const std::size_t caster = i % casters.size();
         parts[i] =
             trace_one(scene, casters[caster], neighbours.empty() ? nullptr : &neighbours[caster],
-                      lights[i / casters.size()], settings.max_bounces);
+                      lights[i / casters.size()], settings.max_bounces, one);
     });
     TracedBeams all;
     for (TracedBeams& part : parts) {

@@ -4,6 +4,7 @@
 
 #include "beamtree/beam_estimator.h"
 #include "beamtree/receiver_polygons.h"
+#include "beamtree/trace_progress.h"
 #include "core/parallel.h"
 
 namespace caustics {
@@ -140,8 +141,10 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene,
     options.phase("polygons");
     ReceiverPolygons receivers(scene, params.receiver_resolution);
     std::vector<std::vector<BeamNumber>> lists(receivers.polygons().size());
+    TraceProgress progress(options);
     parallel_for(options.threads, lists.size(), [&](std::size_t i, std::size_t) {
         lists[i] = Sweep(receivers.polygons()[i], traced.sets).run();
+        progress.add(1 / static_cast<double>(lists.size()));
     });
     return std::make_unique<CausticPolygons>(scene, std::move(traced), std::move(receivers),
                                              std::move(lists));

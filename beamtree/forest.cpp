@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "beamtree/plane_groups.h"
+#include "beamtree/trace_progress.h"
 #include "core/parallel.h"
 
 namespace caustics {
@@ -97,11 +98,13 @@ Forest::Forest(const Scene& scene, const TracedScene& traced, const BeamTreePara
     const std::vector<TreePlan> plans = Planner(traced, params).take();
     std::vector<std::optional<ConeTree>> cones(plans.size());
     std::vector<std::optional<SliceTree>> slices(plans.size());
+    TraceProgress progress(options);
     parallel_for(options.threads, plans.size(), [&](std::size_t i, std::size_t) {
         if (plans[i].sliced)
             slices[i].emplace(slice_tree(scene, traced, plans[i], params.footprint, options.isa));
         else
             cones[i].emplace(cone_tree(scene, traced, plans[i], params));
+        progress.add(1 / static_cast<double>(plans.size()));
     });
     for (std::size_t i = 0; i < plans.size(); ++i) {
         if (slices[i])

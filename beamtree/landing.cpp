@@ -36,6 +36,7 @@ Landing land(const Scene& scene, const VertexRay& ray, const Departure& from) {
         medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
     landing.direction = {split.reflected, split.refracted};
     landing.weight = {split.reflected_weight * left, split.refracted_weight * left};
+    landing.left = left.mean();
     return landing;
 }
 

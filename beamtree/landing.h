@@ -29,6 +29,7 @@ struct Landing {
     std::array<Vec3, 2> direction;
     /// After each event, over the weight before: of surface and way there.
     std::array<Spectrum, 2> weight = {black(), black()};
+    float left = 1;  ///< by the medium on the way there, mean of the channels
 
     bool goes_on() const { return shape != nothing; }
 };

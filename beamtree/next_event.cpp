@@ -27,28 +27,34 @@ using Corners = std::array<Corner, 3>;
 class NextEvent {
 public:
     NextEvent(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
-              FluxBalance& balance)
+              FluxBalance& balance, const ProgressPart& part)
         : scene_(scene),
           surface_(surface),
           level_(level),
           set_(level.traced.set),
           least_flux_(least_flux),
           balance_(balance),
+          part_(part),
           stays_(set_.beams.size(), false) {
         land_all();
     }
 
     NextSets run() {
-        for (std::uint32_t beam = 0; beam < set_.beams.size(); ++beam)
+        ProgressSteps steps(part_.of(0.8), set_.beams.size(), 1);
+        for (std::uint32_t beam = 0; beam < set_.beams.size(); ++beam) {
             for (std::size_t i = 0; i < set_.beams[beam].triangle_count(); ++i)
                 follow_triangle(beam, i);
+            steps.step();
+        }
         return {std::move(next_), std::move(stays_)};
     }
 
 private:
     void land_all() {
         const bool is_first = level_.parent == nullptr;
+        ProgressSteps steps(part_.of(0.2), set_.rays.size());
         for (std::size_t i = 0; i < set_.rays.size(); ++i) {
+            steps.step();
             const VertexRay& ray = set_.rays[i];
             const Departure& from = level_.departures[i];
             const bool blocked = is_first && !sees(scene_, {ray.position, from.normal, from.offset},
@@ -253,7 +259,8 @@ private:
         beam.flux = flux(parent, corners, event);
         const auto mean = static_cast<double>(beam.flux.mean());
         if (!(mean > 0)) return;
-        if (mean < least_flux_) {
+        const double clear = mean / left_of(corners);
+        if (clear < least_flux_) {
             balance_.lost += mean;
             balance_.pruned += mean;
             return;
@@ -267,8 +274,18 @@ private:
         beam.corners.fill(Beam::none);
         for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
         level.traced.set.beams.push_back(beam);
+        level.clear_flux += clear;
         level.parents.push_back(parent);
         level.places.push_back(first);
+    }
+
+    // What media have left of a beam's light. Where they absorb much, all light that passes is weak.
+    static double left_of(const Corners& corners) {
+        double left = 0;
+        for (const Corner& corner : corners)
+            left = std::max(left, static_cast<double>(corner.origin->left) *
+                                      static_cast<double>(corner.landing->left));
+        return left;
     }
 
     // How far the surface may lie off the triangle of the corners, as FirstSurface::offset. Facets of a
@@ -313,6 +330,7 @@ private:
         level.traced.set.rays.push_back({landing.position, landing.direction[event]});
         RayOrigin origin = *corner.origin;
         origin.weight *= landing.weight[event];
+        origin.left *= landing.left;
         if (!shared) origin.vertex = RayOrigin::no_vertex;
         level.traced.origins.push_back(origin);
         level.departures.push_back({landing.shape, landing.geometric_normal, landing.offset});
@@ -326,6 +344,7 @@ private:
     BeamSet& set_;
     double least_flux_;
     FluxBalance& balance_;
+    ProgressPart part_;
     std::vector<bool> stays_;
     std::vector<Level> next_;
 };
@@ -333,8 +352,8 @@ private:
 }  // namespace
 
 NextSets next_sets(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
-                   FluxBalance& balance) {
-    return NextEvent(scene, surface, level, least_flux, balance).run();
+                   FluxBalance& balance, const ProgressPart& part) {
+    return NextEvent(scene, surface, level, least_flux, balance, part).run();
 }
 
 }  // namespace caustics

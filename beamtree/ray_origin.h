@@ -14,6 +14,7 @@ struct RayOrigin {
     Vec3 normal;                       ///< unit, interpolated
     Spectrum weight = black();         ///< strength after the last event
     std::uint32_t vertex = no_vertex;  ///< of the mesh, where it is one
+    float left = 1;                    ///< by the media on its way after the first event, of all light
 };
 
 /// A set while it is made.

@@ -177,11 +177,15 @@ std::vector<std::uint32_t> find_partners(const BeamSet& set, std::span<const Ray
 
 }  // namespace
 
-void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours) {
+void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
+            const ProgressPart& part) {
     SpreadFit fit(set, origins, neighbours);
     set.spreads.clear();
-    for (std::uint32_t ray = 0; ray < set.rays.size(); ++ray)
+    ProgressSteps steps(part, set.rays.size());
+    for (std::uint32_t ray = 0; ray < set.rays.size(); ++ray) {
         set.spreads.push_back(fit.spread(ray));
+        steps.step();
+    }
     set.partners = find_partners(set, origins, neighbours);
 }
 

@@ -5,6 +5,7 @@
 #include "beamtree/beam.h"
 #include "beamtree/mesh_neighbours.h"
 #include "beamtree/ray_origin.h"
+#include "beamtree/trace_progress.h"
 
 namespace caustics {
 
@@ -12,6 +13,7 @@ namespace caustics {
 /// the derivatives of first surface, place and direction, of a quadratic surface fitted to the rays
 /// of the vertices round it; their errors are of second order on any mesh. Rays that start at no
 /// vertex, or have too few neighbours that whole beams join to them, have no spread.
-void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours);
+void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
+            const ProgressPart& part);
 
 }  // namespace caustics

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "experiments/interrupt.h"
 #include "photonmap/photon_map_file.h"
 
 namespace caustics {
@@ -204,8 +205,10 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& 
 }
 
 std::optional<std::string> why_unsupported(const Scene& scene, const Method& method) {
+    RunOptions options;
+    options.progress = [](double) { throw_if_interrupted(); };
     try {
-        build(scene, {method.name, with_least_work(method.params)}, RunOptions{});
+        build(scene, {method.name, with_least_work(method.params)}, options);
         return {};
     } catch (const UnsupportedScene& unsupported) {
         return unsupported.what();
