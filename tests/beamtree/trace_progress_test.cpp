@@ -43,7 +43,8 @@ void expect_steady(const Phase& phase) {
         EXPECT_LE(share - last, 0.1) << phase.name << " at " << last;
         last = share;
     }
-    EXPECT_GT(last, 0.6) << phase.name;
+    // Pieces of work that come to nothing (beams without light that goes on) leave their share out.
+    EXPECT_GT(last, 0.5) << phase.name;
     EXPECT_LE(last, 1) << phase.name;
 }
 
