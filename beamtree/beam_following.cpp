@@ -61,13 +61,12 @@ public:
         const std::size_t place = traced_.sets.size();
         traced_.sets.emplace_back();
         if (level.bounces() < max_bounces_) {
-            NextSets next =
-                next_sets(scene_, surface_, level, least_beam_share * mean_flux, traced_.balance,
-                          part.of(own));
+            NextSets next = next_sets(scene_, surface_, level, least_beam_share * mean_flux,
+                                      traced_.balance, part.of(own));
             const double beams = count_of(next.sets);
             for (Level& one : next.sets) {
                 const double flux = flux_of(one.traced.set);
-                if (one.clear_flux < least_set_share * first_flux) {
+                if (one.worth < least_set_share * first_flux) {
                     traced_.balance.lost += flux;
                     traced_.balance.pruned += flux;
                 } else {
@@ -76,8 +75,7 @@ public:
                                    beams));
                 }
             }
-            if (neighbours_ != nullptr)
-                refine(set, level.traced.origins, *neighbours_, part.of(0));
+            if (neighbours_ != nullptr) refine(set, level.traced.origins, *neighbours_, part.of(0));
             std::vector<bool> kept = std::move(next.stays);
             for (std::size_t i = 0; i < kept.size(); ++i)
                 kept[i] = kept[i] || comes_near_a_receiver(level, set.beams[i]);

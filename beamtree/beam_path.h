@@ -29,8 +29,10 @@ struct Level {
     std::vector<std::uint32_t>
         ray_of_parent;  ///< for rays of the parent: the one that goes on here
 
-    /// Of its beams, were the media clear: what they are worth following for [W].
-    double clear_flux = 0;
+    /// One a beam, or none where all are 1: what division for detail (PieceDetail) has left of the polygon.
+    std::vector<float> shares;
+    /// Of its beams, were the media clear and they not divided: what they are worth following for [W].
+    double worth = 0;
 
     std::size_t bounces() const { return traced.set.path.size(); }
 };

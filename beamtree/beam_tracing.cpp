@@ -49,7 +49,7 @@ public:
           bender_(surface.bender()),
           caster_(surface.caster()),
           mesh_(surface.caster().mesh),
-          near_light_(bender_, surface.light(), mesh_.triangles.size()) {
+          near_light_(surface) {
         for (const Event event : events) {
             BeamSet& set = traced_[event].set;
             set.light = surface.light();

@@ -7,8 +7,11 @@
 namespace caustics {
 namespace {
 
-// The angle under which the light may see an edge.
+// The angle under which the light may see an edge, and one in flat glass of a mesh as it is: what a
+// plane mirror reflects comes from a point, what a plane refracts does not.
 constexpr double widest = pi_d / 6;
+constexpr double widest_in_flat_glass = pi_d / 24;
+constexpr float flat = 1e-3F;  // between unit normals
 // How much longer than those of an even mesh edges may be.
 constexpr double slack = 4;
 
@@ -21,10 +24,13 @@ bool touch(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 // Two edges of the angle u, at an angle of incidence i, enclose u^2 cos i / 2 of the 4 pi.
-NearLight::NearLight(const LightBender& bender, const LightSample& light, std::size_t triangles)
-    : bender_(bender),
-      light_(light),
-      most_(slack * slack * 8 * pi_d / static_cast<double>(std::max<std::size_t>(triangles, 1))) {}
+NearLight::NearLight(const FirstSurface& surface)
+    : bender_(surface.bender()),
+      light_(surface.light()),
+      most_(slack * slack * 8 * pi_d /
+            static_cast<double>(std::max<std::size_t>(surface.caster().mesh.triangles.size(), 1))),
+      is_glass_mesh_(!surface.caster().tessellated &&
+                     std::holds_alternative<Dielectric>(surface.bsdf().model)) {}
 
 bool NearLight::is_wide(const MeshPoint& a, const MeshPoint& b) const {
     if (light_.kind == LightSample::Kind::directional || touch(a.position, b.position))
@@ -32,7 +38,8 @@ bool NearLight::is_wide(const MeshPoint& a, const MeshPoint& b) const {
     const Vec3d u = (a.position - light_.position).cast<double>();
     const Vec3d v = (b.position - light_.position).cast<double>();
     const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
-    if (angle > widest) return true;
+    const bool is_flat_glass = is_glass_mesh_ && (a.normal - b.normal).norm() < flat;
+    if (angle > (is_flat_glass ? widest_in_flat_glass : widest)) return true;
     const double cosine = std::max(std::abs(a.normal.cast<double>().dot(u)) / u.norm(),
                                    std::abs(b.normal.cast<double>().dot(v)) / v.norm());
     return angle * angle * cosine > most_;

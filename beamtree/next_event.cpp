@@ -4,12 +4,15 @@
 
 #include "beamtree/cut_edge.h"
 #include "beamtree/cut_piece.h"
+#include "beamtree/piece_detail.h"
 
 namespace caustics {
 namespace {
 
 // How often a polygon is quartered.
 constexpr int most_splits = 3;
+// What is left of a polygon that is quartered because it is too large for what it meets: ten times.
+constexpr float least_share = 1.0F / (1 << 20);
 constexpr float widest_cosine = 0.5F;
 // Where corners' weights do not tell the mean, this many parts of a side do.
 constexpr int parts = 5;
@@ -35,6 +38,7 @@ public:
           least_flux_(least_flux),
           balance_(balance),
           part_(part),
+          detail_(scene),
           stays_(set_.beams.size(), false) {
         land_all();
     }
@@ -76,21 +80,45 @@ private:
             return;
         }
         count_lit(parent);
-        if (alike && goes_plainly(a, b, c)) {
+        if (alike && goes_plainly(a, b, c) && !is_coarse(rays)) {
             for (const Event event : events)
                 if (!is_black(a.weight[event])) {
                     Corners corners;
                     for (std::size_t i = 0; i < 3; ++i)
                         corners[i] = {&level_.traced.origins[rays[i]], &level_.landings[rays[i]],
                                       rays[i]};
-                    add_beam(beam, corners, event);
+                    add_beam(beam, corners, event, share_of(beam));
                 }
             return;
         }
         stays_[beam] = stays_[beam] || !alike;
         Piece piece;
         for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
-        cut(beam, Path(scene_, surface_, level_, beam), piece, most_splits);
+        cut(beam, Path(scene_, surface_, level_, beam), piece, share_of(beam), most_splits);
+    }
+
+    bool is_coarse(const std::array<std::uint32_t, 3>& rays) const {
+        const auto coarse = [this](std::uint32_t i, std::uint32_t j) {
+            return PieceDetail::is_coarse(level_.traced.origins[i], level_.landings[i],
+                                          level_.traced.origins[j], level_.landings[j]);
+        };
+        return coarse(rays[0], rays[1]) || coarse(rays[1], rays[2]) || coarse(rays[2], rays[0]);
+    }
+    static bool is_coarse(const PathPoint& a, const PathPoint& b) {
+        return goes_on(a) && goes_on(b) &&
+               PieceDetail::is_coarse(a.origin, a.next, b.origin, b.next);
+    }
+
+    // Where no corner goes on.
+    bool hides_a_caster(const Piece& piece) const {
+        const auto& [a, b, c] = piece;
+        return a.alive && b.alive && c.alive && PieceDetail::is_flat(a.origin, b.origin) &&
+               PieceDetail::is_flat(b.origin, c.origin) &&
+               detail_.may_pass_round_caster({&a.ray, &b.ray, &c.ray});
+    }
+
+    float share_of(std::uint32_t beam) const {
+        return level_.shares.empty() ? 1 : level_.shares[beam];
     }
 
     // Whether the rays after an event part too far for one beam.
@@ -130,10 +158,12 @@ private:
             if (!sees(scene_, middle, surface_.light())) return;
             count_lit(parent);
         }
-        if (!land(scene_, ray, {from.shape, from.normal, parent.offset}).goes_on()) return;
         Piece piece;
         for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
-        cut(beam, Path(scene_, surface_, level_, beam), piece, most_splits);
+        if (!land(scene_, ray, {from.shape, from.normal, parent.offset}).goes_on() &&
+            !hides_a_caster(piece))
+            return;
+        cut(beam, Path(scene_, surface_, level_, beam), piece, share_of(beam), most_splits);
     }
 
     void count_lit(const Beam& beam) {
@@ -152,49 +182,85 @@ private:
         return point;
     }
 
-    void quarter(std::uint32_t beam, const Path& path, const Piece& piece, int splits) {
+    void quarter(std::uint32_t beam, const Path& path, const Piece& piece, float share,
+                 int splits) {
         const auto between = [&path](const PathPoint& p, const PathPoint& q, float t) {
             return path.between(p, q, t);
         };
-        for (const Piece& part : quarters(piece, between)) cut(beam, path, part, splits - 1);
+        for (const Piece& part : quarters(piece, between)) cut(beam, path, part, share, splits);
+    }
+    void quarter_for_detail(std::uint32_t beam, const Path& path, const Piece& piece, float share,
+                            int splits) {
+        quarter(beam, path, piece, share / 4, splits);
     }
 
-    // What becomes of a piece whose corners do different things.
-    void cut(std::uint32_t beam, const Path& path, const Piece& piece, int splits) {
+    // What becomes of a piece whose corners do different things. It has `share` of its polygon.
+    void cut(std::uint32_t beam, const Path& path, const Piece& piece, float share, int splits) {
         const auto& [a, b, c] = piece;
         if (!goes_on(a) && !goes_on(b) && !goes_on(c)) {
-            if (!goes_on(path.middle(piece))) return;
-            if (splits > 0)
-                quarter(beam, path, piece, splits);
-            else
-                balance_.lost += flux(piece);
+            cut_dark(beam, path, piece, share, splits);
             return;
         }
         const bool one = alike(a, b) && alike(b, c) && alike(c, a);
         bool more = !alike(a, b) && !alike(b, c) && !alike(c, a);
         if (splits > 0 && (more || (one && part_widely(a.next, b.next, c.next)))) {
-            quarter(beam, path, piece, splits);
+            quarter(beam, path, piece, share, splits - 1);
+            return;
+        }
+        bool coarse = one && (is_coarse(a, b) || is_coarse(b, c) || is_coarse(c, a));
+        if (coarse && share > least_share) {
+            quarter_for_detail(beam, path, piece, share, splits);
             return;
         }
         const std::array<CutEdge, 3> edges = {cut_edge(path, a, b), cut_edge(path, b, c),
                                               cut_edge(path, c, a)};
-        for (const CutEdge& edge : edges) more = more || edge.hides_another;
-        if (splits > 0 && more) {
-            quarter(beam, path, piece, splits);
+        for (std::size_t i = 0; i < 3; ++i) {
+            more = more || edges[i].hides_another;
+            coarse = coarse || (edges[i].is_cut && (is_coarse(piece[i], edges[i].last) ||
+                                                    is_coarse(edges[i].first, piece[(i + 1) % 3])));
+        }
+        if (coarse && share > least_share) {
+            quarter_for_detail(beam, path, piece, share, splits);
             return;
         }
+        if (splits > 0 && more) {
+            quarter(beam, path, piece, share, splits - 1);
+            return;
+        }
+        const double carried = add_parts(beam, piece, edges, share);
+        if (more) balance_.lost += std::max(0.0, flux(piece) - carried);
+    }
+
+    // A piece none of whose corners goes on.
+    void cut_dark(std::uint32_t beam, const Path& path, const Piece& piece, float share,
+                  int splits) {
+        if (share > least_share && hides_a_caster(piece)) {
+            quarter_for_detail(beam, path, piece, share, splits);
+            return;
+        }
+        if (!goes_on(path.middle(piece))) return;
+        if (splits > 0)
+            quarter(beam, path, piece, share, splits - 1);
+        else
+            balance_.lost += flux(piece);
+    }
+
+    // Returns the flux of the parent's that goes on.
+    double add_parts(std::uint32_t beam, const Piece& piece, const std::array<CutEdge, 3>& edges,
+                     float share) {
         double carried = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const bool known =
                 (i > 0 && alike(piece[i], piece[0])) || (i > 1 && alike(piece[i], piece[1]));
-            if (!known && goes_on(piece[i])) carried += add_part(beam, piece, edges, piece[i]);
+            if (!known && goes_on(piece[i]))
+                carried += add_part(beam, piece, edges, piece[i], share);
         }
-        if (more) balance_.lost += std::max(0.0, flux(piece) - carried);
+        return carried;
     }
 
     // The part of a piece that does as one of its corners. Returns the flux of the parent's that it takes.
     double add_part(std::uint32_t beam, const Piece& piece, const std::array<CutEdge, 3>& edges,
-                    const PathPoint& like) {
+                    const PathPoint& like, float share) {
         std::array<const PathPoint*, 6> part;
         std::size_t count = 0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -211,7 +277,7 @@ private:
             for (std::size_t k = 0; k < 3; ++k)
                 corners[k] = {&points[k]->origin, &points[k]->next, Beam::none};
             for (const Event event : events)
-                if (!is_black(like.next.weight[event])) add_beam(beam, corners, event);
+                if (!is_black(like.next.weight[event])) add_beam(beam, corners, event, share);
             taken += flux({*points[0], *points[1], *points[2]});
         }
         return taken;
@@ -253,14 +319,14 @@ private:
         return sum * (whole / (parts * parts));
     }
 
-    void add_beam(std::uint32_t parent, const Corners& corners, Event event) {
+    void add_beam(std::uint32_t parent, const Corners& corners, Event event, float share) {
         const Landing& first = *corners[0].landing;
         Beam beam;
         beam.flux = flux(parent, corners, event);
         const auto mean = static_cast<double>(beam.flux.mean());
         if (!(mean > 0)) return;
-        const double clear = mean / left_of(corners);
-        if (clear < least_flux_) {
+        const double worth = mean / left_of(corners) / static_cast<double>(share);
+        if (worth < least_flux_) {
             balance_.lost += mean;
             balance_.pruned += mean;
             return;
@@ -274,7 +340,8 @@ private:
         beam.corners.fill(Beam::none);
         for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
         level.traced.set.beams.push_back(beam);
-        level.clear_flux += clear;
+        level.worth += worth;
+        level.shares.push_back(share);
         level.parents.push_back(parent);
         level.places.push_back(first);
     }
@@ -345,6 +412,7 @@ private:
     double least_flux_;
     FluxBalance& balance_;
     ProgressPart part_;
+    PieceDetail detail_;
     std::vector<bool> stays_;
     std::vector<Level> next_;
 };

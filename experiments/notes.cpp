@@ -8,6 +8,7 @@
 #include <optional>
 #include <variant>
 
+#include "core/crossing_dielectrics.h"
 #include "core/eye_medium.h"
 #include "core/light_path.h"
 #include "core/vertex_normals.h"
@@ -59,6 +60,19 @@ bool has_exact_receiver(const Scene& scene) {
     return std::ranges::any_of(scene.shapes(), [](const Shape& shape) {
         return shape.primitive != Primitive::mesh && is_receiver(shape.bsdf);
     });
+}
+
+std::optional<std::string> what_crosses(const Scene& scene) {
+    const auto pairs = crossing_dielectrics(scene);
+    if (pairs.empty()) return {};
+    return fmt::format(
+        "the dielectrics {} and {}{} cross: which medium is inside both is not known, and light "
+        "that "
+        "comes there is not to be trusted",
+        scene.shapes()[pairs[0].first].name, scene.shapes()[pairs[0].second].name,
+        pairs.size() == 1   ? ""
+        : pairs.size() == 2 ? " (and 1 pair more)"
+                            : fmt::format(" (and {} pairs more)", pairs.size() - 1));
 }
 
 /// Parameters of a method that differ from its defaults.
@@ -151,6 +165,7 @@ std::vector<std::string> notes_on(const Scene& scene) {
                 "averaged over hard edges too, and light that they send to the wrong side of the "
                 "surface is lost (face_normals: true shades the triangles flat)",
                 caster.text()));
+    if (const auto crossing = what_crosses(scene)) all.push_back(*crossing);
     if (eye_medium(scene).ambiguous)
         all.push_back(
             "the dielectrics about the eye disagree on the medium it is in: what it sees directly "

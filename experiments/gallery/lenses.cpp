@@ -88,35 +88,66 @@ GalleryScene sine_water() {
     return scene;
 }
 
-// A ball of glass above its focus: two refractions by a sphere.
-GalleryScene ball_lens() {
-    static constexpr double n = 1.5, intensity = 5, centre = 0.7, radius = 0.5, light_z = 3;
-    GalleryScene scene{"ball_lens", "two refractions by a sphere", {}, {}, {}};
-    scene.make = [](int) {
-        Shape ball;
-        ball.name = "ball";
-        ball.primitive = Primitive::sphere;
-        ball.to_world = Eigen::Translation3d(0, 0, centre) * Eigen::Scaling(radius);
-        ball.bsdf = glass(n);
+/// A ball of glass, what fills it and what is round it.
+struct Ball {
+    double n = 1.5, around = 1;            ///< iors
+    double absorption = 0, of_around = 0;  ///< [1/m]
+    double inner = 0.01, outer = 0.06;     ///< of the ring on the floor that is asked for [m]
+};
+
+// A ball of glass above its focus: two refractions by a sphere, and exp(-sigma d) on each way [Beer].
+GalleryScene ball(const std::string& name, const std::string& answer, const Ball& ball) {
+    static constexpr double intensity = 5, centre = 0.7, radius = 0.5, light_z = 3;
+    GalleryScene scene{name, answer, {}, {}, {}};
+    scene.make = [ball](int) {
+        Dielectric inside;
+        inside.int_ior = static_cast<float>(ball.n);
+        inside.ext_ior = static_cast<float>(ball.around);
+        inside.absorption = Spectrum::Constant(static_cast<float>(ball.absorption));
+        inside.ext_absorption = Spectrum::Constant(static_cast<float>(ball.of_around));
+        Shape sphere;
+        sphere.name = "ball";
+        sphere.primitive = Primitive::sphere;
+        sphere.to_world = Eigen::Translation3d(0, 0, centre) * Eigen::Scaling(radius);
+        sphere.bsdf = {inside, false};
         SceneDesc desc;
-        desc.shapes = {square("floor", 0, 2, true, grey()), ball};
+        desc.shapes = {square("floor", 0, 2, true, grey()), sphere};
         desc.point_lights = {point_light({0, 0, light_z}, intensity)};
         return desc;
     };
-    const auto land = [](double u) -> std::optional<Landing> {
+    const auto land = [ball](double u) -> std::optional<Landing> {
         PlaneRay ray = from_light(light_z, u);
-        const Vec2d middle(0, centre);
+        const Vec2d middle(0, centre), start = ray.origin;
+        const double n = ball.n / ball.around;
         if (!ray.reach_circle(centre, radius, true)) return {};
-        ray.refract((ray.origin - middle) / radius, n);
+        const Vec2d entry = ray.origin;
+        ray.refract((entry - middle) / radius, n);
         ray.reach_circle(centre, radius, false);
-        if (!ray.refract((ray.origin - middle) / radius, 1 / n)) return {};
+        const Vec2d exit = ray.origin;
+        if (!ray.refract((exit - middle) / radius, 1 / n)) return {};
         if (!ray.reach_plane(0)) return {};
-        return Landing{ray.origin.x(), ray.share};
+        const double round = (entry - start).norm() + (ray.origin - exit).norm();
+        return Landing{ray.origin.x(),
+                       ray.share * std::exp(-ball.of_around * round -
+                                            ball.absorption * (exit - entry).norm())};
     };
     const double edge = std::asin(radius / (light_z - centre));
-    scene.points = known_on_ring({land, of_angle(intensity), 0, edge}, 0, true, 0.01, 0.06);
+    scene.points =
+        known_on_ring({land, of_angle(intensity), 0, edge}, 0, true, ball.inner, ball.outer);
     // What is asked for lies in a spot that the innermost polygons light: they have to be small.
     scene.series = usual_series(0.005, 2, 0.05, 64);
+    allow_events(scene, "2");
+    return scene;
+}
+
+// Dark glass in dark water: of what goes through the middle a thousandth is left, and all that comes
+// to the floor is as weak.
+GalleryScene dark_ball() {
+    GalleryScene scene =
+        ball("dark_ball", "a sphere times exp(-sigma d)",
+             {.around = 1.333, .absorption = 7, .of_around = 1, .inner = 0.1, .outer = 0.18});
+    scene.series = {light_trace(0.01, 0.05, 400'000), beam_tree(2, 0.08, "", 64),
+                    beam_tree(2, 0.08, "bound=two_slice", 64)};
     allow_events(scene, "2");
     return scene;
 }
@@ -222,11 +253,9 @@ GalleryScene still_water(const std::string& name, const std::string& answer, dou
 }
 
 std::vector<GalleryScene> lenses() {
-    return {slab(),
-            still_water("flat_water", "one refraction by a plane", 0),
-            sine_water(),
-            ball_lens(),
-            plano_convex_lens(),
+    return {slab(),       still_water("flat_water", "one refraction by a plane", 0),
+            sine_water(), ball("ball_lens", "two refractions by a sphere", {}),
+            dark_ball(),  plano_convex_lens(),
             prism()};
 }
 

@@ -114,6 +114,15 @@ TEST(Notes, SayWhereTheEyesMediumCannotBeTold) {
     EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"eye", "ext_absorption"}));
 }
 
+TEST(Notes, NameDielectricsThatCross) {
+    SceneDesc desc = flat_mirror();
+    desc.shapes.push_back(support::sphere("left", {0, 0, 3}, 0.2, support::glass(1.5F)));
+    desc.shapes.push_back(support::sphere("right", {0.5, 0, 3}, 0.2, support::glass(1.5F)));
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    desc.shapes.push_back(support::sphere("middle", {0.25, 0, 3}, 0.2, support::glass(1.5F)));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"left and middle", "1 pair more", "cross"}));
+}
+
 TEST(Notes, NameTheLightThatBeamsLose) {
     for (const std::string method : {"beamtree", "causticpolygons"}) {
         const std::vector<std::string> coarse = {"mesh_resolution=2", "max_bounces=4"};

@@ -63,6 +63,14 @@ TEST(Gallery, WhatAMethodRefusesIsTold) {
     EXPECT_NE(gallery_table({scene}, {outcome}).find("cannot serve it"), std::string::npos);
 }
 
+// Behind dark glass all light is weak, and none of it may be left out for that.
+TEST(Gallery, BeamsFollowTheLightThroughDarkGlass) {
+    const std::vector<std::string> parameters = {"mesh_resolution=128", "max_bounces=2"};
+    const Series series{"beamtree", {{0, parameters}}, 1, 0.08, 0, {}};
+    const SeriesOutcome outcome = run_series(scene_named("dark_ball"), series, RunOptions{});
+    EXPECT_NEAR(outcome.mean, 1, 0.01);
+}
+
 // Through a plane mirror all of what meets it goes on to the floor or past it.
 TEST(LightAudit, AccountsForTheLightOfAMirror) {
     const std::vector<LightAccount> accounts =
