@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "beamtree/beam_tree.h"
+#include "beamtree/beam_tree_params.h"
 
 namespace caustics {
 

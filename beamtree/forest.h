@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "beamtree/beam_estimator.h"
-#include "beamtree/beam_tree.h"
+#include "beamtree/beam_tree_params.h"
 #include "beamtree/cone_tree.h"
 #include "beamtree/slice_tree.h"
 #include "beamtree/traced_scene.h"

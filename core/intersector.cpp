@@ -101,7 +101,7 @@ using EmbreeContext = RTCIntersectContext;
 #endif
 struct Query {
     EmbreeContext context;  // first, so that a pointer to it is one to the query
-    std::array<ExactHit, Scene::most_together> exact;  // of the exact shape hit last, by ray's id
+    std::array<ExactHit, most_rays_together> exact;  // of the exact shape hit last, by ray's id
 };
 
 void exact_intersect(const RTCIntersectFunctionNArguments* args) {
@@ -180,7 +180,7 @@ void intersect_scene(RTCScene scene, RTCRayHit& rayhit, Query& query) {
 }
 
 using Packet = RTCRayHit16;
-static_assert(Scene::most_together == 16);
+static_assert(most_rays_together == 16);
 
 void intersect_packet(RTCScene scene, const int* valid, Packet& packet, Query& query) {
 #if RTC_VERSION_MAJOR >= 4
@@ -344,7 +344,7 @@ std::optional<SurfacePoint> Intersector::intersect(const Ray& ray) const {
 void Intersector::intersect_together(std::span<const Ray> rays,
                                      std::span<std::optional<SurfacePoint>> hits) const {
     Packet packet;
-    alignas(64) std::array<int, Scene::most_together> valid{};
+    alignas(64) std::array<int, most_rays_together> valid{};
     for (unsigned i = 0; i < rays.size(); ++i) {
         valid[i] = -1;
         write_ray(rays[i], i, packet);

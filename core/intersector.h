@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/ray.h"
+#include "core/shape.h"
 
 namespace caustics {
 

@@ -161,7 +161,7 @@ private:
 
 }  // namespace
 
-std::map<std::string, std::filesystem::path>::const_iterator JsonNode::Document::inclusion(
+std::map<std::string, std::filesystem::path>::const_iterator JsonDocument::inclusion(
     const std::string& pointer) const {
     for (std::string prefix = pointer;;) {
         const auto found = included.find(prefix);
@@ -170,7 +170,7 @@ std::map<std::string, std::filesystem::path>::const_iterator JsonNode::Document:
     }
 }
 
-std::string JsonNode::Document::place(const std::string& pointer) const {
+std::string JsonDocument::place(const std::string& pointer) const {
     const auto inclusion_point = inclusion(pointer);
     const auto visible = [](const std::string& p) { return p.empty() ? std::string("/") : p; };
     if (inclusion_point == included.end()) return one_line(file.string() + ": " + visible(pointer));
@@ -181,7 +181,7 @@ std::string JsonNode::Document::place(const std::string& pointer) const {
     return one_line(text);
 }
 
-void JsonNode::Document::fail(const std::string& pointer, const std::string& reason) const {
+void JsonDocument::fail(const std::string& pointer, const std::string& reason) const {
     throw InputError(place(pointer) + ": " + reason);
 }
 

@@ -8,12 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/json_reader.h"
-
 namespace caustics {
 
 /// What the JsonNodes of one document share. Only json_reader.cpp and json_document.cpp see it.
-struct JsonNode::Document {
+struct JsonDocument {
     /// The keys of one object that its reader asked for.
     struct Keys {
         std::vector<std::string> known;  ///< by name, in the order of asking

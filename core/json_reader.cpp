@@ -60,11 +60,11 @@ void erase_at_or_below(std::map<std::string, Value>& map, const std::string& poi
 
 }  // namespace
 
-JsonNode::JsonNode(std::shared_ptr<Document> document, std::string pointer)
+JsonNode::JsonNode(std::shared_ptr<JsonDocument> document, std::string pointer)
     : document_(std::move(document)), pointer_(std::move(pointer)) {}
 
 JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
-    const auto document = std::make_shared<Document>();
+    const auto document = std::make_shared<JsonDocument>();
     document->file = file;
     document->root = parse_json(read_whole_file(file), file.string());
     resolve_includes(document->root, "", file, document->included);
@@ -73,7 +73,7 @@ JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
 
 JsonNode JsonNode::parse_text(const std::string& text, const std::string& origin,
                               const std::filesystem::path& written_in) {
-    const auto document = std::make_shared<Document>();
+    const auto document = std::make_shared<JsonDocument>();
     document->file = origin;
     document->written_in = written_in;
     document->root = parse_json(text, origin);
@@ -211,7 +211,7 @@ JsonNode JsonNode::at(const std::string& key) const {
 std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {
     const json& value = document_->value(pointer_);
     if (!value.is_object()) fail("expected an object, got " + shown(value));
-    Document::Keys& keys = document_->keys[pointer_];
+    JsonDocument::Keys& keys = document_->keys[pointer_];
     std::vector<std::pair<std::string, JsonNode>> nodes;
     for (const auto& [key, child] : value.items()) {
         if (std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end()) continue;
@@ -223,7 +223,7 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {
 
 std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
     std::vector<std::pair<std::string, JsonNode>> nodes = others();
-    Document::Keys& keys = document_->keys[pointer_];
+    JsonDocument::Keys& keys = document_->keys[pointer_];
     std::erase_if(nodes, [&](const auto& entry) {
         if (entry.second.is_object()) return false;
         keys.taken.erase(entry.first);
@@ -235,7 +235,7 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
 void JsonNode::finish() const {
     const json& value = document_->value(pointer_);
     if (!value.is_object()) fail("expected an object, got " + shown(value));
-    const Document::Keys& keys = document_->keys[pointer_];
+    const JsonDocument::Keys& keys = document_->keys[pointer_];
     for (const auto& [key, child] : value.items()) {
         const bool known = std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end();
         if (!known && !keys.taken.contains(key))

@@ -10,6 +10,8 @@
 
 namespace caustics {
 
+struct JsonDocument;
+
 /// A value of a JSON document with its place, read strictly: every access says what it expects,
 /// every key of an object must be asked for, and what does not fit throws InputError as
 /// "file: /pointer: reason (alternatives)". Cheap to copy; keeps the document alive.
@@ -66,9 +68,8 @@ public:
     std::string canonical() const;
 
 private:
-    struct Document;
-    JsonNode(std::shared_ptr<Document> document, std::string pointer);
-    std::shared_ptr<Document> document_;
+    JsonNode(std::shared_ptr<JsonDocument> document, std::string pointer);
+    std::shared_ptr<JsonDocument> document_;
     std::string pointer_;
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,28 +8,12 @@
 
 #include "core/camera.h"
 #include "core/light.h"
+#include "core/ray.h"
 #include "core/shape.h"
 
 namespace caustics {
 
 class Intersector;
-
-struct Ray {
-    Vec3 origin = Vec3::Zero();
-    Vec3 direction = Vec3::UnitZ();  ///< unit
-    float max_distance = std::numeric_limits<float>::infinity();
-};
-
-/// A point on a surface as a ray found it.
-struct SurfacePoint {
-    Vec3 position = Vec3::Zero();
-    Vec3 geometric_normal = Vec3::Zero();  ///< unit, front side of the surface
-    Vec3 shading_normal = Vec3::Zero();    ///< unit, front side
-    Vec2 uv = Vec2::Zero();
-    float distance = 0;       ///< from the ray's origin [m]
-    float offset = 0;         ///< how far off the surface a ray starts that leaves the point [m]
-    std::uint32_t shape = 0;  ///< index into Scene::shapes
-};
 
 /// An end of a line of sight: a free point (offset 0), or a point on a surface.
 struct SegmentEnd {
@@ -74,7 +57,7 @@ public:
     /// The same for up to `most_together` rays that lie near each other: they go through the tree side
     /// by side, which is faster. The hits are those of intersect() but for rounding: a ray that runs
     /// through an edge may end on the other triangle.
-    static constexpr std::size_t most_together = 16;
+    static constexpr std::size_t most_together = most_rays_together;
     void intersect_together(std::span<const Ray> rays,
                             std::span<std::optional<SurfacePoint>> hits) const;
     /// Whether any surface lies between two ends.

@@ -9,7 +9,7 @@
 
 #include "core/film.h"
 #include "core/scene_io.h"
-#include "experiments/sweep_plan.h"
+#include "experiments/reference_request.h"
 
 namespace caustics {
 

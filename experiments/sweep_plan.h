@@ -9,16 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/run.h"
+#include "experiments/reference_request.h"
 
 namespace caustics {
-
-/// What the trials of a scene are judged by.
-struct ReferenceRequest {
-    RunRequest request;
-    std::string key;  ///< hash of scene, method, parameters, samples, seed, film and format
-    std::filesystem::path kept_folder;  ///< where references may be kept beside the sweep files
-};
 
 /// One element of the product of a sweep file's lists. Scene values are set in the order of their
 /// pointers, so that a whole object is set before a value in it.

@@ -7,7 +7,8 @@
 #include "experiments/cost_estimate.h"
 #include "experiments/job_store.h"
 #include "experiments/reference_cache.h"
-#include "experiments/sweep.h"
+#include "experiments/sweep_options.h"
+#include "experiments/sweep_plan.h"
 
 namespace caustics {
 

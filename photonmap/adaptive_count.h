@@ -44,12 +44,6 @@ struct ChosenPhotons {
 /// steps as could be tested.
 class AdaptiveCount {
 public:
-    /// N must be at least this, for the ladder to have room.
-    static constexpr int least_nearest = 20;
-    static constexpr int most_nearest = 100'000;
-    /// N where none is given.
-    static constexpr int default_nearest = 200;
-
     explicit AdaptiveCount(Isa isa);
 
     /// Chooses among the photons gathered at the point, with their positions; `full` tells whether

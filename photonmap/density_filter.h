@@ -1,6 +1,6 @@
 #pragma once
 
-#include "photonmap/photon_map.h"
+#include "photonmap/photon_map_params.h"
 #include "photonmap/shading_kernel.h"
 
 namespace caustics {

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "photonmap/photon_tree.h"
+#include "photonmap/build_tree.h"
 #include "photonmap/rgbe.h"
 
 namespace caustics {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "photonmap/build_tree.h"
 #include "photonmap/faint_channels.h"
 #include "photonmap/kept_photons.h"
 #include "photonmap/max_radius.h"
-#include "photonmap/photon_tree.h"
 #include "photonmap/progressive.h"
 #include "photonmap/radiance_estimate.h"
 
@@ -116,8 +116,8 @@ void check(const PhotonMapParams& params) {
     if (!params.adaptive) return;
     if (params.radius > 0)
         throw InputError("photonmap: a fixed radius leaves no N for adaptive to choose");
-    if (params.nearest < AdaptiveCount::least_nearest ||
-        params.nearest > AdaptiveCount::most_nearest)
+    if (params.nearest < PhotonMapParams::least_adaptive_nearest ||
+        params.nearest > PhotonMapParams::most_adaptive_nearest)
         throw InputError("photonmap: nearest, the largest N, must be 20 to 100000 with adaptive");
 }
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "photonmap/photon_map.h"
+#include "photonmap/photon_map_params.h"
 #include "photonmap/photon_tracing.h"
 
 namespace caustics {

@@ -1,8 +1,7 @@
+#include "photonmap/photon_map_params.h"
+
 #include <cmath>
 #include <string>
-
-#include "photonmap/adaptive_count.h"
-#include "photonmap/photon_map.h"
 
 namespace caustics {
 
@@ -64,7 +63,7 @@ void read_estimate(const JsonNode& node, PhotonMapParams& params) {
         params.estimator =
             estimator->as_choice({"unbiased", "raw"}) == 0 ? Estimator::unbiased : Estimator::raw;
     if (const auto adaptive = node.find("adaptive")) params.adaptive = adaptive->as_bool();
-    if (params.adaptive) params.nearest = AdaptiveCount::default_nearest;
+    if (params.adaptive) params.nearest = PhotonMapParams::default_adaptive_nearest;
     if (const auto nearest = node.find("nearest")) {
         params.nearest = static_cast<int>(nearest->as_integer_in(1, most_nearest));
         if (params.nearest < 2 && params.estimator == Estimator::unbiased)
@@ -72,7 +71,8 @@ void read_estimate(const JsonNode& node, PhotonMapParams& params) {
                 "must be at least 2 with the estimator \"unbiased\", which leaves the "
                 "outermost photon out (or choose \"raw\")");
         if (params.adaptive)
-            nearest->as_integer_in(AdaptiveCount::least_nearest, AdaptiveCount::most_nearest);
+            nearest->as_integer_in(PhotonMapParams::least_adaptive_nearest,
+                                   PhotonMapParams::most_adaptive_nearest);
     }
     if (const auto max_radius = node.find("max_radius"))
         params.max_radius = length(*max_radius, "leave it out to have it chosen");

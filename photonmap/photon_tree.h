@@ -10,7 +10,6 @@
 #include "core/caustic_estimator.h"
 #include "photonmap/gather_scratch.h"
 #include "photonmap/gathered_photons.h"
-#include "photonmap/photon_map.h"
 #include "photonmap/photon_store.h"
 
 namespace caustics {
@@ -47,9 +46,5 @@ public:
     virtual std::uint64_t bytes() const = 0;
     virtual void add_to(Counters&) const {}
 };
-
-/// Orders the photons, in their memory where the kind allows it, with less than 1 MB besides. Throws
-/// InputError naming the first photon whose position is not finite.
-std::unique_ptr<const PhotonTree> build_tree(TreeKind kind, PhotonStore photons, Isa isa);
 
 }  // namespace caustics

@@ -5,7 +5,7 @@
 #include "core/caustic_estimator.h"
 #include "photonmap/adaptive_count.h"
 #include "photonmap/aligned_array.h"
-#include "photonmap/photon_map.h"
+#include "photonmap/photon_map_params.h"
 #include "photonmap/photon_tree.h"
 #include "photonmap/shading.h"
 

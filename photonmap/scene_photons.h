@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "photonmap/photon_map.h"
+#include "photonmap/photon_map_params.h"
 #include "photonmap/photon_tracing.h"
 
 namespace caustics {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "photon_sets.h"
+#include "photonmap/build_tree.h"
 #include "photonmap/radiance_estimate.h"
 
 namespace caustics::test {

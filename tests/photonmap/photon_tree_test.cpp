@@ -1,4 +1,4 @@
-#include "photonmap/photon_tree.h"
+#include "photonmap/build_tree.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

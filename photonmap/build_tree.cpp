@@ -1,4 +1,4 @@
-#include "photonmap/photon_tree.h"
+#include "photonmap/build_tree.h"
 
 #include "photonmap/balanced_kd_tree.h"
 #include "photonmap/packed_kd_tree.h"
