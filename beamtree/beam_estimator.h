@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "beamtree/beam_light.h"
-#include "beamtree/traced_scene.h"
+#include "beamtree/light/beam_light.h"
+#include "beamtree/tracing/traced_scene.h"
 
 namespace caustics {
 

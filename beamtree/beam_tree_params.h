@@ -1,9 +1,9 @@
 #pragma once
 
-#include "beamtree/beam_params.h"
-#include "beamtree/beam_tracing.h"
-#include "beamtree/cone_tree.h"
-#include "core/json_reader.h"
+#include "beamtree/beams/beam_params.h"
+#include "beamtree/cones/cone_tree.h"
+#include "beamtree/tracing/beam_tracing.h"
+#include "core/scene_file/json_reader.h"
 
 namespace caustics {
 

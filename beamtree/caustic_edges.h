@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "beamtree/traced_scene.h"
+#include "beamtree/tracing/traced_scene.h"
 
 namespace caustics {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "beamtree/beam_estimator.h"
+#include "beamtree/beams/trace_progress.h"
 #include "beamtree/receiver_polygons.h"
-#include "beamtree/trace_progress.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace caustics {
 

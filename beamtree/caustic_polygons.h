@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "beamtree/beam_params.h"
+#include "beamtree/beams/beam_params.h"
 #include "core/caustic_estimator.h"
-#include "core/json_reader.h"
+#include "core/scene_file/json_reader.h"
 
 namespace caustics {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "beamtree/plane_groups.h"
-#include "beamtree/trace_progress.h"
-#include "core/parallel.h"
+#include "beamtree/beams/trace_progress.h"
+#include "beamtree/cones/plane_groups.h"
+#include "core/base/parallel.h"
 
 namespace caustics {
 namespace {

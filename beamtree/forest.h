@@ -5,9 +5,9 @@
 
 #include "beamtree/beam_estimator.h"
 #include "beamtree/beam_tree_params.h"
-#include "beamtree/cone_tree.h"
-#include "beamtree/slice_tree.h"
-#include "beamtree/traced_scene.h"
+#include "beamtree/cones/cone_tree.h"
+#include "beamtree/slices/slice_tree.h"
+#include "beamtree/tracing/traced_scene.h"
 
 namespace caustics {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "beamtree/caster_mesh.h"
-#include "core/tessellate.h"
+#include "beamtree/beams/caster_mesh.h"
+#include "core/geometry/tessellate.h"
 
 namespace caustics {
 namespace {

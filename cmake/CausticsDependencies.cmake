@@ -1,6 +1,6 @@
 # Finds what the project stands on. All are imported targets, whose headers CMake treats as SYSTEM.
 
-# Embree 3 and 4 both offer the target `embree`; their differences live in core/intersector.cpp.
+# Embree 3 and 4 both offer the target `embree`; their differences live in core/scene/intersector.cpp.
 find_package(embree 4 CONFIG QUIET)
 if(NOT embree_FOUND)
     find_package(embree 3.13 CONFIG REQUIRED)

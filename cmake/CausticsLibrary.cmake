@@ -105,7 +105,7 @@ function(caustics_library name)
 endfunction()
 
 # caustics_isa_sources(photonmap AVX2 a_avx2.cpp ... AVX512 a_avx512.cpp ...) adds sources that are
-# compiled for wider registers and chosen at run time (core/isa.h). They must include no inline code of
+# compiled for wider registers and chosen at run time (core/base/isa.h). They must include no inline code of
 # Eigen or the standard library: the linker could take that code for all of the program.
 function(caustics_isa_sources library)
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "AVX2;AVX512")

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/bsdf.h"
-#include "core/isa.h"
-#include "core/scene.h"
+#include "core/base/isa.h"
+#include "core/material/bsdf.h"
+#include "core/scene/scene.h"
 
 namespace caustics {
 

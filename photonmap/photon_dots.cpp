@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
-#include "photonmap/build_tree.h"
-#include "photonmap/rgbe.h"
+#include "photonmap/photons/rgbe.h"
+#include "photonmap/tree/build_tree.h"
 
 namespace caustics {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
-#include "photonmap/photon_tracing.h"
+#include "photonmap/photons/photon_tracing.h"
 
 namespace caustics {
 

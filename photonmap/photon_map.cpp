@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
-#include "photonmap/build_tree.h"
-#include "photonmap/faint_channels.h"
-#include "photonmap/kept_photons.h"
-#include "photonmap/max_radius.h"
+#include "core/base/error.h"
+#include "photonmap/estimate/max_radius.h"
+#include "photonmap/estimate/radiance_estimate.h"
+#include "photonmap/photons/faint_channels.h"
+#include "photonmap/photons/photon_source.h"
 #include "photonmap/progressive.h"
-#include "photonmap/radiance_estimate.h"
+#include "photonmap/tree/build_tree.h"
 
 namespace caustics {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
-#include "photonmap/photon_map_params.h"
+#include "photonmap/photons/photon_map_params.h"
 
 namespace caustics {
 

@@ -1,6 +1,6 @@
 #include "photonmap/progressive.h"
 
-#include "core/rng.h"
+#include "core/math/rng.h"
 
 namespace caustics {
 

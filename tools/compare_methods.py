@@ -18,9 +18,9 @@ import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
-import records
-from estimate_cells import STAGES
-from report_files import report, write
+from report import records
+from report.estimate_cells import STAGES
+from report.report_files import report, write
 
 STEPS = 5  # times and errors asked for, a scene
 FEWEST_SEEDS = 5  # below, no method is called the best

@@ -17,9 +17,9 @@ import subprocess
 import sys
 import tempfile
 
-import crosscheck_report
+from report import crosscheck_report
 import numpy as np
-from crosscheck_statistics import compare, is_remarkable, of_pictures, relative_error
+from report.crosscheck_statistics import compare, is_remarkable, of_pictures, relative_error
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENES = ROOT / "experiments" / "scenes" / "crosscheck"

@@ -18,9 +18,9 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-import records
-from curves import along
-from report_files import write
+from report import records
+from report.curves import along
+from report.report_files import write
 
 SCENE = ROOT / "experiments" / "scenes" / "pool_overhead.json"
 POOLS = {"folded": "2.5", "calm": "1"}  # and how many times as high their waves are
@@ -194,7 +194,7 @@ def measure(program, chosen):
 
 
 def plot(results):
-    import time_plots  # here, so that a missing matplotlib is told apart from bad records
+    from report import time_plots  # here, so that a missing matplotlib is told apart from bad records
 
     curve = lambda trials: [(trial["seconds"], trial["error"]) for trial in front(trials)]
     return time_plots.draw({f"{one['pool']} pool": {"beamtree, refined": curve(one["beams"]),

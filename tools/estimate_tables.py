@@ -12,9 +12,9 @@ import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
-import records
-from estimate_cells import Estimate, best, fixed, settings
-from report_files import report, write
+from report import records
+from report.estimate_cells import Estimate, best, fixed, settings
+from report.report_files import report, write
 
 FILTERS = ("none", "cone", "gaussian", "epanechnikov")
 
@@ -34,7 +34,7 @@ def write_all(directory, output):
     parts = settings(cells)
     if not parts:
         raise records.RecordsError(f"{path}: no photonmap with `photons` was judged by a reference")
-    import estimate_heat_maps  # here, so that a broken table is named even without matplotlib
+    from report import estimate_heat_maps  # here, so that a broken table is named even without matplotlib
 
     texts, missing = {}, []
     if others := sum(cell.method == "photonmap" and cell.photons is None for cell in cells):

@@ -23,8 +23,8 @@ import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
-import records
-from report_files import report, write
+from report import records
+from report.report_files import report, write
 
 REFERENCES = pathlib.Path(__file__).resolve().parent.parent / "experiments" / "references"
 LUMINANCE = (0.2126, 0.7152, 0.0722)

@@ -17,10 +17,10 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-import beam_report
-import beam_trials
-import records
-from report_files import write
+from report import beam_report
+from report import beam_trials
+from report import records
+from report.report_files import write
 
 SWEEPS = ("counts", "counts_quads", "bounds_pool", "bounds_ring", "height", "watt_ns", "watt_nd", "watt_nl")
 BLOCK = "<!-- {0} -->\n{1}<!-- end of {0} -->"
@@ -66,7 +66,7 @@ def fill(page, blocks):
 
 
 def write_results(output, folders):
-    import beam_plots  # here, so that a missing matplotlib is told apart from bad records
+    from report import beam_plots  # here, so that a missing matplotlib is told apart from bad records
 
     cells = {name: beam_trials.read(folder) for name, folder in folders.items()}
     watt = [cells["watt_ns"], cells["watt_nd"], cells["watt_nl"]]

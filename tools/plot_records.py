@@ -10,9 +10,9 @@ import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
-import record_tables
-import records
-from report_files import report, write
+from report import record_tables
+from report import records
+from report.report_files import report, write
 
 OWN_PLOT = re.compile(r"((rmse|relmse|mean_ratio)_vs_(photons|time|alpha|mesh_resolution)-.*|mean_ratio)\.svg")
 
@@ -28,7 +28,7 @@ def main():
 
 def write_report(directory, output):
     table = records.read(os.path.join(directory, "records.csv"))
-    import record_plots  # here, so that a broken table is named even without matplotlib
+    from report import record_plots  # here, so that a broken table is named even without matplotlib
 
     plots, left_out = record_plots.make(table)
     os.makedirs(os.path.join(output, "plots"), exist_ok=True)

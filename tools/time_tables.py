@@ -13,10 +13,10 @@ import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
-import records
-from curves import along
-from estimate_cells import Estimate
-from report_files import report, write
+from report import records
+from report.curves import along
+from report.estimate_cells import Estimate
+from report.report_files import report, write
 
 TIMES = (0.5, 0.7, 1.0, 1.5, 2.0, 3.0)  # seconds
 PASSES_OF = 20000  # photons
@@ -32,7 +32,7 @@ def main():
 
 
 def write_all(directory, output):
-    import time_plots  # here, so that a missing matplotlib is told apart from bad records
+    from report import time_plots  # here, so that a missing matplotlib is told apart from bad records
 
     cells = records.read(os.path.join(directory, "records.csv")).cells
     scored = [Estimate(cell) for cell in cells if cell.spread("relmse")]

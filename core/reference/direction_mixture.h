@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
-#include "core/rng.h"
-#include "core/sampling.h"
-#include "core/shape.h"
+#include "core/geometry/shape.h"
+#include "core/math/rng.h"
+#include "core/math/sampling.h"
 
 namespace caustics {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/same_surface.h"
+#include "core/scene/same_surface.h"
 
 namespace caustics {
 

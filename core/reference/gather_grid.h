@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/light_path.h"
+#include "core/light_path/light_path.h"
 
 namespace caustics {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
-#include "core/eye_medium.h"
-#include "core/optics.h"
+#include "core/base/error.h"
+#include "core/material/optics.h"
 #include "core/reference/gather_grid.h"
 #include "core/reference/ordered_paths.h"
+#include "core/scene/eye_medium.h"
 
 namespace caustics {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
-#include "core/json_reader.h"
+#include "core/scene_file/json_reader.h"
 
 namespace caustics {
 

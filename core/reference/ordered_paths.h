@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/aimed_emission.h"
-#include "core/light_path.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
+#include "core/light_path/aimed_emission.h"
+#include "core/light_path/light_path.h"
 
 namespace caustics {
 

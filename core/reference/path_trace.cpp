@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
-#include "core/optics.h"
+#include "core/base/error.h"
+#include "core/material/optics.h"
+#include "core/math/rng.h"
 #include "core/reference/direction_mixture.h"
-#include "core/rng.h"
 
 namespace caustics {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/bsdf.h"
+#include "core/material/bsdf.h"
 #include "core/scene_file/values.h"
 
 namespace caustics::scene_file {

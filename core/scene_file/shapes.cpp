@@ -4,10 +4,10 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/mesh_io.h"
+#include "core/geometry/mesh_io.h"
+#include "core/geometry/tessellate.h"
 #include "core/scene_file/bsdfs.h"
-#include "core/scene_file/frame.h"
-#include "core/tessellate.h"
+#include "core/scene_file/scene_frame.h"
 
 namespace caustics::scene_file {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/geometry/shape.h"
 #include "core/scene_file/values.h"
-#include "core/shape.h"
 
 namespace caustics::scene_file {
 

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "core/coordinate_limit.h"
-#include "core/whole_file.h"
+#include "core/base/atomic_file.h"
+#include "core/geometry/coordinate_limit.h"
 
 namespace caustics::scene_file {
 namespace {

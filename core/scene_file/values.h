@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
-#include "core/json_reader.h"
-#include "core/spectrum.h"
-#include "core/texture.h"
-#include "core/vec.h"
+#include "core/base/error.h"
+#include "core/material/texture.h"
+#include "core/math/spectrum.h"
+#include "core/math/vec.h"
+#include "core/scene_file/json_reader.h"
 
 namespace caustics::scene_file {
 

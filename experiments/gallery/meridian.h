@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 namespace caustics {
 
@@ -40,7 +40,7 @@ struct PlaneRay {
     /// To the circle round (0, z): its nearer or farther crossing.
     bool reach_circle(double z, double radius, bool nearer);
     /// Through a surface with this unit normal, on either side; n: the far side's ior over the near
-    /// one's. Snell's law, and Fresnel's for unpolarised light, written apart from core/optics. False
+    /// one's. Snell's law, and Fresnel's for unpolarised light, written apart from core/material/optics. False
     /// at total reflection.
     bool refract(const Vec2d& normal, double n);
 };

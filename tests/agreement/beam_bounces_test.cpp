@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "beamtree/beam_tracing.h"
 #include "beamtree/beam_tree.h"
 #include "beamtree/caustic_polygons.h"
-#include "core/aimed_emission.h"
-#include "core/tessellate.h"
+#include "beamtree/tracing/beam_tracing.h"
+#include "core/geometry/tessellate.h"
+#include "core/light_path/aimed_emission.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
 #include "tests/support/light_flux.h"

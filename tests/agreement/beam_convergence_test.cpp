@@ -3,10 +3,10 @@
 #include <cmath>
 #include <complex>
 
-#include "beamtree/beam_tracing.h"
 #include "beamtree/beam_tree.h"
-#include "core/rng.h"
-#include "core/tessellate.h"
+#include "beamtree/tracing/beam_tracing.h"
+#include "core/geometry/tessellate.h"
+#include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
 #include "tests/support/sanitizers.h"

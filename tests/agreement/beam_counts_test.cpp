@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "beamtree/beam_tree.h"
-#include "core/renderer.h"
-#include "core/scene_io.h"
+#include "core/render/renderer.h"
+#include "core/scene_file/scene_reader.h"
 
 namespace caustics {
 namespace {

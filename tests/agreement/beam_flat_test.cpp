@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "beamtree/beam_tree.h"
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
 

@@ -4,7 +4,7 @@
 
 #include "beamtree/beam_tree.h"
 #include "beamtree/caustic_polygons.h"
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics {

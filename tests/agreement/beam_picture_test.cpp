@@ -4,8 +4,8 @@
 
 #include "beamtree/beam_tree.h"
 #include "beamtree/caustic_polygons.h"
-#include "core/renderer.h"
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
+#include "core/render/renderer.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/light_flux.h"
 #include "tests/support/sanitizers.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "beamtree/beam_tree.h"
-#include "core/rng.h"
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
+#include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics {

@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <optional>
 
-#include "beamtree/beam_tracing.h"
 #include "beamtree/beam_tree.h"
-#include "beamtree/refined_density.h"
-#include "core/rng.h"
-#include "core/tessellate.h"
+#include "beamtree/light/refined_density.h"
+#include "beamtree/tracing/beam_tracing.h"
+#include "core/geometry/tessellate.h"
+#include "core/math/rng.h"
 #include "tests/agreement/exact_pool.h"
 #include "tests/support/build_scene.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/reference/light_trace.h"
-#include "core/renderer.h"
-#include "core/scene_io.h"
+#include "core/render/renderer.h"
+#include "core/scene_file/scene_reader.h"
 #include "photonmap/photon_map.h"
 
 namespace caustics {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "beamtree/beam_tree.h"
-#include "beamtree/light_sample.h"
-#include "core/rng.h"
-#include "core/tessellate.h"
+#include "beamtree/beams/light_sample.h"
+#include "core/geometry/tessellate.h"
+#include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
 

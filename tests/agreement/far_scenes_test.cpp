@@ -6,7 +6,7 @@
 
 #include "beamtree/beam_tree.h"
 #include "core/reference/light_trace.h"
-#include "core/scene_io.h"
+#include "core/scene_file/scene_reader.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/temporary_folder.h"

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/geometry/tessellate.h"
 #include "core/reference/light_trace.h"
-#include "core/tessellate.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/flat_pool.h"

@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "core/direct_light.h"
+#include "core/geometry/tessellate.h"
 #include "core/reference/path_trace.h"
-#include "core/tessellate.h"
+#include "core/render/direct_light.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/light_flux.h"
 #include "tests/support/statistics.h"

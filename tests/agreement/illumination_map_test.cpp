@@ -1,15 +1,15 @@
-#include "core/reference/illumination_map.h"
+#include "core/illumination_map/illumination_map.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/aimed_emission.h"
-#include "core/error.h"
-#include "core/exact_shape.h"
+#include "core/base/error.h"
+#include "core/geometry/exact_shape.h"
+#include "core/light_path/aimed_emission.h"
 #include "core/reference/light_trace.h"
-#include "core/renderer.h"
+#include "core/render/renderer.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "beamtree/beam_tree.h"
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"

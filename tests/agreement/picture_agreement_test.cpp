@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/rng.h"
-#include "core/vec.h"
+#include "core/math/rng.h"
+#include "core/math/vec.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {

@@ -8,7 +8,7 @@
 
 #include "core/reference/light_trace.h"
 #include "core/reference/path_trace.h"
-#include "core/renderer.h"
+#include "core/render/renderer.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 
@@ -68,7 +68,7 @@ Vec2d centroid(const Film& film) {
     return sum / total;
 }
 
-// By elementary geometry, apart from core/camera: angles to the right of and above the view.
+// By elementary geometry, apart from core/scene/camera: angles to the right of and above the view.
 Vec2d expected_place(const Vec3d& p) {
     const Vec3d eye(-1, -5, 4);
     const Vec3d forward = (Vec3d(-0.5, 1.5, 0) - eye).normalized();

@@ -6,7 +6,7 @@
 
 #include "core/reference/light_trace.h"
 #include "core/reference/path_trace.h"
-#include "core/renderer.h"
+#include "core/render/renderer.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/flat_pool.h"
 #include "tests/support/picture_agreement.h"

@@ -4,10 +4,10 @@
 #include <functional>
 #include <utility>
 
+#include "core/geometry/tessellate.h"
 #include "core/reference/light_trace.h"
 #include "core/reference/path_trace.h"
-#include "core/renderer.h"
-#include "core/tessellate.h"
+#include "core/render/renderer.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/picture_agreement.h"
 

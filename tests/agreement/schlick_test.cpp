@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "core/bsdf.h"
-#include "core/rng.h"
-#include "core/sampling.h"
+#include "core/material/bsdf.h"
+#include "core/math/rng.h"
+#include "core/math/sampling.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/aimed_emission.h"
-#include "photonmap/rgbe.h"
-#include "photonmap/scene_photons.h"
+#include "core/light_path/aimed_emission.h"
+#include "photonmap/photons/rgbe.h"
+#include "photonmap/photons/scene_photons.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
 #include "tests/support/light_flux.h"

@@ -1,4 +1,4 @@
-#include "beamtree/specular_point.h"
+#include "beamtree/light/specular_point.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "beamtree/beam_tree.h"
 #include "beamtree/caustic_polygons.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/beamtree/beam_scenes.h"
 
 // Meshes and scenes as they come: through build(), irradiance() and the report alone.

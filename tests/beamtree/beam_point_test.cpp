@@ -1,4 +1,4 @@
-#include "beamtree/beam_point.h"
+#include "beamtree/light/beam_point.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "beamtree/beam_tracing.h"
-#include "core/rng.h"
-#include "core/tessellate.h"
+#include "beamtree/tracing/beam_tracing.h"
+#include "core/geometry/tessellate.h"
+#include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics {

@@ -1,4 +1,4 @@
-#include "beamtree/beam_square.h"
+#include "beamtree/slices/beam_square.h"
 
 #include <gtest/gtest.h>
 

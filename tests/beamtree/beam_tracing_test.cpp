@@ -1,4 +1,4 @@
-#include "beamtree/beam_tracing.h"
+#include "beamtree/tracing/beam_tracing.h"
 
 #include <gtest/gtest.h>
 

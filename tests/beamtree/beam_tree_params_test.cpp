@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "beamtree/beam_tree.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace caustics {
 namespace {

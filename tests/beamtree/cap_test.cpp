@@ -1,12 +1,12 @@
-#include "beamtree/cap.h"
+#include "beamtree/cones/cap.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "beamtree/neck.h"
-#include "core/rng.h"
+#include "beamtree/cones/neck.h"
+#include "core/math/rng.h"
 
 namespace caustics {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics {

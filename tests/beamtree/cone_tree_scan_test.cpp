@@ -8,10 +8,10 @@
 #include <optional>
 #include <tuple>
 
-#include "beamtree/cone_tree.h"
-#include "beamtree/plane_groups.h"
-#include "beamtree/slice_tree.h"
-#include "core/sampling.h"
+#include "beamtree/cones/cone_tree.h"
+#include "beamtree/cones/plane_groups.h"
+#include "beamtree/slices/slice_tree.h"
+#include "core/math/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
 #include "tests/support/sanitizers.h"
 

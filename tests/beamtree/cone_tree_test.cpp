@@ -1,4 +1,4 @@
-#include "beamtree/cone_tree.h"
+#include "beamtree/cones/cone_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "beamtree/cone_merging.h"
-#include "beamtree/plane_groups.h"
-#include "core/sampling.h"
+#include "beamtree/cones/cone_merging.h"
+#include "beamtree/cones/plane_groups.h"
+#include "core/math/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
 
 namespace caustics {

@@ -1,4 +1,4 @@
-#include "beamtree/lamp_sampler.h"
+#include "beamtree/beams/area_light_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numeric>
 
 #include "beamtree/beam_tree.h"
-#include "beamtree/light_sample.h"
-#include "core/exact_shape.h"
-#include "core/rng.h"
-#include "core/tessellate.h"
+#include "beamtree/beams/light_sample.h"
+#include "core/geometry/exact_shape.h"
+#include "core/geometry/tessellate.h"
+#include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "beamtree/cone_merging.h"
-#include "beamtree/cone_tree.h"
-#include "beamtree/neck.h"
+#include "beamtree/cones/cone_merging.h"
+#include "beamtree/cones/cone_tree.h"
+#include "beamtree/cones/neck.h"
 #include "tests/beamtree/beam_scenes.h"
 
 // Where the printed text of [CC95] fails, what it would lose: the printed formulas stand here, and

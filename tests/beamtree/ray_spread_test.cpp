@@ -1,8 +1,8 @@
-#include "beamtree/ray_spread.h"
+#include "beamtree/beams/ray_spread.h"
 
 #include <gtest/gtest.h>
 
-#include "beamtree/refined_density.h"
+#include "beamtree/light/refined_density.h"
 #include "tests/beamtree/beam_scenes.h"
 
 namespace caustics {

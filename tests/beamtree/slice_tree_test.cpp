@@ -1,4 +1,4 @@
-#include "beamtree/slice_tree.h"
+#include "beamtree/slices/slice_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "beamtree/beam_tree.h"
-#include "beamtree/plane_groups.h"
-#include "beamtree/slice_box.h"
-#include "core/sampling.h"
+#include "beamtree/cones/plane_groups.h"
+#include "beamtree/slices/slice_box.h"
+#include "core/math/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
 
 namespace caustics {

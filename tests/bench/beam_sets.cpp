@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/rng.h"
+#include "core/math/rng.h"
 #include "tests/bench/tracing_scenes.h"
 
 namespace caustics::bench {

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <vector>
 
-#include "beamtree/beam_point.h"
-#include "beamtree/beam_tracing.h"
+#include "beamtree/light/beam_point.h"
+#include "beamtree/tracing/beam_tracing.h"
 
 namespace caustics::bench {
 

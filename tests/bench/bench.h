@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/isa.h"
+#include "core/base/isa.h"
 
 namespace caustics::bench {
 

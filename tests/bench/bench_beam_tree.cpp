@@ -17,9 +17,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "beamtree/cone_tree.h"
-#include "beamtree/slice_tree.h"
-#include "core/parallel.h"
+#include "beamtree/cones/cone_tree.h"
+#include "beamtree/slices/slice_tree.h"
+#include "core/base/parallel.h"
 #include "tests/bench/beam_scan_peer.h"
 #include "tests/bench/beam_sets.h"
 #include "tests/bench/bench.h"

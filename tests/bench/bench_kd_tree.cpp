@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "photonmap/build_tree.h"
+#include "photonmap/tree/build_tree.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/contest.h"
 #include "tests/bench/query_set.h"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "photonmap/shading.h"
+#include "photonmap/estimate/shading.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/caustic_sets.h"
 #include "tests/bench/contest.h"

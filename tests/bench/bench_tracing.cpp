@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "photonmap/scene_photons.h"
+#include "photonmap/photons/scene_photons.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/contest.h"
 #include "tests/bench/raw_replay.h"

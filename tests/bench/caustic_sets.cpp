@@ -5,9 +5,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/light_path.h"
-#include "core/rng.h"
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
+#include "core/light_path/light_path.h"
+#include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics::bench {

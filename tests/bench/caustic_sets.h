@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/scene.h"
-#include "photonmap/photon.h"
+#include "core/scene/scene.h"
+#include "photonmap/photons/photon.h"
 
 namespace caustics::bench {
 

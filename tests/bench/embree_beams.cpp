@@ -10,7 +10,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace caustics::bench {
 

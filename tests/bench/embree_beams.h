@@ -25,7 +25,7 @@ private:
     std::unique_ptr<Embree> embree_;
 };
 
-/// rtcCommitScene of one mesh, by one thread, as core/intersector builds its scenes.
+/// rtcCommitScene of one mesh, by one thread, as core/scene/intersector builds its scenes.
 class EmbreeMesh {
 public:
     EmbreeMesh(const float* positions, std::size_t vertices, const unsigned* triangles,

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "photonmap/photon_tree.h"
+#include "photonmap/tree/photon_tree.h"
 #include "tests/bench/caustic_sets.h"
 #include "tests/bench/nanoflann_peer.h"
 

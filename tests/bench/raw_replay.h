@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace caustics::bench {
 

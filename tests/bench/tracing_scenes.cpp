@@ -1,6 +1,6 @@
 #include "tests/bench/tracing_scenes.h"
 
-#include "core/tessellate.h"
+#include "core/geometry/tessellate.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics::bench {

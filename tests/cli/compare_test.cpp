@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/film.h"
+#include "core/render/film.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
-#include "experiments/files.h"
+#include "experiments/base/file_io.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "experiments/files.h"
+#include "experiments/base/file_io.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <thread>
 
-#include "experiments/files.h"
+#include "experiments/base/file_io.h"
 
 namespace caustics::support {
 

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <thread>
 
-#include "core/film.h"
-#include "experiments/files.h"
+#include "core/render/film.h"
+#include "experiments/base/file_io.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/film.h"
-#include "experiments/files.h"
+#include "core/render/film.h"
+#include "experiments/base/file_io.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "experiments/files.h"
-#include "experiments/sweep_plan.h"
-#include "experiments/sweep_selection.h"
+#include "experiments/base/file_io.h"
+#include "experiments/plan/sweep_plan.h"
+#include "experiments/plan/sweep_selection.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/film.h"
-#include "experiments/files.h"
+#include "core/render/film.h"
+#include "experiments/base/file_io.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,10 +1,10 @@
-#include "photonmap/adaptive_count.h"
+#include "photonmap/estimate/adaptive_n.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/frame.h"
+#include "core/math/frame.h"
 #include "estimate_map.h"
 #include "tests/support/statistics.h"
 

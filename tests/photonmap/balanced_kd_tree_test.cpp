@@ -1,4 +1,4 @@
-#include "photonmap/balanced_kd_tree.h"
+#include "photonmap/tree/balanced_kd_tree.h"
 
 #include <gtest/gtest.h>
 

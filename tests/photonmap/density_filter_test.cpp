@@ -1,4 +1,4 @@
-#include "photonmap/density_filter.h"
+#include "photonmap/estimate/density_filter.h"
 
 #include <gtest/gtest.h>
 

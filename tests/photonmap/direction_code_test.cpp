@@ -1,4 +1,4 @@
-#include "photonmap/direction_code.h"
+#include "photonmap/photons/direction_code.h"
 
 #include <gtest/gtest.h>
 

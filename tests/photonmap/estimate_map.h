@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "photon_sets.h"
-#include "photonmap/build_tree.h"
-#include "photonmap/radiance_estimate.h"
+#include "photonmap/estimate/radiance_estimate.h"
+#include "photonmap/tree/build_tree.h"
 
 namespace caustics::test {
 

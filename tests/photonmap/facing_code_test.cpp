@@ -1,4 +1,4 @@
-#include "photonmap/facing_code.h"
+#include "photonmap/photons/facing_code.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/rng.h"
-#include "core/sampling.h"
+#include "core/math/rng.h"
+#include "core/math/sampling.h"
 
 namespace caustics {
 namespace {

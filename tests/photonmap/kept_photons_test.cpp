@@ -1,9 +1,10 @@
-#include "photonmap/kept_photons.h"
+#include "photonmap/photon_map.h"
+#include "photonmap/photons/photon_source.h"
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
-#include "core/renderer.h"
+#include "core/base/error.h"
+#include "core/render/renderer.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "photonmap/max_radius.h"
+#include "photonmap/estimate/max_radius.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "photonmap/photon_map_file.h"
+#include "photonmap/photons/photon_map_file.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <iterator>
 #include <limits>
 
-#include "core/error.h"
-#include "core/hash.h"
-#include "core/whole_file.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
 #include "photon_sets.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
-#include "core/aimed_emission.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/light_path/aimed_emission.h"
 #include "photonmap/progressive.h"
 
 namespace caustics {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/rng.h"
-#include "photonmap/arrival_directions.h"
-#include "photonmap/photon_tree.h"
+#include "core/math/rng.h"
+#include "photonmap/tree/arrival_directions.h"
+#include "photonmap/tree/photon_tree.h"
 
 namespace caustics::test {
 

@@ -1,4 +1,4 @@
-#include "photonmap/photon_store.h"
+#include "photonmap/photons/photon_store.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "photon_sets.h"
 
 namespace caustics {

@@ -1,4 +1,4 @@
-#include "photonmap/photon_tracing.h"
+#include "photonmap/photons/photon_tracing.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/error.h"
-#include "core/rng.h"
+#include "core/base/error.h"
+#include "core/math/rng.h"
 #include "tests/support/statistics.h"
 
 namespace caustics {

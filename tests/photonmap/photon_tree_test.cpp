@@ -1,4 +1,4 @@
-#include "photonmap/build_tree.h"
+#include "photonmap/tree/build_tree.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,9 +7,9 @@
 #include <fstream>
 #include <limits>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "photon_sets.h"
-#include "photonmap/balanced_kd_tree.h"
+#include "photonmap/tree/balanced_kd_tree.h"
 
 namespace caustics {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/aimed_emission.h"
+#include "core/light_path/aimed_emission.h"
 #include "photonmap/photon_map.h"
 #include "shading_sets.h"
 #include "tests/support/build_scene.h"

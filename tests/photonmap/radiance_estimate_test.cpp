@@ -1,4 +1,4 @@
-#include "photonmap/radiance_estimate.h"
+#include "photonmap/estimate/radiance_estimate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "photonmap/rgbe.h"
+#include "photonmap/photons/rgbe.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/rng.h"
+#include "core/math/rng.h"
 
 namespace caustics {
 namespace {

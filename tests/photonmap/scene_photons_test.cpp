@@ -1,4 +1,4 @@
-#include "photonmap/scene_photons.h"
+#include "photonmap/photons/scene_photons.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <fstream>
 #include <utility>
 
-#include "core/error.h"
-#include "core/tessellate.h"
+#include "core/base/error.h"
+#include "core/geometry/tessellate.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/statistics.h"

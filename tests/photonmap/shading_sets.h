@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/rng.h"
-#include "photonmap/photon.h"
-#include "photonmap/shading.h"
+#include "core/math/rng.h"
+#include "photonmap/estimate/shading.h"
+#include "photonmap/photons/photon.h"
 
 namespace caustics::test {
 

@@ -1,4 +1,4 @@
-#include "photonmap/shading.h"
+#include "photonmap/estimate/shading.h"
 
 #include <gtest/gtest.h>
 

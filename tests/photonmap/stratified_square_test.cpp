@@ -1,11 +1,11 @@
-#include "photonmap/stratified_square.h"
+#include "photonmap/photons/stratified_square.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "core/rng.h"
+#include "core/math/rng.h"
 #include "tests/support/statistics.h"
 
 namespace caustics {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/surface_offset.h"
+#include "core/geometry/surface_offset.h"
 
 namespace caustics::support {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace caustics::support {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 #include "tests/support/fresnel.h"
 
 namespace caustics::support::flat_pool {

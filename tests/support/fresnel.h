@@ -4,7 +4,7 @@
 
 namespace caustics::support {
 
-/// Closed forms in double, written apart from core/optics. `n` is the ior of the far side over
+/// Closed forms in double, written apart from core/material/optics. `n` is the ior of the far side over
 /// that of the near side.
 
 /// Cosine of the refracted angle for a cosine of incidence; n above sin(incidence).

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/frame.h"
-#include "core/sampling.h"
+#include "core/math/frame.h"
+#include "core/math/sampling.h"
 
 namespace caustics::support {
 namespace {

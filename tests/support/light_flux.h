@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
-#include "core/aimed_emission.h"
-#include "core/rng.h"
-#include "core/scene.h"
+#include "core/light_path/aimed_emission.h"
+#include "core/math/rng.h"
+#include "core/scene/scene.h"
 #include "tests/support/statistics.h"
 
 namespace caustics::support {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/film.h"
+#include "core/render/film.h"
 #include "tests/support/test_name.h"
 
 namespace caustics::support {

@@ -15,8 +15,8 @@ sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
-import beam_report
-import beam_trials
+from report import beam_report
+from report import beam_trials
 
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if __name__ == "__main__" else None
 COUNTED = ("photons_emitted", "photons_stored", "map_bytes", "camera_rays")

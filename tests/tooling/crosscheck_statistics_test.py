@@ -1,4 +1,4 @@
-"""tools/crosscheck_statistics.py on pictures made by hand: chance is unremarkable, faults of 1 % and of one cell are not.
+"""tools/report/crosscheck_statistics.py on pictures made by hand: chance is unremarkable, faults of 1 % and of one cell are not.
 
 Exits with 77 where NumPy is missing.
 """
@@ -15,7 +15,7 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-import crosscheck_statistics as tool
+from report import crosscheck_statistics as tool
 
 SEEDS, SIDE = 12, 6
 tool.DRAWS = 10_000

@@ -23,8 +23,8 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-import estimate_heat_maps
-import record_plots
+from report import estimate_heat_maps
+from report import record_plots
 
 COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "isa", "photons_stored", "nearest", "alpha",
            "mesh_resolution", "render_cpu_s", "total_s", "rmse", "relmse", "mean_ratio", "reference_stderr",

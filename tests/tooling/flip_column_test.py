@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 
 import flip_column as tool
-import records
+from report import records
 
 try:
     import flip_evaluator  # noqa: F401

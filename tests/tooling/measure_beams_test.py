@@ -6,10 +6,10 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 
-import beam_report
-import beam_trials
+from report import beam_report
+from report import beam_trials
 import measure_beams
-import records
+from report import records
 
 
 def cell(method="beamtree", parameters=None, counters=None, render=1.0, build=0.5):

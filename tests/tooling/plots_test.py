@@ -42,7 +42,7 @@ class Columns(unittest.TestCase):
         text = (TOOL.parents[1] / "experiments" / "record.cpp").read_text(encoding="utf-8")
         names = re.findall(r'^    \{"(\w+)", "/', text, re.MULTILINE)
         sys.path.insert(0, str(TOOL.parent))
-        import records
+        from report import records
         self.assertIn("code_version", names)
         after = names[names.index("code_version") + 1:]
         self.assertEqual([name for name in after if name not in records.NOT_SWEPT], [])

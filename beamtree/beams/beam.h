@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "beamtree/beams/light_sample.h"
+#include "core/math/spectrum.h"
+#include "core/math/vec.h"
+
+namespace caustics {
+
+/// What a specular surface has made of the light at one vertex: a ray that leaves it.
+struct VertexRay {
+    Vec3 position;
+    Vec3 direction;  ///< unit, the way the light goes
+};
+
+/// How the light round a ray spreads: at the distance s [m] it makes 1 / |constant + linear s +
+/// quadratic s^2| [W m^-2, mean of channels] on a surface across the ray. The sign changes where the
+/// light passes through a caustic. All 0: not known.
+struct RaySpread {
+    float constant = 0;   ///< [m^2 W^-1]; 0 or more
+    float linear = 0;     ///< [m W^-1]
+    float quadratic = 0;  ///< [W^-1]
+
+    bool is_known() const { return constant > 0; }
+    double at(double s) const {
+        return static_cast<double>(constant) +
+               s * (static_cast<double>(linear) + s * static_cast<double>(quadratic));
+    }
+};
+
+/// The light that one specular polygon sends on [CC95 sec. 3.1]: rays through its three or four
+/// corners (a triangle, what is left of one, or a cell of a grid), and the flux they enclose. Four
+/// corners are two triangles, (0, 1, 2) and (0, 2, 3). After several events the rays start where the
+/// light of the polygon's corners was bent last.
+struct Beam {
+    static constexpr std::uint32_t none = ~0U;
+    std::array<std::uint32_t, 4> corners;  ///< into BeamSet::rays; the last may be `none`
+    Spectrum flux = black();               ///< through the polygon, after the event [W]
+    float first_share = 1;                 ///< of the flux, in the first triangle
+    float offset = 0;                      ///< rays to and from the polygon end this far off it [m]
+    std::uint32_t triangle = 0;            ///< of the first caster's mesh; the first one of a cell
+    bool inside = false;  ///< goes through the medium behind the last caster's front side
+
+    std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
+};
+
+/// What a caster has done with light.
+struct SpecularEvent {
+    std::uint32_t shape = 0;  ///< index into Scene::shapes
+    bool refracted = false;   ///< or reflected
+};
+
+/// The beams of one light sample that have met the same casters, with the same events.
+struct BeamSet {
+    LightSample light;
+    std::uint32_t caster = 0;         ///< the first: the polygons are its
+    bool refracted = false;           ///< by the last
+    std::vector<SpecularEvent> path;  ///< in the light's order
+    std::array<Spectrum, 2> absorption = {black(),
+                                          black()};  ///< of the last: outside, inside [1/m]
+    std::vector<VertexRay> rays;                     ///< neighbouring beams share them, bit for bit
+    std::vector<Beam> beams;                         ///< in the order of the mesh's triangles
+    /// One a ray where the intensity is `refined`, else none.
+    std::vector<RaySpread> spreads;
+    /// One a beam with `spreads`: the other beam of its pair of triangles, or Beam::none.
+    std::vector<std::uint32_t> partners;
+
+    /// Rays of one of a beam's triangles.
+    std::array<const VertexRay*, 3> triangle(const Beam& beam, std::size_t which) const {
+        return {&rays[beam.corners[0]], &rays[beam.corners[1 + which]],
+                &rays[beam.corners[2 + which]]};
+    }
+    std::uint64_t bytes() const {
+        return rays.size() * sizeof(VertexRay) + beams.size() * sizeof(Beam) +
+               spreads.size() * sizeof(RaySpread) + partners.size() * sizeof(std::uint32_t);
+    }
+};
+
+/// Which beam of which set.
+struct BeamNumber {
+    std::uint32_t set = 0;
+    std::uint32_t beam = 0;
+};
+
+}  // namespace caustics

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "beamtree/beams/caster_mesh.h"
+#include "core/scene_file/json_reader.h"
+
+namespace caustics {
+
+/// What both methods that work with beams ask of them.
+struct BeamParams {
+    PolygonKind polygons = PolygonKind::triangle;
+    int light_samples = 16;    ///< for each area light
+    int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
+    int max_bounces = 16;      ///< specular events between light and receiver
+};
+
+/// Those that are given: `polygons`, `light_samples`, `mesh_resolution`, `max_bounces`.
+void read_beam_params(const JsonNode& node, BeamParams& params);
+
+}  // namespace caustics

@@ -1,0 +1,98 @@
+#include "beamtree/beams/light_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "beamtree/beams/area_light_sampler.h"
+#include "beamtree/beams/solid_angle.h"
+#include "core/math/rng.h"
+
+namespace caustics {
+namespace {
+
+float fraction(float x) { return std::min(x - std::floor(x), 0x1.fffffep-1F); }
+
+void sample_area_light(const Scene& scene, const AreaLight& light, LightSample sample, int count,
+                       Rng rng, std::vector<LightSample>& samples) {
+    const LampSampler lamp(scene, light);
+    const float shift_u = rng.next();
+    const float shift_v = rng.next();
+    constexpr float golden = 0.618033988F;
+    sample.kind = LightSample::Kind::area;
+    const Spectrum even =
+        light.radiance * static_cast<float>(light.sampler.area() / static_cast<double>(count));
+    for (int i = 0; i < count; ++i) {
+        const auto at = static_cast<float>(i);
+        const LampSampler::Sample point = lamp.sample(
+            fraction((at + shift_u) / static_cast<float>(count)), fraction(at * golden + shift_v));
+        sample.strength = even * point.weight;
+        sample.position = point.position;
+        sample.normal = point.normal;
+        sample.offset = point.offset;
+        samples.push_back(sample);
+    }
+}
+
+}  // namespace
+
+std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed) {
+    std::vector<LightSample> samples;
+    for (std::uint32_t i = 0; i < scene.lights().size(); ++i) {
+        const Light& light = scene.lights()[i];
+        LightSample sample;
+        sample.light = i;
+        if (const auto* point = std::get_if<PointLight>(&light)) {
+            sample.position = point->position;
+            sample.strength = point->intensity;
+            samples.push_back(sample);
+        } else if (const auto* far = std::get_if<DirectionalLight>(&light)) {
+            sample.kind = LightSample::Kind::directional;
+            sample.travel = far->direction;
+            sample.strength = far->irradiance;
+            sample.bounds = scene.bounds();
+            samples.push_back(sample);
+        } else {
+            sample_area_light(scene, std::get<AreaLight>(light), sample, per_area_light,
+                              Rng(seed, Stage::beams, i), samples);
+        }
+    }
+    return samples;
+}
+
+Vec3 to_light(const LightSample& light, const Vec3& point) {
+    if (light.kind == LightSample::Kind::directional) return -light.travel;
+    const Vec3 towards = light.position - point;
+    const float distance = towards.norm();
+    return distance > 0 ? Vec3(towards / distance) : Vec3::Zero();
+}
+
+float distance_from(const LightSample& light, const Vec3& point) {
+    if (light.kind == LightSample::Kind::directional)
+        return -distance_to_entry(light.bounds, point, light.travel);
+    return (light.position - point).norm();
+}
+
+Spectrum strength_along(const LightSample& light, const Vec3& w) {
+    if (light.kind != LightSample::Kind::area) return light.strength;
+    return light.strength * std::max(0.0F, -light.normal.dot(w));
+}
+
+double measure(const LightSample& light, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3d p = a.cast<double>();
+    const Vec3d q = b.cast<double>();
+    const Vec3d r = c.cast<double>();
+    if (light.kind == LightSample::Kind::directional) {
+        const Vec3d cross = (q - p).cross(r - p);
+        return std::abs(cross.dot(light.travel.cast<double>())) / 2;
+    }
+    const Vec3d from = light.position.cast<double>();
+    return std::abs(solid_angle(p - from, q - from, r - from));
+}
+
+bool sees(const Scene& scene, const SegmentEnd& point, const LightSample& light) {
+    if (light.kind == LightSample::Kind::directional)
+        return !scene.occluded_along(point, -light.travel);
+    return !scene.occluded(point, {light.position, light.normal, light.offset});
+}
+
+}  // namespace caustics

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace caustics {
+
+/// What a set of beams starts from: a point light, a direction, or one point of an area light.
+struct LightSample {
+    enum class Kind { point, directional, area };
+    Kind kind = Kind::point;
+    Vec3 position = Vec3::Zero();  ///< of a point or area sample
+    Vec3 travel = Vec3::Zero();    ///< of a directional light: unit, the way the light goes
+    Vec3 normal = Vec3::Zero();    ///< unit, of the area light there; else zero
+    float offset = 0;              ///< of rays that leave the area light [m]
+    Box bounds;                    ///< directional: of the scene, outside of which its rays begin
+    Spectrum strength = black();   ///< point [W/sr]; area [W/sr] along the normal;
+                                   ///< directional [W/m^2] across the direction
+    std::uint32_t light = 0;       ///< index into Scene::lights
+};
+
+/// One sample a point or directional light, `per_area_light` samples an area light: a rank-1 lattice
+/// over the part of it that can shine on casters (LampSampler), shifted at random by the seed.
+std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
+
+/// Unit direction from a point to the light.
+Vec3 to_light(const LightSample& light, const Vec3& point);
+/// Distance that the light has gone to a point [m]: what absorption on the way acts on.
+float distance_from(const LightSample& light, const Vec3& point);
+/// Strength towards a point that sees the light along the unit direction `w` (cosine of an area
+/// light included; 0 behind it).
+Spectrum strength_along(const LightSample& light, const Vec3& w);
+/// What the strength is multiplied by for the flux onto a triangle: its solid angle [sr] (Van
+/// Oosterom and Strackee 1983), or for a directional light its area across the direction [m^2].
+double measure(const LightSample& light, const Vec3& a, const Vec3& b, const Vec3& c);
+/// Whether nothing stands between a surface point and the light.
+bool sees(const Scene& scene, const SegmentEnd& point, const LightSample& light);
+
+}  // namespace caustics

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "beamtree/beams/caster_mesh.h"
+#include "beamtree/beams/specular_vertex.h"
+
+namespace caustics {
+
+/// How a triangle of a caster's mesh stands to the light.
+struct Facing {
+    Vec3 normal;  ///< unit, by the winding
+    bool front;   ///< the light comes to its front
+    bool hidden;  ///< and no light can come to that side
+};
+
+/// Whether the light that comes to a point of a triangle goes on by the event. The rule of
+/// split_specular, for a point whose light was bent by the vertex normal alone: the light must come
+/// to the same side of both normals, and leave on the right side of both.
+bool sends_on(const MeshPoint& point, const Facing& facing, Event event);
+
+/// A caster's mesh in the light of one sample.
+class FirstSurface {
+public:
+    FirstSurface(const Scene& scene, const CasterMesh& caster, const LightSample& light);
+
+    const CasterMesh& caster() const { return caster_; }
+    const LightSample& light() const { return light_; }
+    const Bsdf& bsdf() const { return bsdf_; }
+    const LightBender& bender() const { return bender_; }
+    Facing facing(std::uint32_t triangle) const;
+    /// How far off a triangle rays to and from its corners end, so that they do not meet it [m].
+    float corner_offset(std::uint32_t triangle) const;
+    /// The same for points inside of it, which lie below an exact shape's surface.
+    float offset(std::uint32_t triangle) const;
+
+private:
+    const Scene& scene_;
+    const CasterMesh& caster_;
+    const LightSample& light_;
+    const Bsdf& bsdf_;
+    LightBender bender_;
+    ClosedParts::Hidden hidden_;
+};
+
+}  // namespace caustics

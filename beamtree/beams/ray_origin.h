@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "beamtree/beams/beam.h"
+
+namespace caustics {
+
+/// Where on the first caster's mesh a ray of a set has come from.
+struct RayOrigin {
+    static constexpr std::uint32_t no_vertex = ~0U;
+    Vec3 position;
+    Vec3 normal;                       ///< unit, interpolated
+    Spectrum weight = black();         ///< strength after the last event
+    std::uint32_t vertex = no_vertex;  ///< of the mesh, where it is one
+    float left = 1;  ///< by the media on its way after the first event, of all light
+};
+
+/// A set while it is made.
+struct TracedSet {
+    BeamSet set;
+    std::vector<RayOrigin> origins;  ///< one a ray
+};
+
+}  // namespace caustics

@@ -1,0 +1,75 @@
+#include "beamtree/cones/plane_groups.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "beamtree/cones/cap.h"
+
+namespace caustics {
+namespace {
+
+constexpr float least_sine = 0.25F;
+constexpr float good_sine = 0.5F;
+
+// Of the six: +x, -x, +y, ...
+Vec3 axis_of(std::size_t i) {
+    return (i % 2 == 0 ? 1.0F : -1.0F) * Vec3::Unit(static_cast<Eigen::Index>(i / 2));
+}
+
+float least_along(const BeamSet& set, const Beam& beam, const Vec3& axis) {
+    float least = 1;
+    for (const std::uint32_t corner : beam.corners)
+        if (corner != Beam::none) least = std::min(least, set.rays[corner].direction.dot(axis));
+    return least;
+}
+
+// The axis of the six that the beam runs along best.
+std::size_t main_axis(const BeamSet& set, const Beam& beam) {
+    std::size_t best = 0;
+    float best_least = -2;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const float least = least_along(set, beam, axis_of(i));
+        if (least <= best_least) continue;
+        best_least = least;
+        best = i;
+    }
+    return best_least >= least_sine ? best : 6;
+}
+
+}  // namespace
+
+std::vector<PlaneGroup> receiver_planes(const BeamSet& set) {
+    PlaneGroup all;
+    all.beams.resize(set.beams.size());
+    std::iota(all.beams.begin(), all.beams.end(), 0U);
+    return {all};
+}
+
+std::vector<PlaneGroup> fixed_planes(const BeamSet& set) {
+    // Most receivers lie across an axis: then both leaf tests are on the same plane.
+    for (std::size_t i = 0; i < 6; ++i) {
+        const bool fits = std::ranges::all_of(set.rays, [&](const VertexRay& ray) {
+            return ray.direction.dot(axis_of(i)) >= good_sine;
+        });
+        if (!fits) continue;
+        std::vector<PlaneGroup> one = receiver_planes(set);
+        one[0].normal = -axis_of(i);
+        return one;
+    }
+    std::vector<Vec3d> directions;
+    for (const VertexRay& ray : set.rays) directions.emplace_back(ray.direction.cast<double>());
+    const Cap cap = smallest_cap(directions);
+    if (cap.cosine > static_cast<double>(least_sine) + 1e-6) {
+        std::vector<PlaneGroup> one = receiver_planes(set);
+        one[0].normal = Vec3d(-cap.axis).cast<float>();
+        return one;
+    }
+    std::vector<PlaneGroup> groups(7);
+    for (std::size_t i = 0; i < 6; ++i) groups[i].normal = -axis_of(i);
+    for (std::uint32_t i = 0; i < set.beams.size(); ++i)
+        groups[main_axis(set, set.beams[i])].beams.push_back(i);
+    std::erase_if(groups, [](const PlaneGroup& group) { return group.beams.empty(); });
+    return groups;
+}
+
+}  // namespace caustics

@@ -1,0 +1,120 @@
+#include "beamtree/light/beam_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "beamtree/beams/caster_mesh.h"
+#include "beamtree/light/refined_density.h"
+#include "core/material/optics.h"
+
+namespace caustics {
+namespace {
+
+// Areas between float positions mean nothing below this. At a perfect focus, where a caustic polygon
+// shrinks to a point, the irradiance is large with it, and finite.
+double resolvable_area(const Vec3& point) {
+    const double side = static_cast<double>(std::numeric_limits<float>::epsilon() *
+                                            std::max(point.cwiseAbs().maxCoeff(), 1e-6F));
+    return side * side;
+}
+
+/// The ray of a hit that arrives at the point.
+struct ArrivingRay {
+    SegmentEnd start;  ///< where the light was bent
+    Vec3 direction;    ///< unit, the way the light goes
+};
+
+bool is_bent_once_by_exact_shape(const Scene& scene, const BeamSet& set) {
+    return set.path.size() <= 1 && scene.shapes()[set.caster].primitive != Primitive::mesh;
+}
+
+ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
+    const Beam& beam = set.beams[hit.beam];
+    const auto rays = set.triangle(beam, hit.triangle);
+    ArrivingRay ray;
+    ray.start.position = Vec3::Zero();
+    ray.direction = Vec3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float weight = hit.weights[static_cast<Eigen::Index>(i)];
+        ray.start.position += weight * rays[i]->position;
+        ray.direction += weight * rays[i]->direction;
+    }
+    ray.direction.normalize();
+    ray.start.geometric_normal =
+        triangle_normal(rays[0]->position, rays[1]->position, rays[2]->position);
+    // Light after several events may be bent all at one place.
+    if (ray.start.geometric_normal.isZero(0)) ray.start.geometric_normal = ray.direction;
+    ray.start.offset = beam.offset;
+    return ray;
+}
+
+}  // namespace
+
+BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
+    : scene_(scene), sets_(sets), searches_(sets.size()) {
+    for (std::size_t i = 0; i < sets.size(); ++i)
+        if (!sets[i].spreads.empty() && is_bent_once_by_exact_shape(scene, sets[i]))
+            searches_[i].emplace(scene, sets[i]);
+}
+
+std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit, const VertexRay& guess,
+                                                       const Vec3& point) const {
+    // Of a square round the point its middle is not what is asked for.
+    if (!searches_[hit.set] || hit.coverage != 1) return {};
+    const BeamSet& set = sets_[hit.set];
+    return searches_[hit.set]->find(set.triangle(set.beams[hit.beam], hit.triangle), guess, point);
+}
+
+template <typename Weight>
+Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
+                        const Weight& weight) const {
+    std::sort(hits.begin(), hits.end(), [](const BeamHit& a, const BeamHit& b) {
+        return std::tie(a.set, a.beam, a.triangle) < std::tie(b.set, b.beam, b.triangle);
+    });
+    const SegmentEnd receiver{point.position, point.geometric_normal, point.offset};
+    const double least_area = resolvable_area(point.position);
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (const BeamHit& hit : hits) {
+        const BeamSet& set = sets_[hit.set];
+        const Beam& beam = set.beams[hit.beam];
+        ArrivingRay ray = arriving_ray(set, hit);
+        const auto exact = specular_point(hit, {ray.start.position, ray.direction}, point.position);
+        if (exact) ray = {{exact->position, exact->normal, beam.offset}, exact->direction};
+        if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
+        const Spectrum factor = weight(Vec3(-ray.direction));
+        if (is_black(factor)) continue;
+        if (scene_.occluded(receiver, ray.start)) continue;
+        // Of light after several events the earlier legs were seen to be free when it was traced.
+        if (set.path.size() <= 1 && !sees(scene_, ray.start, set.light)) continue;
+        const double cosine =
+            std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction)));
+        const Spectrum left = transmittance(set.absorption[beam.inside ? 1 : 0],
+                                            (point.position - ray.start.position).norm());
+        if (exact) {
+            sum +=
+                (factor * exact->weight * left).template cast<double>() * exact->density * cosine;
+            continue;
+        }
+        double density = refined_density(set, hit, point.position)
+                             .value_or(hit.flux_share / std::max(hit.area, least_area));
+        density *= hit.coverage;
+        // The caustic polygon lies on the test's plane; the receiver's is turned against it.
+        density *= cosine / std::abs(static_cast<double>(hit.plane_normal.dot(ray.direction)));
+        sum += (factor * beam.flux * left).template cast<double>() * density;
+    }
+    return sum.cast<float>();
+}
+
+Spectrum BeamLight::irradiance(const ReceiverPoint& point, std::vector<BeamHit>& hits) const {
+    return sum(point, hits, [](const Vec3&) { return Spectrum(Spectrum::Ones()); });
+}
+
+Spectrum BeamLight::radiance(const ReceiverPoint& point, std::vector<BeamHit>& hits) const {
+    return sum(point, hits, [&point](const Vec3& wi) {
+        return evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo, wi);
+    });
+}
+
+}  // namespace caustics

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "beamtree/beams/beam.h"
+
+namespace caustics {
+
+/// The plane through a point on which caustic polygons are formed [CC95 sec. 3.2.2]: across the
+/// receiver's normal, or across a fixed one. `normal` points against the light that arrives.
+class TestPlane {
+public:
+    TestPlane(const Vec3& point, const Vec3& normal);
+    /// Moves the plane, without turning it, to another point.
+    void move_to(const Vec3& point) { point_ = point.cast<double>(); }
+
+    const Vec3d& point() const { return point_; }
+    const Vec3d& normal() const { return normal_; }
+    /// Height of a point above the plane, in units of the normal's length (1 to rounding).
+    double height(const Vec3& p) const { return normal_.dot(p.cast<double>() - point_); }
+    /// How steeply a direction goes down to the plane: cosine of its angle to -normal.
+    double steepness(const Vec3& d) const { return -normal_.dot(d.cast<double>()); }
+    /// Two coordinates of p + s d - point, the one along which the normal is longest left out.
+    Vec2d project(const Vec3& p, double s, const Vec3& d) const {
+        return {static_cast<double>(p[u_]) - point_[u_] + s * static_cast<double>(d[u_]),
+                static_cast<double>(p[v_]) - point_[v_] + s * static_cast<double>(d[v_])};
+    }
+    /// Area on the plane over the area in those coordinates.
+    double area_scale() const { return area_scale_; }
+
+private:
+    Vec3d point_;
+    Vec3d normal_;
+    int u_ = 0;
+    int v_ = 1;
+    double area_scale_ = 1;
+};
+
+/// A point inside (a triangle of) a beam.
+struct BeamHit {
+    std::uint32_t set = 0;
+    std::uint32_t beam = 0;
+    std::uint8_t triangle = 0;
+    std::int8_t winding = 1;  ///< -1 or 1: has the beam passed through its caustic or not
+    Vec3 plane_normal;        ///< of the plane of the caustic polygon
+    Vec3 weights;             ///< barycentric, of the triangle's corners: where the light left
+    double area = 0;          ///< of the caustic polygon [m^2], see test_beam
+    double flux_share = 1;    ///< of the beam's flux that falls on it
+    double coverage = 1;      ///< of a square round the point; 1 where the point itself is asked
+};
+
+/// Does the point that the plane goes through lie inside the beam? Writes up to two hits (a polygon
+/// of four corners may fold over) with their triangle, winding, weights, area and share, and returns
+/// how many.
+///
+/// Half-open crossing rule: an edge that two triangles share is met by exactly one of them, and the
+/// windings of a mesh add up to the winding of its boundary, whatever the rounding, because both
+/// sides compute the edge from the same bits. Rays that do not come down to the plane, and polygons
+/// that the plane cuts, are clipped at it. Where the light comes down more than twice as steeply in
+/// one corner as in another, the polygon's light is uneven, and the area is the one with which
+/// share / area is the density at the point.
+int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
+              std::array<BeamHit, 2>& hits);
+
+/// What a search has done [CC95 sec. 3.3].
+struct SearchCounts {
+    std::uint64_t cone_point_tests = 0;
+    std::uint64_t beam_point_tests = 0;
+    std::uint64_t beam_point_hits = 0;
+};
+
+/// test_beam for the beam `number` of `set`: counts the test, and appends its hits with that number.
+void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
+                  std::vector<BeamHit>& hits, SearchCounts& counts);
+
+/// Where the light goes down to a plane more than this times as steeply in one corner of a polygon as in
+/// another, it is not evenly lit.
+inline constexpr double most_uneven = 2;
+
+inline double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The signed crossing of the edge a -> b with the half axis y = 0, x > 0; summed round a polygon it
+/// is the winding round the origin. Without branches, as nobody can foretell them.
+inline int edge_crossing(const Vec2d& a, const Vec2d& b) {
+    const bool a_above = a.y() > 0;
+    const bool b_above = b.y() > 0;
+    const double side = a.x() * b.y() - a.y() * b.x();
+    const bool up = !a_above & b_above & (side > 0);
+    const bool down = a_above & !b_above & (side < 0);
+    return static_cast<int>(up) - static_cast<int>(down);
+}
+
+}  // namespace caustics

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "beamtree/beams/beam.h"
+#include "beamtree/beams/specular_vertex.h"
+
+namespace caustics {
+
+/// Where a surface bends light so that it comes to a given point, and how dense it is there.
+struct SpecularPoint {
+    Vec3 position;              ///< on the surface
+    Vec3 normal;                ///< unit, the surface's front side
+    Vec3 direction;             ///< unit, the way from there to the point
+    Spectrum weight = black();  ///< strength of the light after the event
+    double density = 0;         ///< of `measure` for an area across the direction [sr m^-2, or 1]
+};
+
+/// Finds specular points of a caster that is an exact shape, for the light of one beam set: the specular
+/// point and its energy that [CC95 sec. 5] leave for later. What is not a matter of polygons is exact to
+/// rounding.
+class SpecularSearch {
+public:
+    /// Scene and set outlive this; the set's light has met one caster.
+    SpecularSearch(const Scene& scene, const BeamSet& set);
+
+    /// By Newton's method from the place and direction of `guess`, the ray of a beam's triangle whose light
+    /// comes to the point by [CC95 eq. 11]. Empty where it does not converge nearby, or comes to a ray of
+    /// the other side of a caustic.
+    std::optional<SpecularPoint> find(const std::array<const VertexRay*, 3>& triangle,
+                                      const VertexRay& guess, const Vec3& point) const;
+
+private:
+    struct Exit;
+    struct Derivatives;
+    struct Image;
+    class Sheet;
+
+    std::optional<Exit> exit_at(const Vec3d& local) const;
+    std::optional<Derivatives> derivatives(const Sheet& sheet, const Vec2d& at) const;
+    std::optional<Image> image(const Sheet& sheet,
+                               const std::array<const VertexRay*, 3>& triangle) const;
+    SpecularPoint made(const Sheet& sheet, const Exit& exit, const Derivatives& found) const;
+
+    const Shape& shape_;
+    const LightSample& light_;
+    LightBender bender_;
+    Event event_;
+    Transform to_local_;
+    double step_;  ///< of derivatives, in the shape's frame
+};
+
+}  // namespace caustics

@@ -1,0 +1,30 @@
+#include "beamtree/slices/slice_frame.h"
+
+namespace caustics {
+
+SliceFrame::SliceFrame(const Vec3& normal, double top, double bottom, const Vec3& origin)
+    : normal_(normal),
+      up_(normal.cast<double>()),
+      origin_(origin.cast<double>()),
+      top_(top),
+      bottom_(bottom) {
+    // The axis of the world that lies best on the planes: grids mostly run along one.
+    Eigen::Index flattest = 0;
+    up_.cwiseAbs().minCoeff(&flattest);
+    const Vec3d axis = Vec3d::Unit(flattest);
+    right_ = (axis - axis.dot(up_) / up_.squaredNorm() * up_).normalized();
+    forward_ = up_.cross(right_).normalized();
+}
+
+RaySlices SliceFrame::slices(const VertexRay& ray) const {
+    const Vec3d from = ray.position.cast<double>();
+    const Vec3d along = ray.direction.cast<double>();
+    const double height = up_.dot(from);
+    const double steepness = -up_.dot(along);
+    const Vec2d above = across(from + (height - top_) / steepness * along);
+    const Vec2d below = across(from + (height - bottom_) / steepness * along);
+    return {static_cast<float>(above.x()), static_cast<float>(above.y()),
+            static_cast<float>(below.x()), static_cast<float>(below.y())};
+}
+
+}  // namespace caustics

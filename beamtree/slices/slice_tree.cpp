@@ -1,0 +1,256 @@
+#include "beamtree/slices/slice_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "beamtree/slices/beam_square.h"
+#include "beamtree/slices/slice_build.h"
+#include "beamtree/slices/slice_hierarchy.h"
+
+namespace caustics {
+namespace {
+
+constexpr float rounding = 1e-6F;  // more than a share is rounded by
+
+WalkSlices walk_for([[maybe_unused]] Isa isa) {
+#ifdef CAUSTICS_X86_KERNELS
+    // Eight floats are what a node has; both axes in one register of AVX-512 take a tenth longer.
+    if (isa != Isa::plain) return walk_slices_avx2;
+#endif
+    return walk_slices_plain;
+}
+
+template <typename Do>
+void for_each_ray(const SlicedBeams& from, const BeamNumber& number, const Do& act) {
+    const BeamSet& set = from.sets[number.set];
+    for (const std::uint32_t corner : set.beams[number.beam].corners)
+        if (corner != Beam::none) act(corner);
+}
+
+// The slab from above all polygons to below all receivers, both a little beyond: heights are
+// rounded.
+SliceFrame frame_of(const SlicedBeams& from) {
+    const Vec3d up = from.normal.cast<double>();
+    double top = -std::numeric_limits<double>::infinity();
+    for (const BeamNumber& number : from.beams)
+        for_each_ray(from, number, [&](std::uint32_t ray) {
+            const Vec3& p = from.sets[number.set].rays[ray].position;
+            top = std::max(top, up.dot(p.cast<double>()));
+        });
+    double bottom = top;
+    for (int i = 0; i < 8; ++i) {
+        const auto corner = static_cast<Box::CornerType>(i);
+        bottom = std::min(bottom, up.dot(from.receivers.corner(corner).cast<double>()));
+    }
+    const double beyond = 1e-3 * static_cast<double>(from.receivers.diagonal().norm());
+    const BeamNumber& first = from.beams.front();
+    const BeamSet& set = from.sets[first.set];
+    const Vec3& origin = set.rays[set.beams[first.beam].corners[0]].position;
+    return {from.normal, top + 1e-3 * beyond, bottom - beyond, origin};
+}
+
+/// The beams' rays on the planes.
+class Slicer {
+public:
+    Slicer(const SlicedBeams& from, const SliceFrame& frame)
+        : from_(from), frame_(frame), slices_(from.sets.size()) {
+        const float unknown = std::numeric_limits<float>::quiet_NaN();
+        for (const BeamNumber& number : from.beams) {
+            const std::vector<VertexRay>& rays = from.sets[number.set].rays;
+            std::vector<RaySlices>& of_set = slices_[number.set];
+            of_set.resize(rays.size(), {unknown});
+            for_each_ray(from, number, [&](std::uint32_t ray) {
+                if (std::isnan(of_set[ray][0])) of_set[ray] = frame.slices(rays[ray]);
+            });
+        }
+    }
+
+    SliceBox box(const BeamNumber& number) const {
+        SliceBox box;
+        for_each_ray(from_, number,
+                     [&](std::uint32_t ray) { box.extend(slices_[number.set][ray]); });
+        return box;
+    }
+
+    void add_triangles(const BeamNumber& number, std::uint32_t place,
+                       std::vector<SlicedTriangle>& triangles) const {
+        const BeamSet& set = from_.sets[number.set];
+        const Beam& beam = set.beams[number.beam];
+        for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
+            SlicedTriangle triangle;
+            const std::array<std::uint32_t, 3> corners = {beam.corners[0], beam.corners[1 + i],
+                                                          beam.corners[2 + i]};
+            double highest = frame_.bottom();
+            double lowest = frame_.top();
+            for (std::size_t c = 0; c < 3; ++c) {
+                triangle.corners[c] = slices_[number.set][corners[c]];
+                const double height = frame_.height(set.rays[corners[c]].position);
+                highest = std::max(highest, height);
+                lowest = std::min(lowest, height);
+            }
+            triangle.begun_from = static_cast<float>(frame_.share(highest)) - rounding;
+            triangle.whole_from = static_cast<float>(frame_.share(lowest)) + rounding;
+            triangle.beam = place;
+            triangles.push_back(triangle);
+        }
+    }
+
+private:
+    const SlicedBeams& from_;
+    const SliceFrame& frame_;
+    std::vector<std::vector<RaySlices>> slices_;  ///< of the beams' rays
+};
+
+// Sorts the beams by the hierarchy.
+Hierarchy split(SlicedBeams& from, const Slicer& slicer) {
+    std::vector<BoxedBeam> boxed;
+    boxed.reserve(from.beams.size());
+    std::size_t most_triangles = 1;
+    for (std::uint32_t i = 0; i < from.beams.size(); ++i) {
+        const BeamNumber& number = from.beams[i];
+        boxed.push_back({slicer.box(number), i});
+        most_triangles =
+            std::max(most_triangles, from.sets[number.set].beams[number.beam].triangle_count());
+    }
+    Hierarchy tree = binned_slices(boxed, static_cast<std::uint32_t>(slice_width / most_triangles));
+    std::vector<BeamNumber> sorted;
+    for (const std::uint32_t place : tree.order) sorted.push_back(from.beams[place]);
+    from.beams = std::move(sorted);
+    return tree;
+}
+
+}  // namespace
+
+SliceTree::SliceTree(SlicedBeams beams, Isa isa) : SliceTree(std::move(beams), nullptr, isa) {}
+
+SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa)
+    : SliceTree(std::move(beams), &hierarchy, isa) {}
+
+SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa)
+    : frame_(frame_of(beams)),
+      half_footprint_(static_cast<double>(beams.footprint) / 2),
+      plane_(Vec3::Zero(), beams.normal),
+      walk_(walk_for(isa)) {
+    const Slicer slicer(beams, frame_);
+    const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer);
+    std::vector<SlicedTriangle> triangles;
+    triangles.reserve(beams.beams.size());
+    for (std::uint32_t place = 0; place < beams.beams.size(); ++place)
+        slicer.add_triangles(beams.beams[place], place, triangles);
+    SliceNodes made = widen(hierarchy, triangles, beams.footprint / 2);
+    nodes_ = std::move(made.nodes);
+    leaves_ = std::move(made.leaves);
+    root_ = made.root;
+    height_ = made.height;
+    leaf_width_ = made.leaf_width;
+    travel_ = made.travel;
+    beams_ = std::move(beams.beams);
+}
+
+/// Points near each other, each with its number among those that were asked about.
+struct SliceTree::Group {
+    static constexpr std::uint32_t room = 16;
+    std::array<SlicePoint, room> points;
+    std::array<std::uint32_t, room> number;
+    std::array<const Vec3*, room> position;
+    std::uint32_t count = 0;
+    /// x, y, share, and nothing.
+    Eigen::Array4f low;
+    Eigen::Array4f high;
+
+    // Unless the box round the points would become too large.
+    bool take(const SlicePoint& point, const Eigen::Array4f& largest) {
+        const Eigen::Array4f at(point.at[0], point.at[1], point.share, 0);
+        const Eigen::Array4f new_low = count == 0 ? at : low.min(at);
+        const Eigen::Array4f new_high = count == 0 ? at : high.max(at);
+        if (count == room || !(new_high - new_low <= largest).all()) return false;
+        low = new_low;
+        high = new_high;
+        points[count++] = point;
+        return true;
+    }
+};
+
+// False for a point above all polygons.
+bool SliceTree::place(const ReceiverPoint& point, SlicePoint& placed) const {
+    const double height = frame_.height(point.position);
+    if (height > frame_.top()) return false;
+    if (height < frame_.bottom()) throw std::out_of_range("a receiver point below the slab");
+    const Vec2d across = frame_.across(point.position.cast<double>());
+    placed = {{static_cast<float>(across.x()), static_cast<float>(across.y())},
+              static_cast<float>(frame_.share(height))};
+    return true;
+}
+
+void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
+                     std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
+                     SearchCounts& counts) const {
+    // Half a leaf across, and no more down than rays move by that.
+    const float reach = leaf_width_ / 2;
+    const Eigen::Array4f largest(reach, reach, reach / std::max(travel_, reach), 1);
+    Group group;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        SlicePoint point;
+        if (!place(points[i], point)) continue;
+        if (!group.take(point, largest)) {
+            find(group, sets, stack, hits, counts);
+            group.count = 0;
+            group.take(point, largest);
+        }
+        group.number[group.count - 1] = i;
+        group.position[group.count - 1] = &points[i].position;
+    }
+    if (group.count > 0) find(group, sets, stack, hits, counts);
+}
+
+void SliceTree::find(const Group& group, std::span<const BeamSet> sets,
+                     std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
+                     SearchCounts& counts) const {
+    std::array<SliceCandidate, 16 * Group::room> found;
+    const std::size_t room = 7 * height_ + 8;
+    if (stack.size() < room) stack.resize(room);
+    SliceWalk walk{group.points.data(),
+                   group.count,
+                   {group.low[0], group.low[1]},
+                   {group.high[0], group.high[1]},
+                   group.low[2],
+                   group.high[2],
+                   stack.data(),
+                   0,
+                   found.data(),
+                   found.size(),
+                   0,
+                   0};
+    walk.stack[walk.stacked++] = root_;
+    TestPlane plane = plane_;
+    while (walk.stacked > 0) {
+        walk.found_count = 0;
+        walk_({nodes_.data(), leaves_.data()}, walk);
+        SliceCandidate last{Group::room, 0};
+        for (std::size_t i = 0; i < walk.found_count; ++i) {
+            const SliceCandidate& candidate = found[i];
+            // The other triangle of four corners.
+            if (candidate.point == last.point && candidate.beam == last.beam) continue;
+            last = candidate;
+            const BeamNumber& number = beams_[candidate.beam];
+            plane.move_to(*group.position[candidate.point]);
+            std::vector<BeamHit>& found_here = hits[group.number[candidate.point]];
+            if (half_footprint_ > 0)
+                find_on_square(sets[number.set], number, plane, {frame_, half_footprint_},
+                               found_here, counts);
+            else
+                find_in_beam(sets[number.set], number, plane, found_here, counts);
+        }
+    }
+    counts.cone_point_tests += walk.tests;
+}
+
+std::uint64_t SliceTree::bytes() const {
+    return beams_.size() * sizeof(BeamNumber) + nodes_.size() * sizeof(SliceNode) +
+           leaves_.size() * sizeof(SliceLeaf);
+}
+
+}  // namespace caustics

@@ -1,0 +1,76 @@
+#include <immintrin.h>
+
+#include "beamtree/slices/slice_walk.h"
+
+namespace caustics {
+namespace {
+
+class Avx2Eight {
+public:
+    explicit Avx2Eight(const SliceWalk& walk)
+        : least_share_(_mm256_set1_ps(walk.least_share)),
+          most_share_(_mm256_set1_ps(walk.most_share)) {
+        for (unsigned axis = 0; axis < 2; ++axis) {
+            low_[axis] = _mm256_set1_ps(walk.low[axis]);
+            high_[axis] = _mm256_set1_ps(walk.high[axis]);
+        }
+    }
+
+    uint32_t meets(const SliceNode& node) const {
+        const __m256 begun = not_above(_mm256_load_ps(node.begun_from), most_share_);
+        return bits(_mm256_and_ps(begun, _mm256_and_ps(meets(node, 0), meets(node, 1))));
+    }
+
+    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point) {
+        const __m256 share = _mm256_set1_ps(point.share);
+        __m256 x[3];
+        __m256 y[3];
+        for (unsigned c = 0; c < 3; ++c) {
+            x[c] = _mm256_sub_ps(at(leaf.corner[c][0], leaf.growth[c][0], share),
+                                 _mm256_set1_ps(point.at[0]));
+            y[c] = _mm256_sub_ps(at(leaf.corner[c][1], leaf.growth[c][1], share),
+                                 _mm256_set1_ps(point.at[1]));
+        }
+        const __m256 a = cross(x[0], y[0], x[1], y[1]);
+        const __m256 b = cross(x[1], y[1], x[2], y[2]);
+        const __m256 c = cross(x[2], y[2], x[0], y[0]);
+        const __m256 slack = _mm256_load_ps(leaf.slack);
+        const __m256 minus = _mm256_xor_ps(slack, _mm256_set1_ps(-0.0F));
+        const __m256 least = _mm256_min_ps(_mm256_min_ps(a, b), c);
+        const __m256 most = _mm256_max_ps(_mm256_max_ps(a, b), c);
+        const __m256 holds = _mm256_or_ps(not_above(minus, least), not_above(most, slack));
+        const __m256 cut = _mm256_cmp_ps(share, _mm256_load_ps(leaf.whole_from), _CMP_LT_OQ);
+        const __m256 begun = not_above(_mm256_load_ps(leaf.begun_from), share);
+        return bits(_mm256_and_ps(begun, _mm256_or_ps(holds, cut)));
+    }
+
+private:
+    __m256 meets(const SliceNode& node, unsigned axis) const {
+        const __m256 low = _mm256_min_ps(at(node.low[axis], node.low_growth[axis], least_share_),
+                                         at(node.low[axis], node.low_growth[axis], most_share_));
+        const __m256 high = _mm256_max_ps(at(node.high[axis], node.high_growth[axis], least_share_),
+                                          at(node.high[axis], node.high_growth[axis], most_share_));
+        return _mm256_and_ps(not_above(low, high_[axis]), not_above(low_[axis], high));
+    }
+    static __m256 at(const float* top, const float* growth, __m256 share) {
+        return _mm256_add_ps(_mm256_load_ps(top), _mm256_mul_ps(share, _mm256_load_ps(growth)));
+    }
+    static __m256 cross(__m256 ax, __m256 ay, __m256 bx, __m256 by) {
+        return _mm256_sub_ps(_mm256_mul_ps(ax, by), _mm256_mul_ps(ay, bx));
+    }
+    static __m256 not_above(__m256 a, __m256 b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
+    static uint32_t bits(__m256 mask) { return static_cast<uint32_t>(_mm256_movemask_ps(mask)); }
+
+    __m256 low_[2];
+    __m256 high_[2];
+    __m256 least_share_;
+    __m256 most_share_;
+};
+
+}  // namespace
+
+void walk_slices_avx2(const SliceView& tree, SliceWalk& walk) {
+    walk_slices<Avx2Eight>(tree, walk);
+}
+
+}  // namespace caustics

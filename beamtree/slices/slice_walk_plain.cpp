@@ -1,0 +1,65 @@
+#include "beamtree/slices/slice_walk.h"
+
+namespace caustics {
+namespace {
+
+float least(float a, float b) { return a < b ? a : b; }
+float most(float a, float b) { return a > b ? a : b; }
+
+/// The tests one by one: what the wider ones must agree with.
+class PlainEight {
+public:
+    explicit PlainEight(const SliceWalk& walk) : walk_(walk) {}
+
+    uint32_t meets(const SliceNode& node) const {
+        uint32_t bits = 0;
+        for (unsigned i = 0; i < slice_width; ++i) {
+            bool meets = node.begun_from[i] <= walk_.most_share;
+            for (unsigned axis = 0; axis < 2; ++axis) {
+                const auto at = [&](const float(&top)[2][slice_width],
+                                    const float(&growth)[2][slice_width],
+                                    float share) { return top[axis][i] + share * growth[axis][i]; };
+                const float low = least(at(node.low, node.low_growth, walk_.least_share),
+                                        at(node.low, node.low_growth, walk_.most_share));
+                const float high = most(at(node.high, node.high_growth, walk_.least_share),
+                                        at(node.high, node.high_growth, walk_.most_share));
+                meets = meets && low <= walk_.high[axis] && walk_.low[axis] <= high;
+            }
+            bits |= (meets ? 1U : 0U) << i;
+        }
+        return bits;
+    }
+
+    // The point is on one side of all three edges, but for rounding.
+    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point) {
+        uint32_t bits = 0;
+        for (unsigned i = 0; i < slice_width; ++i) {
+            float x[3];
+            float y[3];
+            for (unsigned c = 0; c < 3; ++c) {
+                x[c] = leaf.corner[c][0][i] + point.share * leaf.growth[c][0][i] - point.at[0];
+                y[c] = leaf.corner[c][1][i] + point.share * leaf.growth[c][1][i] - point.at[1];
+            }
+            const float a = x[0] * y[1] - y[0] * x[1];
+            const float b = x[1] * y[2] - y[1] * x[2];
+            const float c = x[2] * y[0] - y[2] * x[0];
+            const float slack = leaf.slack[i];
+            const bool holds = -slack <= least(least(a, b), c) || most(most(a, b), c) <= slack;
+            const bool cut = point.share < leaf.whole_from[i];
+            const bool begun = leaf.begun_from[i] <= point.share;
+            bits |= (begun && (holds || cut) ? 1U : 0U) << i;
+        }
+        return bits;
+    }
+
+private:
+    const SliceWalk& walk_;
+};
+
+}  // namespace
+
+void walk_slices_plain(const SliceView& tree, SliceWalk& walk) {
+    walk_slices<PlainEight>(tree, walk);
+}
+
+}  // namespace caustics

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "beamtree/beams/beam.h"
+#include "beamtree/beams/flux_balance.h"
+#include "beamtree/beams/lit_caster.h"
+#include "beamtree/beams/mesh_neighbours.h"
+#include "beamtree/beams/ray_origin.h"
+#include "beamtree/beams/trace_progress.h"
+#include "beamtree/tracing/ray_arrival.h"
+
+namespace caustics {
+
+/// Beams, and the light that they do not carry.
+struct TracedBeams {
+    std::vector<BeamSet> sets;
+    FluxBalance balance;
+};
+
+/// Follows beams of one caster and light from their first event to others (row B13). Each ray goes
+/// on to the next surface; where that is a caster, and all corners of a beam meet the same piece of it
+/// (a shape's side without a crease), what the piece reflects and refracts makes up beams of two further
+/// sets. Their flux is what the light sends onto the first surface, times all weights on the way.
+///
+/// Where corners do different things (another caster, a crease, total reflection, the light hidden
+/// from the first surface, no caster at all), the triangle of the first surface is cut by bisection
+/// along its edges, and three different things quarter it. What lies between corners that do one
+/// thing is taken to do the same: an obstacle smaller than a polygon does not interrupt a beam on its
+/// way. The last leg, from the last event to a receiver, is left to the shadow ray of a query; all
+/// beams stay for that, but those which no receiver can come near before their light goes on.
+///
+/// Sets with less than 1e-4 of the first events' flux, and beams with less than 1e-3 of those of the
+/// first events on average, are not kept; `balance` counts them. What media absorb counts for neither:
+/// light that comes through dark glass is weak, and all there is.
+class BeamFollower {
+public:
+    /// With `neighbours` the sets are refined by them.
+    BeamFollower(const Scene& scene, const FirstSurface& surface, const MeshNeighbours* neighbours,
+                 int max_bounces);
+
+    /// Keeps the sets of the first events and those of all events after them.
+    void follow(std::array<TracedSet, 2> first, const ProgressPart& part);
+    /// Sets in the order of their light: each before those that its light goes on to.
+    TracedBeams take() { return std::move(traced_); }
+
+private:
+    std::vector<Departure> first_departures(const TracedSet& first) const;
+
+    const Scene& scene_;
+    const FirstSurface& surface_;
+    const MeshNeighbours* neighbours_;
+    int max_bounces_;
+    std::vector<Box> receivers_;
+    TracedBeams traced_;
+};
+
+}  // namespace caustics

@@ -1,0 +1,67 @@
+#include "beamtree/tracing/beam_path.h"
+
+#include <algorithm>
+
+namespace caustics {
+
+Path::Path(const Scene& scene, const FirstSurface& surface, const Level& level, std::uint32_t beam)
+    : scene_(scene),
+      surface_(surface),
+      triangle_(level.traced.set.beams[beam].triangle),
+      facing_(surface.facing(triangle_)) {
+    const Level* at = &level;
+    for (; at->parent != nullptr; beam = at->parents[beam], at = at->parent)
+        steps_.push_back({&at->places[beam], at->event});
+    std::reverse(steps_.begin(), steps_.end());
+    first_event_ = at->event;
+}
+
+PathPoint Path::between(const PathPoint& a, const PathPoint& b, float t) const {
+    if (t == 0) {
+        PathPoint point = a;
+        point.origin.vertex = RayOrigin::no_vertex;
+        return point;
+    }
+    return go((1 - t) * a.origin.position + t * b.origin.position,
+              (1 - t) * a.origin.normal + t * b.origin.normal);
+}
+
+PathPoint Path::inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const {
+    Vec3 position = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float weight = weights[static_cast<Eigen::Index>(i)];
+        position += weight * corners[i]->position;
+        normal += weight * corners[i]->normal;
+    }
+    return go(position, normal);
+}
+
+PathPoint Path::middle(const Piece& piece) const {
+    return inside({&piece[0].origin, &piece[1].origin, &piece[2].origin}, Vec3::Constant(1.0F / 3));
+}
+
+PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
+    PathPoint point;
+    const MeshPoint first = surface_.bender().at(position, normal);
+    point.origin = {first.position, first.normal, first.bent.weight[first_event_]};
+    point.from = {surface_.caster().shape, facing_.normal, surface_.offset(triangle_)};
+    if (!sends_on(first, facing_, first_event_)) return point;
+    if (!sees(scene_, {position, facing_.normal, point.from.offset}, surface_.light()))
+        return point;
+    point.ray = {position, first.bent.direction[first_event_]};
+    for (const Step& step : steps_) {
+        const Landing landing = land(scene_, point.ray, point.from);
+        if (!same_piece(landing, *step.where)) return point;
+        point.origin.weight *= landing.weight[step.event];
+        point.origin.left *= landing.left;
+        if (is_black(point.origin.weight)) return point;
+        point.ray = {landing.position, landing.direction[step.event]};
+        point.from = {landing.shape, landing.geometric_normal, landing.offset};
+    }
+    point.alive = true;
+    point.next = land(scene_, point.ray, point.from);
+    return point;
+}
+
+}  // namespace caustics

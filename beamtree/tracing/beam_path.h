@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "beamtree/beams/lit_caster.h"
+#include "beamtree/beams/ray_origin.h"
+#include "beamtree/tracing/ray_arrival.h"
+
+namespace caustics {
+
+/// One more event on a beam's way, after the first.
+struct Step {
+    const Landing* where;  ///< of one of the beam's corners
+    Event event;
+};
+
+/// A set on its way, with what its light has done before.
+struct Level {
+    const Level* parent = nullptr;
+    Event event = reflection;  ///< its last
+    TracedSet traced;
+    std::vector<Departure> departures;  ///< one a ray
+    std::vector<Landing> landings;      ///< one a ray, once it is followed
+    /// One a beam, but for the first level: the beam it comes from, and a place where its light was bent.
+    std::vector<std::uint32_t> parents;
+    std::vector<Landing> places;
+    std::vector<std::uint32_t>
+        ray_of_parent;  ///< for rays of the parent: the one that goes on here
+
+    /// One a beam, or none where all are 1: what division for detail (PieceDetail) has left of the polygon.
+    std::vector<float> shares;
+    /// Of its beams, were the media clear and they not divided: what they are worth following for [W].
+    double worth = 0;
+
+    std::size_t bounces() const { return traced.set.path.size(); }
+};
+
+/// The light of one point of the first surface, after the steps of some path.
+struct PathPoint {
+    RayOrigin origin;
+    Departure from;
+    VertexRay ray;
+    bool alive = false;  ///< it has gone that path
+    Landing next;
+};
+
+using Piece = std::array<PathPoint, 3>;
+
+/// The way of a beam, to be gone again from other points of its triangle.
+class Path {
+public:
+    Path(const Scene& scene, const FirstSurface& surface, const Level& level, std::uint32_t beam);
+
+    /// (1 - t) a + t b on the first surface.
+    PathPoint between(const PathPoint& a, const PathPoint& b, float t) const;
+    /// The point with these barycentric weights.
+    PathPoint inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const;
+    PathPoint middle(const Piece& piece) const;
+
+private:
+    PathPoint go(const Vec3& position, const Vec3& normal) const;
+
+    const Scene& scene_;
+    const FirstSurface& surface_;
+    std::uint32_t triangle_;
+    Facing facing_;
+    Event first_event_;
+    std::vector<Step> steps_;
+};
+
+}  // namespace caustics

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "beamtree/tracing/beam_path.h"
+
+namespace caustics {
+
+/// Whether the light of a point has come to a caster after its path.
+bool goes_on(const PathPoint& point);
+/// Whether the light of both does the same next: ends, or goes on by the same events from the same piece of a
+/// caster.
+bool alike(const PathPoint& a, const PathPoint& b);
+
+/// An edge of a piece, from corner to corner, where they do different things.
+struct CutEdge {
+    bool is_cut = false;
+    bool hides_another = false;  ///< a third thing between
+    PathPoint last;              ///< that does as the first corner
+    PathPoint first;             ///< that does as the second one
+};
+
+/// Finds by bisection where along an edge light does another thing. Neighbours find the same points, because
+/// both begin at the same end.
+CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b);
+
+}  // namespace caustics

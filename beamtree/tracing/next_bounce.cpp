@@ -1,0 +1,427 @@
+#include "beamtree/tracing/next_bounce.h"
+
+#include <algorithm>
+
+#include "beamtree/tracing/cut_edge.h"
+#include "beamtree/tracing/cut_piece.h"
+#include "beamtree/tracing/piece_detail.h"
+
+namespace caustics {
+namespace {
+
+// How often a polygon is quartered.
+constexpr int most_splits = 3;
+// What is left of a polygon that is quartered because it is too large for what it meets: ten times.
+constexpr float least_share = 1.0F / (1 << 20);
+constexpr float widest_cosine = 0.5F;
+// Where corners' weights do not tell the mean, this many parts of a side do.
+constexpr int parts = 5;
+
+/// A corner of a beam to be.
+struct Corner {
+    const RayOrigin* origin;
+    const Landing* landing;
+    std::uint32_t parent_ray;  ///< or Beam::none
+};
+
+using Corners = std::array<Corner, 3>;
+
+/// What one set's light does next: the sets of all casters it meets, after each event.
+class NextEvent {
+public:
+    NextEvent(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
+              FluxBalance& balance, const ProgressPart& part)
+        : scene_(scene),
+          surface_(surface),
+          level_(level),
+          set_(level.traced.set),
+          least_flux_(least_flux),
+          balance_(balance),
+          part_(part),
+          detail_(scene),
+          stays_(set_.beams.size(), false) {
+        land_all();
+    }
+
+    NextSets run() {
+        ProgressSteps steps(part_.of(0.8), set_.beams.size(), 1);
+        for (std::uint32_t beam = 0; beam < set_.beams.size(); ++beam) {
+            for (std::size_t i = 0; i < set_.beams[beam].triangle_count(); ++i)
+                follow_triangle(beam, i);
+            steps.step();
+        }
+        return {std::move(next_), std::move(stays_)};
+    }
+
+private:
+    void land_all() {
+        const bool is_first = level_.parent == nullptr;
+        ProgressSteps steps(part_.of(0.2), set_.rays.size());
+        for (std::size_t i = 0; i < set_.rays.size(); ++i) {
+            steps.step();
+            const VertexRay& ray = set_.rays[i];
+            const Departure& from = level_.departures[i];
+            const bool blocked = is_first && !sees(scene_, {ray.position, from.normal, from.offset},
+                                                   surface_.light());
+            level_.landings.push_back(blocked ? Landing{} : land(scene_, ray, from));
+        }
+    }
+
+    void follow_triangle(std::uint32_t beam, std::size_t which) {
+        const Beam& parent = set_.beams[beam];
+        const std::array<std::uint32_t, 3> rays = {parent.corners[0], parent.corners[1 + which],
+                                                   parent.corners[2 + which]};
+        const Landing& a = level_.landings[rays[0]];
+        const Landing& b = level_.landings[rays[1]];
+        const Landing& c = level_.landings[rays[2]];
+        const bool alike = same_piece(a, b) && same_piece(b, c) && same_piece(c, a);
+        if (alike && !a.goes_on()) {
+            end(beam, rays);
+            return;
+        }
+        count_lit(parent);
+        if (alike && goes_plainly(a, b, c) && !is_coarse(rays)) {
+            for (const Event event : events)
+                if (!is_black(a.weight[event])) {
+                    Corners corners;
+                    for (std::size_t i = 0; i < 3; ++i)
+                        corners[i] = {&level_.traced.origins[rays[i]], &level_.landings[rays[i]],
+                                      rays[i]};
+                    add_beam(beam, corners, event, share_of(beam));
+                }
+            return;
+        }
+        stays_[beam] = stays_[beam] || !alike;
+        Piece piece;
+        for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
+        cut(beam, Path(scene_, surface_, level_, beam), piece, share_of(beam), most_splits);
+    }
+
+    bool is_coarse(const std::array<std::uint32_t, 3>& rays) const {
+        const auto coarse = [this](std::uint32_t i, std::uint32_t j) {
+            return PieceDetail::is_coarse(level_.traced.origins[i], level_.landings[i],
+                                          level_.traced.origins[j], level_.landings[j]);
+        };
+        return coarse(rays[0], rays[1]) || coarse(rays[1], rays[2]) || coarse(rays[2], rays[0]);
+    }
+    static bool is_coarse(const PathPoint& a, const PathPoint& b) {
+        return goes_on(a) && goes_on(b) &&
+               PieceDetail::is_coarse(a.origin, a.next, b.origin, b.next);
+    }
+
+    // Where no corner goes on.
+    bool hides_a_caster(const Piece& piece) const {
+        const auto& [a, b, c] = piece;
+        return a.alive && b.alive && c.alive && PieceDetail::is_flat(a.origin, b.origin) &&
+               PieceDetail::is_flat(b.origin, c.origin) &&
+               detail_.may_pass_round_caster({&a.ray, &b.ray, &c.ray});
+    }
+
+    float share_of(std::uint32_t beam) const {
+        return level_.shares.empty() ? 1 : level_.shares[beam];
+    }
+
+    // Whether the rays after an event part too far for one beam.
+    static bool part_widely(const Landing& a, const Landing& b, const Landing& c, Event event) {
+        const auto far = [event](const Landing& p, const Landing& q) {
+            return p.direction[event].dot(q.direction[event]) < widest_cosine;
+        };
+        return !is_black(a.weight[event]) && !is_black(b.weight[event]) &&
+               !is_black(c.weight[event]) && (far(a, b) || far(b, c) || far(c, a));
+    }
+    static bool part_widely(const Landing& a, const Landing& b, const Landing& c) {
+        return part_widely(a, b, c, reflection) || part_widely(a, b, c, refraction);
+    }
+    // Whether all corners do the same at the piece they meet, and go on side by side.
+    static bool goes_plainly(const Landing& a, const Landing& b, const Landing& c) {
+        for (const Event event : events) {
+            const bool black = is_black(a.weight[event]);
+            if (is_black(b.weight[event]) != black || is_black(c.weight[event]) != black)
+                return false;
+        }
+        return !part_widely(a, b, c);
+    }
+
+    // Light that goes no further; unless the ray in the middle says another thing than the corners.
+    void end(std::uint32_t beam, const std::array<std::uint32_t, 3>& rays) {
+        stays_[beam] = true;
+        const Beam& parent = set_.beams[beam];
+        const Departure& from = level_.departures[rays[0]];
+        VertexRay ray{Vec3::Zero(), Vec3::Zero()};
+        for (const std::uint32_t i : rays) {
+            ray.position += set_.rays[i].position / 3;
+            ray.direction += set_.rays[i].direction;
+        }
+        ray.direction.normalize();
+        const SegmentEnd middle{ray.position, from.normal, parent.offset};
+        if (level_.parent == nullptr) {
+            if (!sees(scene_, middle, surface_.light())) return;
+            count_lit(parent);
+        }
+        Piece piece;
+        for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
+        if (!land(scene_, ray, {from.shape, from.normal, parent.offset}).goes_on() &&
+            !hides_a_caster(piece))
+            return;
+        cut(beam, Path(scene_, surface_, level_, beam), piece, share_of(beam), most_splits);
+    }
+
+    void count_lit(const Beam& beam) {
+        if (level_.parent == nullptr)
+            balance_.lit +=
+                static_cast<double>(beam.flux.mean()) / static_cast<double>(beam.triangle_count());
+    }
+
+    PathPoint corner(std::uint32_t ray) const {
+        PathPoint point;
+        point.origin = level_.traced.origins[ray];
+        point.from = level_.departures[ray];
+        point.ray = set_.rays[ray];
+        point.alive = true;
+        point.next = level_.landings[ray];
+        return point;
+    }
+
+    void quarter(std::uint32_t beam, const Path& path, const Piece& piece, float share,
+                 int splits) {
+        const auto between = [&path](const PathPoint& p, const PathPoint& q, float t) {
+            return path.between(p, q, t);
+        };
+        for (const Piece& part : quarters(piece, between)) cut(beam, path, part, share, splits);
+    }
+    void quarter_for_detail(std::uint32_t beam, const Path& path, const Piece& piece, float share,
+                            int splits) {
+        quarter(beam, path, piece, share / 4, splits);
+    }
+
+    // What becomes of a piece whose corners do different things. It has `share` of its polygon.
+    void cut(std::uint32_t beam, const Path& path, const Piece& piece, float share, int splits) {
+        const auto& [a, b, c] = piece;
+        if (!goes_on(a) && !goes_on(b) && !goes_on(c)) {
+            cut_dark(beam, path, piece, share, splits);
+            return;
+        }
+        const bool one = alike(a, b) && alike(b, c) && alike(c, a);
+        bool more = !alike(a, b) && !alike(b, c) && !alike(c, a);
+        if (splits > 0 && (more || (one && part_widely(a.next, b.next, c.next)))) {
+            quarter(beam, path, piece, share, splits - 1);
+            return;
+        }
+        bool coarse = one && (is_coarse(a, b) || is_coarse(b, c) || is_coarse(c, a));
+        if (coarse && share > least_share) {
+            quarter_for_detail(beam, path, piece, share, splits);
+            return;
+        }
+        const std::array<CutEdge, 3> edges = {cut_edge(path, a, b), cut_edge(path, b, c),
+                                              cut_edge(path, c, a)};
+        for (std::size_t i = 0; i < 3; ++i) {
+            more = more || edges[i].hides_another;
+            coarse = coarse || (edges[i].is_cut && (is_coarse(piece[i], edges[i].last) ||
+                                                    is_coarse(edges[i].first, piece[(i + 1) % 3])));
+        }
+        if (coarse && share > least_share) {
+            quarter_for_detail(beam, path, piece, share, splits);
+            return;
+        }
+        if (splits > 0 && more) {
+            quarter(beam, path, piece, share, splits - 1);
+            return;
+        }
+        const double carried = add_parts(beam, piece, edges, share);
+        if (more) balance_.lost += std::max(0.0, flux(piece) - carried);
+    }
+
+    // A piece none of whose corners goes on.
+    void cut_dark(std::uint32_t beam, const Path& path, const Piece& piece, float share,
+                  int splits) {
+        if (share > least_share && hides_a_caster(piece)) {
+            quarter_for_detail(beam, path, piece, share, splits);
+            return;
+        }
+        if (!goes_on(path.middle(piece))) return;
+        if (splits > 0)
+            quarter(beam, path, piece, share, splits - 1);
+        else
+            balance_.lost += flux(piece);
+    }
+
+    // Returns the flux of the parent's that goes on.
+    double add_parts(std::uint32_t beam, const Piece& piece, const std::array<CutEdge, 3>& edges,
+                     float share) {
+        double carried = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool known =
+                (i > 0 && alike(piece[i], piece[0])) || (i > 1 && alike(piece[i], piece[1]));
+            if (!known && goes_on(piece[i]))
+                carried += add_part(beam, piece, edges, piece[i], share);
+        }
+        return carried;
+    }
+
+    // The part of a piece that does as one of its corners. Returns the flux of the parent's that it takes.
+    double add_part(std::uint32_t beam, const Piece& piece, const std::array<CutEdge, 3>& edges,
+                    const PathPoint& like, float share) {
+        std::array<const PathPoint*, 6> part;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool here = alike(piece[i], like);
+            if (here) part[count++] = &piece[i];
+            if (!edges[i].is_cut) continue;
+            if (here) part[count++] = &edges[i].last;
+            if (alike(piece[(i + 1) % 3], like)) part[count++] = &edges[i].first;
+        }
+        double taken = 0;
+        for (std::size_t i = 1; i + 1 < count; ++i) {
+            const std::array<const PathPoint*, 3> points = {part[0], part[i], part[i + 1]};
+            Corners corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = {&points[k]->origin, &points[k]->next, Beam::none};
+            for (const Event event : events)
+                if (!is_black(like.next.weight[event])) add_beam(beam, corners, event, share);
+            taken += flux({*points[0], *points[1], *points[2]});
+        }
+        return taken;
+    }
+
+    double flux(const Piece& piece) const {
+        const auto& [a, b, c] = piece;
+        const Spectrum weight = (a.origin.weight + b.origin.weight + c.origin.weight) / 3;
+        return static_cast<double>(weight.mean()) *
+               measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
+    }
+
+    // As LightBender::flux: by the corners' weights where they are alike; near total reflection the way is
+    // gone from places inside as well.
+    Spectrum flux(std::uint32_t parent, const Corners& corners, Event event) const {
+        std::array<Spectrum, 3> weights;
+        for (std::size_t i = 0; i < 3; ++i)
+            weights[i] = corners[i].origin->weight * corners[i].landing->weight[event];
+        const std::array<const RayOrigin*, 3> at = {corners[0].origin, corners[1].origin,
+                                                    corners[2].origin};
+        const float whole = static_cast<float>(
+            measure(set_.light, at[0]->position, at[1]->position, at[2]->position));
+        if (!weights_differ({weights[0].mean(), weights[1].mean(), weights[2].mean()}))
+            return (weights[0] + weights[1] + weights[2]) * (whole / 3);
+        const Path path(scene_, surface_, level_, parent);
+        Spectrum sum = black();
+        const auto add = [&](int i, int j, float to_middle) {
+            const float u = (static_cast<float>(i) + to_middle) / parts;
+            const float v = (static_cast<float>(j) + to_middle) / parts;
+            const PathPoint point = path.inside(at, {1 - u - v, u, v});
+            if (goes_on(point) && same_piece(point.next, *corners[0].landing))
+                sum += point.origin.weight * point.next.weight[event];
+        };
+        for (int i = 0; i < parts; ++i)
+            for (int j = 0; i + j < parts; ++j) {
+                add(i, j, 1.0F / 3);
+                if (i + j + 2 <= parts) add(i, j, 2.0F / 3);
+            }
+        return sum * (whole / (parts * parts));
+    }
+
+    void add_beam(std::uint32_t parent, const Corners& corners, Event event, float share) {
+        const Landing& first = *corners[0].landing;
+        Beam beam;
+        beam.flux = flux(parent, corners, event);
+        const auto mean = static_cast<double>(beam.flux.mean());
+        if (!(mean > 0)) return;
+        const double worth = mean / left_of(corners) / static_cast<double>(share);
+        if (worth < least_flux_) {
+            balance_.lost += mean;
+            balance_.pruned += mean;
+            return;
+        }
+        Level& level = next_level(first.shape, event);
+        beam.triangle = set_.beams[parent].triangle;
+        beam.inside = first.front == (event == refraction);
+        for (const Corner& corner : corners)
+            beam.offset = std::max(beam.offset, 2 * corner.landing->offset);
+        beam.offset += bulge(corners);
+        beam.corners.fill(Beam::none);
+        for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
+        level.traced.set.beams.push_back(beam);
+        level.worth += worth;
+        level.shares.push_back(share);
+        level.parents.push_back(parent);
+        level.places.push_back(first);
+    }
+
+    // What media have left of a beam's light. Where they absorb much, all light that passes is weak.
+    static double left_of(const Corners& corners) {
+        double left = 0;
+        for (const Corner& corner : corners)
+            left = std::max(left, static_cast<double>(corner.origin->left) *
+                                      static_cast<double>(corner.landing->left));
+        return left;
+    }
+
+    // How far the surface may lie off the triangle of the corners, as FirstSurface::offset. Facets of a
+    // mesh turn by steps.
+    static float bulge(const Corners& corners) {
+        float largest = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Landing& a = *corners[i].landing;
+            const Landing& b = *corners[(i + 1) % 3].landing;
+            const float turn = std::max((a.shading_normal - b.shading_normal).norm(),
+                                        (a.geometric_normal - b.geometric_normal).norm());
+            largest = std::max(largest, (a.position - b.position).norm() * turn);
+        }
+        return largest / 4;
+    }
+
+    Level& next_level(std::uint32_t shape, Event event) {
+        for (Level& level : next_)
+            if (level.traced.set.path.back().shape == shape && level.event == event) return level;
+        Level& level = next_.emplace_back();
+        level.parent = &level_;
+        level.event = event;
+        level.ray_of_parent.assign(set_.rays.size(), Beam::none);
+        BeamSet& set = level.traced.set;
+        set.light = set_.light;
+        set.caster = set_.caster;
+        set.refracted = event == refraction;
+        set.path = set_.path;
+        set.path.push_back({shape, event == refraction});
+        if (const auto* medium = std::get_if<Dielectric>(&scene_.shapes()[shape].bsdf.model))
+            set.absorption = {medium->ext_absorption, medium->absorption};
+        return level;
+    }
+
+    // Beams that meet in a ray of the parent's share the one it goes on as.
+    static std::uint32_t ray_of(Level& level, const Corner& corner, Event event) {
+        const bool shared = corner.parent_ray != Beam::none;
+        if (shared && level.ray_of_parent[corner.parent_ray] != Beam::none)
+            return level.ray_of_parent[corner.parent_ray];
+        const Landing& landing = *corner.landing;
+        const auto ray = static_cast<std::uint32_t>(level.traced.set.rays.size());
+        level.traced.set.rays.push_back({landing.position, landing.direction[event]});
+        RayOrigin origin = *corner.origin;
+        origin.weight *= landing.weight[event];
+        origin.left *= landing.left;
+        if (!shared) origin.vertex = RayOrigin::no_vertex;
+        level.traced.origins.push_back(origin);
+        level.departures.push_back({landing.shape, landing.geometric_normal, landing.offset});
+        if (shared) level.ray_of_parent[corner.parent_ray] = ray;
+        return ray;
+    }
+
+    const Scene& scene_;
+    const FirstSurface& surface_;
+    Level& level_;
+    BeamSet& set_;
+    double least_flux_;
+    FluxBalance& balance_;
+    ProgressPart part_;
+    PieceDetail detail_;
+    std::vector<bool> stays_;
+    std::vector<Level> next_;
+};
+
+}  // namespace
+
+NextSets next_sets(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
+                   FluxBalance& balance, const ProgressPart& part) {
+    return NextEvent(scene, surface, level, least_flux, balance, part).run();
+}
+
+}  // namespace caustics

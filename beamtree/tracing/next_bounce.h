@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "beamtree/beams/flux_balance.h"
+#include "beamtree/beams/trace_progress.h"
+#include "beamtree/tracing/beam_path.h"
+
+namespace caustics {
+
+/// What one set's light does next.
+struct NextSets {
+    std::vector<Level>
+        sets;  ///< of all casters it meets, after each event; their parent is the level
+    /// Of a beam: does light of its last leg come to something else than a caster, as far as its corners tell?
+    std::vector<bool> stays;
+};
+
+/// Follows a level's rays to the next surfaces (its `landings`) and makes the beams that go on from there; those that
+/// had less than `least_flux` if media were clear are left out and counted by `balance`.
+NextSets next_sets(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
+                   FluxBalance& balance, const ProgressPart& part);
+
+}  // namespace caustics

@@ -1,0 +1,56 @@
+#include "beamtree/tracing/ray_arrival.h"
+
+#include <cmath>
+#include <optional>
+
+#include "core/material/optics.h"
+
+namespace caustics {
+namespace {
+
+constexpr float crease = 0.766F;        // cosine of its angle
+constexpr float same_facet = 0.99999F;  // of the angle between normals
+constexpr float flat_turn = 1e-5F;      // between a facet's normal and the one it is shaded by
+constexpr float most_step = 0.3F;       // sine of the way from one ray to the other to the surface
+
+}  // namespace
+
+Landing land(const Scene& scene, const VertexRay& ray, const Departure& from) {
+    Landing landing;
+    const SegmentEnd start{ray.position, from.normal, from.offset};
+    const std::optional<SurfacePoint> hit = scene.intersect(spawn_ray(start, ray.direction));
+    if (!hit || !is_caster(scene.shape_at(*hit).bsdf)) return landing;
+    const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
+    const Vec3 w = -ray.direction;
+    landing.shape = hit->shape;
+    landing.front = hit->geometric_normal.dot(w) > 0;
+    landing.position = hit->position;
+    landing.geometric_normal = hit->geometric_normal;
+    landing.shading_normal = hit->shading_normal;
+    landing.offset = hit->offset;
+    landing.flat = scene.shape_at(*hit).primitive == Primitive::mesh &&
+                   (hit->geometric_normal - hit->shading_normal).norm() < flat_turn;
+    const SpecularSplit split = split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w);
+    const Spectrum left = segment_transmittance(
+        medium_absorption(scene.shapes()[from.shape].bsdf, from.normal, ray.direction),
+        medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
+    landing.direction = {split.reflected, split.refracted};
+    landing.weight = {split.reflected_weight * left, split.refracted_weight * left};
+    landing.left = left.mean();
+    return landing;
+}
+
+bool same_piece(const Landing& a, const Landing& b) {
+    if (a.shape != b.shape) return false;
+    if (!a.goes_on()) return true;
+    if (a.front != b.front) return false;
+    const bool facets = a.flat && b.flat;
+    const float turn = facets ? a.geometric_normal.dot(b.geometric_normal)
+                              : a.shading_normal.dot(b.shading_normal);
+    if (turn < (facets ? same_facet : crease)) return false;
+    const Vec3 way = b.position - a.position;
+    const Vec3 normal = a.shading_normal + b.shading_normal;
+    return std::abs(way.dot(normal)) <= most_step * way.norm() * normal.norm() + 4 * a.offset;
+}
+
+}  // namespace caustics

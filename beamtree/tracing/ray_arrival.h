@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "beamtree/beams/beam.h"
+#include "beamtree/beams/specular_vertex.h"
+#include "core/scene/scene.h"
+
+namespace caustics {
+
+/// How a ray starts: off the surface it leaves, by that surface's normal.
+struct Departure {
+    std::uint32_t shape = 0;  ///< index into Scene::shapes
+    Vec3 normal;              ///< unit
+    float offset = 0;         ///< [m]
+};
+
+/// Where a ray next meets a surface, and what becomes of its light there if that is a caster.
+struct Landing {
+    static constexpr std::uint32_t nothing = ~0U;
+    std::uint32_t shape = nothing;  ///< of a caster; a ray that ends elsewhere has none
+    bool front = false;             ///< it comes to the front side
+    bool flat = false;              ///< on a mesh's facet that is shaded flat
+    Vec3 position;
+    Vec3 geometric_normal;
+    Vec3 shading_normal;
+    float offset = 0;
+    std::array<Vec3, 2> direction;
+    /// After each event, over the weight before: of surface and way there.
+    std::array<Spectrum, 2> weight = {black(), black()};
+    float left = 1;  ///< by the medium on the way there, mean of the channels
+
+    bool goes_on() const { return shape != nothing; }
+};
+
+/// Sends a ray on.
+Landing land(const Scene& scene, const VertexRay& ray, const Departure& from);
+
+/// Whether two rays have met one side of one piece of a surface, without a crease or a step between:
+/// facets that are shaded flat are one piece if they lie in one plane, and elsewhere normals of one
+/// piece turn by less than 40 degrees from one ray to the other and are across the way between the
+/// two. Two rays that meet no caster are alike too.
+bool same_piece(const Landing& a, const Landing& b);
+
+}  // namespace caustics

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "beamtree/beams/beam_params.h"
+#include "beamtree/beams/flux_balance.h"
+#include "beamtree/tracing/beam_tracing.h"
+
+namespace caustics {
+
+/// The beams of a scene, all lights and casters.
+struct TracedScene {
+    std::vector<CasterMesh> casters;
+    std::vector<BeamSet> sets;
+    FluxBalance balance;
+
+    /// polygons, beams, their bytes and what was left out; how normals and meshes were come by.
+    BuildReport report() const;
+    /// The mesh of a shape.
+    const CasterMesh& caster(std::uint32_t shape) const;
+};
+
+/// Phase "beams". Throws UnsupportedScene, in the name of `method`, where beams lose more than half of
+/// the light on its way to further events.
+TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
+                        const RunOptions& options, Intensity intensity = Intensity::area);
+
+}  // namespace caustics

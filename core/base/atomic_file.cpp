@@ -1,0 +1,127 @@
+#include "core/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <new>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace caustics {
+
+namespace {
+
+std::filesystem::path entry_of(int descriptor) {
+    return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
+/// A file without a name in the folder, which a killed process leaves nothing of; -1 where the file
+/// system has no such files, or it could not be given a name later.
+int open_nameless(const std::filesystem::path& folder) {
+    constexpr mode_t mode = 0666;
+    const int descriptor =
+        open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
+    std::error_code none;
+    if (descriptor < 0 || std::filesystem::exists(entry_of(descriptor), none)) return descriptor;
+    close(descriptor);
+    return -1;
+}
+
+}  // namespace
+
+WholeFile::WholeFile(const std::filesystem::path& file) : file_(file), temporary_(file) {
+    std::error_code unknown;
+    if (std::filesystem::is_other(file, unknown)) fail(EEXIST);
+    temporary_ += ".tmp-" + std::to_string(getpid());
+    const int nameless = open_nameless(file.parent_path());
+    is_nameless_ = nameless >= 0;
+    out_ = is_nameless_ ? fdopen(nameless, "wb") : std::fopen(temporary_.c_str(), "wb");
+    if (out_ == nullptr) fail(errno);
+}
+
+WholeFile::~WholeFile() {
+    if (out_ != nullptr) std::fclose(out_);
+    std::error_code ignored;
+    if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
+}
+
+void WholeFile::fail(int error) const {
+    throw InputError(file_.string() + ": cannot be written (" +
+                     std::generic_category().message(error) + ")");
+}
+
+void WholeFile::write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), out_) != bytes.size()) fail(errno);
+}
+
+/// Another process of that number may have left the name behind.
+void WholeFile::name() {
+    std::error_code none;
+    std::filesystem::remove(temporary_, none);
+    const std::filesystem::path entry = entry_of(fileno(out_));
+    if (linkat(AT_FDCWD, entry.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+        fail(errno);
+}
+
+void WholeFile::commit() {
+    if (std::fflush(out_) != 0) fail(errno);
+    if (is_nameless_) name();
+    if (std::fclose(std::exchange(out_, nullptr)) != 0) fail(errno);
+    std::error_code error;
+    std::filesystem::rename(temporary_, file_, error);
+    if (error) fail(error.value());
+    temporary_.clear();
+}
+
+void require_writable_place(const std::filesystem::path& file) {
+    namespace fs = std::filesystem;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    const auto fail = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
+    std::error_code unknown;
+    if (!fs::is_directory(folder, unknown))
+        fail("the folder " + folder.string() + " does not exist");
+    const fs::file_status status = fs::status(file, unknown);
+    if (fs::is_directory(status)) fail("is a folder, not a file");
+    if (fs::exists(status) && !fs::is_regular_file(status)) fail("is no regular file");
+}
+
+void write_whole_file(const std::filesystem::path& file, std::string_view bytes) {
+    WholeFile out(file);
+    out.write(bytes);
+    out.commit();
+}
+
+void require_regular_file(const std::filesystem::path& file) {
+    const auto fail = [&](const std::string& why) {
+        throw InputError(file.string() + ": cannot be read (" + why + ")");
+    };
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+    if (!std::filesystem::status_known(status)) fail(error.message());
+    if (std::filesystem::is_directory(status)) fail("it is a folder, not a regular file");
+    if (!std::filesystem::is_regular_file(status))
+        fail("a pipe or device, not a regular file: write its content to a file first");
+}
+
+std::string read_whole_file(const std::filesystem::path& file) {
+    require_regular_file(file);
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    try {
+        std::string bytes(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
+        in.seekg(0);
+        in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        if (in) return bytes;
+    } catch (const std::bad_alloc&) {
+        throw InputError(file.string() + ": does not fit into memory");
+    }
+    throw InputError(file.string() + ": cannot be read (" + std::generic_category().message(errno) +
+                     ")");
+}
+
+}  // namespace caustics

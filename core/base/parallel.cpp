@@ -1,0 +1,77 @@
+#include "core/base/parallel.h"
+
+#include <sched.h>
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+#ifdef CAUSTICS_STD_THREADS
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+#else
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#endif
+
+namespace caustics {
+
+int available_threads() {
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof(set), &set) != 0) return 1;
+    return std::max(1, CPU_COUNT(&set));
+}
+
+void run_single_threaded(const std::function<void()>& work) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    work();
+}
+
+#ifdef CAUSTICS_STD_THREADS
+
+void parallel_for(int threads, std::size_t count,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
+    std::atomic<std::size_t> next{0};
+    std::exception_ptr first;
+    std::mutex first_mutex;
+    const auto work = [&](std::size_t worker) {
+        try {
+            for (std::size_t i = next++; i < count; i = next++) body(i, worker);
+        } catch (...) {
+            next = count;
+            const std::lock_guard lock(first_mutex);
+            if (!first) first = std::current_exception();
+        }
+    };
+    std::vector<std::thread> pool;
+    const auto workers = static_cast<std::size_t>(std::max(1, threads));
+    for (std::size_t worker = 1; worker < std::min(workers, count); ++worker)
+        pool.emplace_back(work, worker);
+    work(0);
+    for (std::thread& thread : pool) thread.join();
+    if (first) std::rethrow_exception(first);
+}
+
+#else
+
+void parallel_for(int threads, std::size_t count,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
+    tbb::task_arena arena(std::max(1, threads));
+    arena.execute([&] {
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, 1),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                const auto worker =
+                    static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
+                for (std::size_t i = range.begin(); i != range.end(); ++i) body(i, worker);
+            },
+            tbb::simple_partitioner());
+    });
+}
+
+#endif
+
+}  // namespace caustics

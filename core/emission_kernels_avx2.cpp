@@ -1,7 +1,0 @@
-#include "core/emission_loops.h"
-
-namespace caustics {
-
-const EmissionKernels& avx2_emission_kernels() { return emission_loops; }
-
-}  // namespace caustics

@@ -1,0 +1,159 @@
+#include "core/geometry/shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/surface_offset.h"
+#include "core/math/sampling.h"
+
+namespace caustics {
+namespace {
+
+Vec3 world_normal(const Shape& shape, const Vec3d& local_normal) {
+    const Eigen::Matrix3d inverse_transpose = shape.to_world.linear().inverse().transpose();
+    const Vec3d n = (inverse_transpose * local_normal).normalized();
+    return (shape.flip_normals ? Vec3d(-n) : n).cast<float>();
+}
+
+double exact_area(const Shape& shape) {
+    const Eigen::Matrix3d m = shape.to_world.linear();
+    const double plane = m.col(0).cross(m.col(1)).norm();
+    switch (shape.primitive) {
+        case Primitive::rectangle: return 4 * plane;
+        case Primitive::disk: return pi_d * plane;
+        case Primitive::sphere: return 4 * pi_d * m.col(0).squaredNorm();
+        case Primitive::cylinder: return 2 * pi_d * m.col(0).norm() * m.col(2).norm();
+        default: return 0;
+    }
+}
+
+// A point of the unit primitive, uniform by area, and its normal.
+std::pair<Vec3d, Vec3d> sample_local(Primitive primitive, float u0, float u1) {
+    switch (primitive) {
+        case Primitive::disk: {
+            const Vec2 p = uniform_disc(u0, u1);
+            return {Vec3d(static_cast<double>(p.x()), static_cast<double>(p.y()), 0),
+                    Vec3d::UnitZ()};
+        }
+        case Primitive::sphere: {
+            const Vec3d n = uniform_cap(2, u0, u1).cast<double>().normalized();
+            return {n, n};
+        }
+        case Primitive::cylinder: {
+            const double angle = 2 * pi_d * static_cast<double>(u0);
+            const Vec3d n(std::cos(angle), std::sin(angle), 0);
+            return {n + static_cast<double>(u1) * Vec3d::UnitZ(), n};
+        }
+        default:
+            return {Vec3d(2 * static_cast<double>(u0) - 1, 2 * static_cast<double>(u1) - 1, 0),
+                    Vec3d::UnitZ()};
+    }
+}
+
+AreaSampler::Sample sample_triangle(const TriangleMesh& mesh, std::size_t index, float u0,
+                                    float u1) {
+    const auto& [a, b, c] = mesh.triangles[index];
+    const double root = std::sqrt(static_cast<double>(u0));
+    const auto side = static_cast<double>(u1);
+    const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+    const Vec3d position = (1 - root) * p.cast<double>() + root * (1 - side) * q.cast<double>() +
+                           root * side * r.cast<double>();
+    AreaSampler::Sample sample{position.cast<float>(), (q - p).cross(r - p).normalized(), 0};
+    sample.offset = triangle_offset(sample.position, sample.normal, p, q, r);
+    return sample;
+}
+
+}  // namespace
+
+Eigen::AlignedBox3d local_bounds(const Shape& shape) {
+    switch (shape.primitive) {
+        case Primitive::mesh: {
+            Eigen::AlignedBox3d box;
+            for (const Vec3& p : shape.mesh.positions) box.extend(p.cast<double>());
+            return box;
+        }
+        case Primitive::sphere: return {Vec3d(-1, -1, -1), Vec3d(1, 1, 1)};
+        case Primitive::cylinder: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 1)};
+        case Primitive::heightfield: {
+            const Vec2d half = shape.field.half_size;
+            const double top = shape.field.max_height();
+            return {Vec3d(-half.x(), -half.y(), -top), Vec3d(half.x(), half.y(), top)};
+        }
+        default: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 0)};
+    }
+}
+
+std::vector<Vec3> hull_points(const Shape& shape) {
+    if (shape.primitive == Primitive::mesh) return shape.mesh.positions;
+    const Eigen::AlignedBox3d box = local_bounds(shape);
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i)
+        corners.push_back(
+            Vec3d(shape.to_world * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)))
+                .cast<float>());
+    return corners;
+}
+
+Box bounds(const Shape& shape) {
+    Box box;
+    if (shape.primitive == Primitive::sphere) {
+        const BoundingSphere sphere = bounding_sphere(shape);
+        const Vec3 half = Vec3::Constant(sphere.radius);
+        return {sphere.centre - half, sphere.centre + half};
+    }
+    for (const Vec3& p : hull_points(shape)) box.extend(p);
+    return box;
+}
+
+BoundingSphere bounding_sphere(const Shape& shape) {
+    if (shape.primitive == Primitive::sphere)
+        return {Vec3d(shape.to_world.translation()).cast<float>(),
+                static_cast<float>(shape.to_world.linear().col(0).norm())};
+    return bounding_sphere(hull_points(shape));
+}
+
+BoundingSphere bounding_sphere(const std::vector<Vec3>& points) {
+    Box box;
+    for (const Vec3& p : points) box.extend(p);
+    BoundingSphere sphere{box.center(), 0};
+    for (const Vec3& p : points)
+        sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm());
+    return sphere;
+}
+
+std::size_t triangle_count(const Shape& shape) { return shape.mesh.triangles.size(); }
+
+float least_offset(const Shape& shape) {
+    const Box box = bounds(shape);
+    return 0x1p-40F * box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff();
+}
+
+AreaSampler::AreaSampler(const Shape& shape)
+    : area_(exact_area(shape)), least_offset_(caustics::least_offset(shape)) {
+    if (shape.primitive != Primitive::mesh) return;
+    for (const auto& [a, b, c] : shape.mesh.triangles) {
+        const Vec3d p = shape.mesh.positions[a].cast<double>();
+        const Vec3d e1 = shape.mesh.positions[b].cast<double>() - p;
+        const Vec3d e2 = shape.mesh.positions[c].cast<double>() - p;
+        area_ += e1.cross(e2).norm() / 2;
+        cumulative_.push_back(area_);
+    }
+    for (double& share : cumulative_) share /= area_;
+}
+
+AreaSampler::Sample AreaSampler::sample(const Shape& shape, float u0, float u1) const {
+    if (shape.primitive != Primitive::mesh) {
+        const auto [p, n] = sample_local(shape.primitive, u0, u1);
+        const Vec3 position = Vec3d(shape.to_world * p).cast<float>();
+        return {position, world_normal(shape, n),
+                std::max(rounding_offset(position), least_offset_)};
+    }
+    // The first number picks the triangle and its remainder is used again.
+    const std::size_t index = pick(cumulative_, u0);
+    const double low = index == 0 ? 0 : cumulative_[index - 1];
+    const double rest = (static_cast<double>(u0) - low) / (cumulative_[index] - low);
+    return sample_triangle(shape.mesh, index, std::clamp(static_cast<float>(rest), 0.0F, 1.0F), u1);
+}
+
+}  // namespace caustics

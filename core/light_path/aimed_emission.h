@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/light_path/aimed_source.h"
+#include "core/light_path/emission_samples.h"
+#include "core/light_path/light_path.h"
+#include "core/math/rng.h"
+#include "core/scene/scene.h"
+
+namespace caustics {
+
+/// Emission aimed at the casters, with equal-power particles over all lights: lights (and the
+/// pieces of large ones) are chosen in proportion to their aimed power; within one, directions (or
+/// points of a directional light's front) are uniform over the union of the casters' bounds as
+/// seen from it, a region seen through several bounds counted once by thinning; the cosine of a
+/// flat or a mesh light is thinned too. Rows J2 of [J96], equal power of [C11].
+class AimedEmission {
+public:
+    /// Paths side by side are emitted by the kernels of `isa`; all of them give the same particles.
+    explicit AimedEmission(const Scene& scene, Isa isa = Isa::plain);
+
+    /// The particle for a random point of the unit square, or empty when thinning dropped it (it still
+    /// counts as emitted).
+    std::optional<LightParticle> emit(Rng& rng) const;
+    /// The same for many paths side by side: appends those whose particles set out. Uniform points
+    /// make uniform particles: x picks the light and the region, its rest and y the direction, so
+    /// that a stratified square makes stratified particles. All other numbers come from the paths'
+    /// streams.
+    void emit(const EmissionSamples& samples, std::vector<LightPathStart>& starts) const;
+    const EmissionKernels& kernels() const { return kernels_; }
+    /// Sum over lights of the power sent into the aimed sets, before thinning [W].
+    Spectrum total_power() const;
+    /// No light or no caster, or they cannot see each other.
+    bool empty() const { return sources_.empty(); }
+
+private:
+    /// What a point of the square is mapped to.
+    struct Aim {
+        std::uint32_t source;
+        std::uint32_t cone;  ///< or disc: the region's number among those of all sources
+        Vec2 disc;
+        Vec3 direction;  ///< where the region is a cone
+    };
+    std::uint32_t choose(double& x, std::uint32_t& cone) const;
+    std::optional<LightParticle> send(const Aim& aim, Rng& rng) const;
+    std::optional<Ray> send_through(const AimedSource&, const AimedDisc&, const Vec2& at,
+                                    Rng&) const;
+    std::optional<Ray> send_from_area(const AimedSource&, const Vec3& direction, Rng&) const;
+
+    const Scene& scene_;
+    const EmissionKernels& kernels_;
+    std::vector<AimedSource> sources_;
+    std::vector<double> cumulative_;         ///< of the sources' shares
+    std::vector<Spectrum> flux_;             ///< of each source's particles
+    std::vector<EmissionCone> cones_;        ///< of all sources' regions; those of discs are empty
+    std::vector<std::uint32_t> first_cone_;  ///< of each source
+};
+
+}  // namespace caustics

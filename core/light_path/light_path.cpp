@@ -1,0 +1,318 @@
+#include "core/light_path/light_path.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/material/optics.h"
+
+namespace caustics {
+
+namespace {
+
+// Names of the counters beside the counts.
+template <typename Counts, typename Visit>
+void for_each_count(Counts& counts, const Visit& visit) {
+    visit("photons_emitted", counts.emitted);
+    visit("photons_aimed", counts.aimed);
+    visit("photons_branched", counts.branched);
+    visit("photons_reflected", counts.reflected);
+    visit("photons_refracted", counts.refracted);
+    visit("photons_missed", counts.missed);
+    visit("photons_escaped", counts.escaped);
+    visit("photons_absorbed", counts.absorbed);
+    visit("photons_misdirected", counts.misdirected);
+    visit("photons_on_black_side", counts.on_black_side);
+    visit("photons_depth_limited", counts.depth_limited);
+    visit("photons_stored", counts.stored);
+    visit("photons_dropped", counts.dropped);
+}
+
+}  // namespace
+
+void LightPathCounts::add(const LightPathCounts& other) {
+    emitted += other.emitted;
+    aimed += other.aimed;
+    branched += other.branched;
+    reflected += other.reflected;
+    refracted += other.refracted;
+    missed += other.missed;
+    escaped += other.escaped;
+    absorbed += other.absorbed;
+    misdirected += other.misdirected;
+    on_black_side += other.on_black_side;
+    depth_limited += other.depth_limited;
+    stored += other.stored;
+    dropped += other.dropped;
+}
+
+void LightPathCounts::add_to(Counters& counters) const {
+    for_each_count(*this, [&](const char* name, std::uint64_t count) { counters[name] += count; });
+}
+
+LightPathCounts light_path_counts(const Counters& counters) {
+    LightPathCounts counts;
+    for_each_count(counts, [&](const char* name, std::uint64_t& count) {
+        const auto found = counters.find(name);
+        if (found != counters.end()) count = found->second;
+    });
+    return counts;
+}
+
+namespace {
+
+// A particle on its way: one ray of a path or of a branch.
+struct Flight {
+    Ray ray;
+    Spectrum flux;
+    const Spectrum* start_medium = nullptr;  // absorption where the ray starts, if in a medium
+    int bounces = 0;
+};
+
+void add_deposit(const Scene& scene, const SurfacePoint& hit, const Vec3& wi, const Spectrum& flux,
+                 int bounces, std::optional<Deposit>& added) {
+    const bool front = hit.geometric_normal.dot(wi) > 0;
+    if (!scatters_from(scene.shape_at(hit).bsdf, front)) return;
+    Deposit& deposit = added.emplace();
+    deposit.position = hit.position;
+    deposit.geometric_normal = front ? hit.geometric_normal : Vec3(-hit.geometric_normal);
+    deposit.shading_normal = front ? hit.shading_normal : Vec3(-hit.shading_normal);
+    deposit.wi = wi;
+    deposit.uv = hit.uv;
+    deposit.offset = hit.offset;
+    deposit.flux = flux;
+    deposit.shape = hit.shape;
+    deposit.bounces = bounces;
+    deposit.front = front;
+}
+
+// Whether a flight has come to a caster that it goes on from. Otherwise it has ended, perhaps with a
+// deposit.
+bool reaches_caster(const Scene& scene, const LightPathSettings& settings,
+                    const std::optional<SurfacePoint>& hit, Flight& flight, LightPathCounts& counts,
+                    std::optional<Deposit>& deposit) {
+    if (!hit) {
+        ++(flight.bounces == 0 ? counts.missed : counts.escaped);
+        return false;
+    }
+    const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
+    const bool arrived = is_receiver(bsdf);
+    if (flight.bounces == 0 && arrived) {
+        ++counts.missed;
+        return false;
+    }
+    const Vec3 w = -flight.ray.direction;
+    flight.flux *= segment_transmittance(
+        flight.start_medium, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
+    if (arrived && is_black(flight.flux)) {
+        ++counts.absorbed;
+        return false;
+    }
+    if (arrived) {
+        add_deposit(scene, *hit, w, flight.flux, flight.bounces, deposit);
+        ++(deposit ? counts.stored : counts.on_black_side);
+        return false;
+    }
+    if (flight.bounces == settings.max_bounces) {
+        ++counts.depth_limited;
+        return false;
+    }
+    return true;
+}
+
+void record(const LightPathSettings& settings, const Ray& ray) {
+    if (settings.traced != nullptr) settings.traced->push_back(ray);
+}
+
+// Moves a flight to its next caster. Empty when it has ended before, perhaps with a deposit.
+std::optional<SurfacePoint> reach_caster(const Scene& scene, const LightPathSettings& settings,
+                                         Flight& flight, LightPathCounts& counts,
+                                         std::optional<Deposit>& deposit) {
+    record(settings, flight.ray);
+    std::optional<SurfacePoint> hit = scene.intersect(flight.ray);
+    if (!reaches_caster(scene, settings, hit, flight, counts, deposit)) hit.reset();
+    return hit;
+}
+
+// Turns a flight to where it leaves a caster.
+void leave(const Scene& scene, const SurfacePoint& hit, const Vec3& direction, Flight& flight) {
+    flight.start_medium =
+        medium_absorption(scene.shape_at(hit).bsdf, hit.geometric_normal, direction);
+    flight.ray = spawn_ray({hit.position, hit.geometric_normal, hit.offset}, direction);
+    ++flight.bounces;
+}
+
+SpecularSplit split_at(const Scene& scene, const SurfacePoint& hit, const Flight& flight) {
+    return split_specular(scene.shape_at(hit).bsdf, hit.geometric_normal, hit.shading_normal,
+                          -flight.ray.direction);
+}
+
+// One decision for reflection, refraction or an end, which is counted; the survivor's channels are
+// rescaled so that the mean over many particles is the split's weights [C11, after Jensen 2004].
+const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux,
+                     LightPathCounts& counts) {
+    const float before = flux.sum();
+    if (!(before > 0)) {
+        ++counts.absorbed;
+        return nullptr;
+    }
+    const Spectrum reflected = split.reflected_weight * flux;
+    const Spectrum refracted = split.refracted_weight * flux;
+    const float reflected_share = reflected.sum() / before;
+    const float refracted_share = refracted.sum() / before;
+    const float u = rng.next();
+    if (u < reflected_share) {
+        flux = reflected / reflected_share;
+        return &split.reflected;
+    }
+    if (u < reflected_share + refracted_share) {
+        flux = refracted / refracted_share;
+        return &split.refracted;
+    }
+    const float lost_share = Spectrum(split.lost_weight * flux).sum() / before;
+    ++(u < reflected_share + refracted_share + lost_share ? counts.misdirected : counts.absorbed);
+    return nullptr;
+}
+
+// The event at a caster; false when it ends the flight.
+bool goes_on_from(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng,
+                  LightPathCounts& counts) {
+    const SpecularSplit split = split_at(scene, hit, flight);
+    const Vec3* const direction = roulette(split, rng, flight.flux, counts);
+    if (direction == nullptr) return false;
+    ++(direction == &split.reflected ? counts.reflected : counts.refracted);
+    leave(scene, hit, *direction, flight);
+    return true;
+}
+
+}  // namespace
+
+std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle& particle,
+                                        const LightPathSettings& settings, Rng& rng,
+                                        LightPathCounts& counts) {
+    Flight flight{particle.ray, particle.flux};
+    std::optional<Deposit> deposit;
+    while (const auto hit = reach_caster(scene, settings, flight, counts, deposit))
+        if (!goes_on_from(scene, *hit, flight, rng, counts)) break;
+    return deposit;
+}
+
+namespace {
+
+// A flight of many.
+struct OneOfMany : Flight {
+    std::size_t number;  // of its start
+};
+
+// Moves up to Scene::most_together flights along one segment; those that go on are kept in front.
+std::size_t advance(const Scene& scene, std::span<OneOfMany> flights,
+                    std::span<LightPathStart> starts, const LightPathSettings& settings,
+                    LightPathCounts& counts, std::span<std::optional<Deposit>> deposits) {
+    std::array<Ray, Scene::most_together> rays;
+    std::array<std::optional<SurfacePoint>, Scene::most_together> hits;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        rays[i] = flights[i].ray;
+        record(settings, rays[i]);
+    }
+    scene.intersect_together(std::span(rays).first(flights.size()), hits);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        OneOfMany& flight = flights[i];
+        if (reaches_caster(scene, settings, hits[i], flight, counts, deposits[flight.number]) &&
+            goes_on_from(scene, *hits[i], flight, starts[flight.number].rng, counts))
+            flights[kept++] = flight;
+    }
+    return kept;
+}
+
+}  // namespace
+
+void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
+                       const LightPathSettings& settings, LightPathCounts& counts,
+                       std::span<std::optional<Deposit>> deposits) {
+    std::vector<OneOfMany> flights;
+    flights.reserve(starts.size());
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        deposits[i].reset();
+        flights.push_back({{starts[i].particle.ray, starts[i].particle.flux}, i});
+    }
+    while (!flights.empty()) {
+        std::size_t kept = 0;
+        for (std::size_t first = 0; first < flights.size(); first += Scene::most_together) {
+            const auto some = std::span(flights).subspan(
+                first, std::min(Scene::most_together, flights.size() - first));
+            const std::size_t left = advance(scene, some, starts, settings, counts, deposits);
+            std::copy_n(some.begin(), left, flights.begin() + static_cast<std::ptrdiff_t>(kept));
+            kept += left;
+        }
+        flights.resize(kept);
+    }
+}
+
+namespace {
+
+class SplitPath {
+public:
+    SplitPath(const Scene& scene, const LightPathSettings& settings, const Spectrum& flux, Rng& rng,
+              LightPathCounts& counts, std::vector<Deposit>& deposits)
+        : scene_(scene),
+          settings_(settings),
+          lightest_(lightest_branch * flux.sum()),
+          rng_(rng),
+          counts_(counts),
+          deposits_(deposits) {}
+
+    // Follows a flight along its refractions; calls itself for the reflections, so no deeper than
+    // max_bounces.
+    void follow(Flight flight) {
+        std::optional<Deposit> deposit;
+        while (const auto hit = reach_caster(scene_, settings_, flight, counts_, deposit)) {
+            const SpecularSplit split = split_at(scene_, *hit, flight);
+            Flight reflected = flight;
+            const bool reflects = goes_on(split.reflected_weight, reflected);
+            const bool refracts = goes_on(split.refracted_weight, flight);
+            if (reflects) {
+                ++counts_.reflected;
+                counts_.branched += refracts ? 1 : 0;
+                leave(scene_, *hit, split.reflected, reflected);
+                follow(reflected);
+            }
+            if (!refracts) {
+                if (!reflects)
+                    ++(is_black(split.lost_weight) ? counts_.absorbed : counts_.misdirected);
+                return;
+            }
+            ++counts_.refracted;
+            leave(scene_, *hit, split.refracted, flight);
+        }
+        if (deposit) deposits_.push_back(*deposit);
+    }
+
+private:
+    // Weighs a branch; a light one goes on only sometimes, and then heavier.
+    bool goes_on(const Spectrum& weight, Flight& flight) {
+        flight.flux *= weight;
+        const float left = flight.flux.sum();
+        if (left >= lightest_) return left > 0;
+        if (rng_.next() * lightest_ >= left) return false;
+        flight.flux *= lightest_ / left;
+        return true;
+    }
+
+    const Scene& scene_;
+    const LightPathSettings& settings_;
+    float lightest_;
+    Rng& rng_;
+    LightPathCounts& counts_;
+    std::vector<Deposit>& deposits_;
+};
+
+}  // namespace
+
+void trace_split_path(const Scene& scene, const LightParticle& particle,
+                      const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
+                      std::vector<Deposit>& deposits) {
+    SplitPath(scene, settings, particle.flux, rng, counts, deposits)
+        .follow({particle.ray, particle.flux});
+}
+
+}  // namespace caustics

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/caustic_estimator.h"
+#include "core/math/rng.h"
+#include "core/math/spectrum.h"
+#include "core/scene/scene.h"
+
+namespace caustics {
+
+/// A particle that leaves a light, carrying flux [W] x emitted particles: divide by their number.
+struct LightParticle {
+    Ray ray;
+    Spectrum flux = black();
+};
+
+/// A particle's arrival on a receiver after at least one specular event.
+struct Deposit {
+    Vec3 position = Vec3::Zero();
+    Vec3 geometric_normal = Vec3::Zero();  ///< unit, on the side of arrival
+    Vec3 shading_normal = Vec3::Zero();    ///< unit, on the side of arrival
+    Vec3 wi = Vec3::Zero();  ///< unit, away from the surface, where the particle came from
+    Vec2 uv = Vec2::Zero();
+    float offset = 0;  ///< as SurfacePoint::offset
+    Spectrum flux = black();
+    std::uint32_t shape = 0;
+    int bounces = 0;
+    bool front = true;  ///< whether it arrived on the front side of the surface
+};
+
+/// What became of emitted particles. Each branch of a split path has its own end: the ends (missed
+/// to dropped) add up to `aimed` + `branched`.
+struct LightPathCounts {
+    std::uint64_t emitted = 0;    ///< drawn, including those thinned out at the light
+    std::uint64_t aimed = 0;      ///< sent on their way
+    std::uint64_t branched = 0;   ///< second branches begun by splitting
+    std::uint64_t reflected = 0;  ///< specular events that went on by reflection
+    std::uint64_t refracted = 0;  ///< and by refraction
+    std::uint64_t missed = 0;     ///< met no caster first
+    std::uint64_t escaped = 0;    ///< left the scene after a caster
+    std::uint64_t absorbed = 0;   ///< by roulette, a medium, or a coloured surface
+    /// Sent to the wrong side of the surface by a smooth normal (SpecularSplit::lost_weight).
+    std::uint64_t misdirected = 0;
+    std::uint64_t on_black_side = 0;  ///< arrived where a receiver is black, behind it as a rule
+    std::uint64_t depth_limited = 0;  ///< met one more caster after `max_bounces`
+    std::uint64_t stored = 0;
+    std::uint64_t dropped = 0;  ///< arrived, but left out so that a wanted number is exact
+
+    void add(const LightPathCounts& other);
+    void add_to(Counters& counters) const;
+};
+
+/// The counts that add_to() has put there.
+LightPathCounts light_path_counts(const Counters& counters);
+
+/// What happens at a surface that both reflects and refracts.
+enum class Interaction {
+    roulette,  ///< one decision by Russian roulette, the survivor's channels rescaled [C11]
+    split      ///< both are followed, each with its weight (POV-Ray's way, as [C11] describes it)
+};
+
+/// With `split`, a branch that carries less than this share of its particle's flux goes on with a
+/// probability of (its share / this), and then with this share: its mean stays, and a path has at
+/// most 1 / this branches at a time on average.
+inline constexpr float lightest_branch = 1.0F / 64;
+
+struct LightPathSettings {
+    int max_bounces = 16;  ///< specular events between light and receiver
+    Interaction interaction = Interaction::roulette;
+    std::vector<Ray>* traced = nullptr;  ///< gets every ray that is traced; for measuring
+};
+
+/// Follows a particle through specular surfaces to its first receiver, with reflection or
+/// refraction decided by Russian roulette whose probabilities weigh the channels. At most
+/// `max_bounces` specular events. Rows J3, J9.
+std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle& particle,
+                                        const LightPathSettings& settings, Rng& rng,
+                                        LightPathCounts& counts);
+
+/// A particle on its start, with the random numbers of its path.
+struct LightPathStart {
+    LightParticle particle;
+    Rng rng;
+    std::uint64_t path = 0;  ///< its number
+};
+
+/// trace_light_path for many particles side by side, one segment of all of them after the other.
+/// Made for particles that leave near each other: their rays share the way through the scene
+/// (Scene::intersect_together). `deposits` gets one, or none, for each start.
+void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
+                       const LightPathSettings& settings, LightPathCounts& counts,
+                       std::span<std::optional<Deposit>> deposits);
+
+/// Follows a particle and all its branches; appends their deposits, in a fixed order.
+void trace_split_path(const Scene& scene, const LightParticle& particle,
+                      const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
+                      std::vector<Deposit>& deposits);
+
+}  // namespace caustics

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <variant>
+#include <vector>
+
+#include "core/math/spectrum.h"
+#include "core/math/vec.h"
+
+namespace caustics {
+
+/// A picture as a reflectance, linear sRGB. v = 0 is the top row, as in Mitsuba.
+struct Bitmap {
+    enum class Filter { bilinear, nearest };
+    enum class Wrap { repeat, mirror, clamp };
+
+    int width = 0;
+    int height = 0;
+    std::vector<Spectrum> texels;  ///< row by row from the top
+    Filter filter = Filter::bilinear;
+    Wrap wrap = Wrap::repeat;
+    Eigen::Affine3f to_uv = Eigen::Affine3f::Identity();
+};
+
+/// Two colours by quadrants of the unit square, repeated: `color0` where (u > .5) == (v > .5)
+/// (Mitsuba's `checkerboard`).
+struct Checkerboard {
+    Spectrum color0 = Spectrum::Constant(0.4F);
+    Spectrum color1 = Spectrum::Constant(0.2F);
+    Eigen::Affine3f to_uv = Eigen::Affine3f::Identity();
+};
+
+using Texture = std::variant<Spectrum, Checkerboard, Bitmap>;
+
+/// Reflectance at texture coordinates (u, v).
+Spectrum evaluate(const Texture& texture, const Vec2& uv);
+
+/// Reads a picture file by OpenImageIO; 8- and 16-bit files are sRGB-decoded unless `raw`.
+/// One channel is grey; alpha is ignored. Throws InputError.
+Bitmap load_bitmap(const std::filesystem::path& file, bool raw);
+
+}  // namespace caustics

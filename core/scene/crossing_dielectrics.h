@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace caustics {
+
+/// Pairs of dielectric shapes (indices into Scene::shapes, the lower first) whose surfaces cross: of a
+/// place inside both nobody knows which medium fills it, so the light there means nothing. Shapes
+/// inside one another (a bubble in glass) and shapes that touch (water in a glass) do not cross.
+///
+/// Found along the edges of the shapes' meshes, some thousands a shape; so a crossing smaller than a
+/// polygon may be missed, and one by less than 3 % of an edge (coarse water in a glass) does not count.
+/// Two surfaces that meet at less than 10 degrees are taken to touch.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_dielectrics(const Scene& scene);
+
+}  // namespace caustics

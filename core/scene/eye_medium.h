@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/scene/scene.h"
+
+namespace caustics {
+
+/// The medium that the camera's eye is in, as the dielectrics about it say: rays are sent from the eye
+/// all round, and each that meets a dielectric first asks for the medium on the side where it came
+/// from. An open surface serves as well as a closed one: the eye under a pool's water sees its
+/// underside, and one between two nested balls sees both from the side of the same medium.
+struct EyeMedium {
+    Spectrum absorption = black();  ///< [1/m]; black also where the dielectrics disagree
+    /// Whether some say one medium and some another: an interface that was given no `ext_absorption`
+    /// where it lies in an absorbing medium, or an open surface seen from behind.
+    bool ambiguous = false;
+};
+
+EyeMedium eye_medium(const Scene& scene);
+
+}  // namespace caustics

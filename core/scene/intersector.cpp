@@ -1,0 +1,370 @@
+#include "core/scene/intersector.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "core/base/parallel.h"
+#include "core/geometry/exact_shape.h"
+#include "core/geometry/surface_offset.h"
+
+namespace caustics {
+namespace {
+
+void throw_embree_error(void*, RTCError code, const char* text) {
+    throw std::runtime_error("Embree: " + std::string(text) + " (error " +
+                             std::to_string(static_cast<int>(code)) + ")");
+}
+
+// An exact shape with its world -> local map, as Embree's user geometry sees it.
+struct ExactGeometry {
+    const Shape* shape = nullptr;
+    Transform to_local = Transform::Identity();
+    float least_offset = 0;
+
+    std::optional<ExactHit> intersect(const Vec3& origin, const Vec3& direction, float t_min,
+                                      float t_max) const {
+        const Vec3d o = to_local * origin.cast<double>();
+        const Vec3d d = to_local.linear() * direction.cast<double>();
+        return intersect_exact(*shape, o, d, static_cast<double>(t_min),
+                               static_cast<double>(t_max));
+    }
+};
+
+// A mesh's vertex in half a cache line. Embree reads the positions where they lie; it may read
+// 16 bytes from each.
+struct Vertex {
+    Vec3 position;
+    float u;
+    Vec3 normal;
+    float v;
+};
+static_assert(sizeof(Vertex) == 32);
+
+struct Mesh {
+    const Shape* shape = nullptr;
+    std::vector<Vertex> vertices;
+    bool smooth = false;  // has normals
+    bool mapped = false;  // has texture coordinates
+
+    explicit Mesh(const Shape& s)
+        : shape(&s), smooth(!s.mesh.normals.empty()), mapped(!s.mesh.uvs.empty()) {
+        vertices.reserve(s.mesh.positions.size());
+        for (std::size_t i = 0; i < s.mesh.positions.size(); ++i) {
+            const Vec2 uv = mapped ? s.mesh.uvs[i] : Vec2(Vec2::Zero());
+            const Vec3 normal = smooth ? s.mesh.normals[i] : Vec3(Vec3::Zero());
+            vertices.push_back({s.mesh.positions[i], uv.x(), normal, uv.y()});
+        }
+    }
+};
+
+void exact_bounds(const RTCBoundsFunctionArguments* args) {
+    const auto* geometry = static_cast<const ExactGeometry*>(args->geometryUserPtr);
+    const Box box = bounds(*geometry->shape);
+    // Outwards by more than float rounding, so that the exact shape lies inside.
+    const float pad = 1e-5F * box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff();
+    const Vec3 low = box.min().array() - pad;
+    const Vec3 high = box.max().array() + pad;
+    *args->bounds_o = {low.x(), low.y(), low.z(), 0, high.x(), high.y(), high.z(), 0};
+}
+
+std::optional<ExactHit> exact_hit(const void* user, RTCRayN* rays, unsigned n, unsigned i) {
+    const Vec3 origin(RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i),
+                      RTCRayN_org_z(rays, n, i));
+    const Vec3 direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i),
+                         RTCRayN_dir_z(rays, n, i));
+    return static_cast<const ExactGeometry*>(user)->intersect(
+        origin, direction, RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i));
+}
+
+// What Embree hands on to the functions of exact shapes; versions 3 and 4 differ here and below.
+#if RTC_VERSION_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+#else
+using EmbreeContext = RTCIntersectContext;
+#endif
+struct Query {
+    EmbreeContext context;  // first, so that a pointer to it is one to the query
+    std::array<ExactHit, most_rays_together> exact;  // of the exact shape hit last, by ray's id
+};
+
+void exact_intersect(const RTCIntersectFunctionNArguments* args) {
+    const unsigned n = args->N;
+    RTCRayN* const rays = RTCRayHitN_RayN(args->rayhit, n);
+    RTCHitN* const hits = RTCRayHitN_HitN(args->rayhit, n);
+    for (unsigned i = 0; i < n; ++i) {
+        if (args->valid[i] == 0) continue;
+        const std::optional<ExactHit> hit = exact_hit(args->geometryUserPtr, rays, n, i);
+        if (!hit) continue;
+        RTCRayN_tfar(rays, n, i) = static_cast<float>(hit->distance);
+        RTCHitN_geomID(hits, n, i) = args->geomID;
+        RTCHitN_primID(hits, n, i) = args->primID;
+        // Embree keeps the rounded distance only. Each hit is nearer than all before it, so that
+        // the last one stays.
+        reinterpret_cast<Query*>(args->context)->exact[RTCRayN_id(rays, n, i)] = *hit;
+    }
+}
+
+void exact_occluded(const RTCOccludedFunctionNArguments* args) {
+    for (unsigned i = 0; i < args->N; ++i)
+        if (args->valid[i] != 0 && exact_hit(args->geometryUserPtr, args->ray, args->N, i))
+            RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
+}
+
+RTCGeometry mesh_geometry(RTCDevice device, const Mesh& mesh) {
+    const std::vector<Vertex>& vertices = mesh.vertices;
+    const auto& triangles = mesh.shape->mesh.triangles;
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               vertices.data(), 0, sizeof(Vertex), vertices.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               triangles.data(), 0, 3 * sizeof(std::uint32_t), triangles.size());
+    return geometry;
+}
+
+RTCGeometry exact_geometry(RTCDevice device, ExactGeometry& exact) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, &exact);
+    rtcSetGeometryBoundsFunction(geometry, exact_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, exact_intersect);
+    rtcSetGeometryOccludedFunction(geometry, exact_occluded);
+    return geometry;
+}
+
+// Embree reads the ray by 16 bytes at a time: written the same way, its loads need not wait for
+// single stores to reach the cache.
+void write_ray(const Ray& ray, RTCRay& out) {
+    const Vec3& o = ray.origin;
+    const Vec3& d = ray.direction;
+#ifdef __SSE2__
+    float* const to = reinterpret_cast<float*>(&out);
+    const __m128i all = _mm_set_epi32(0, 0, -1, 0);
+    _mm_store_ps(to, _mm_set_ps(0, o.z(), o.y(), o.x()));
+    _mm_store_ps(to + 4, _mm_set_ps(0, d.z(), d.y(), d.x()));
+    _mm_store_ps(to + 8, _mm_or_ps(_mm_set_ss(ray.max_distance), _mm_castsi128_ps(all)));
+#else
+    out = {o.x(), o.y(), o.z(), 0, d.x(), d.y(), d.z(), 0, ray.max_distance, ~0U, 0, 0};
+#endif
+}
+static_assert(offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, tfar) == 32 &&
+              offsetof(RTCRay, mask) == 36 && sizeof(RTCRay) == 48);
+
+void intersect_scene(RTCScene scene, RTCRayHit& rayhit, Query& query) {
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&query.context);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.context;
+    rtcIntersect1(scene, &rayhit, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    rtcIntersect1(scene, &query.context, &rayhit);
+#endif
+}
+
+using Packet = RTCRayHit16;
+static_assert(most_rays_together == 16);
+
+void intersect_packet(RTCScene scene, const int* valid, Packet& packet, Query& query) {
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&query.context);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.context;
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &packet, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &query.context, &packet);
+#endif
+}
+
+void write_ray(const Ray& ray, unsigned i, Packet& packet) {
+    packet.ray.org_x[i] = ray.origin.x();
+    packet.ray.org_y[i] = ray.origin.y();
+    packet.ray.org_z[i] = ray.origin.z();
+    packet.ray.tnear[i] = 0;
+    packet.ray.dir_x[i] = ray.direction.x();
+    packet.ray.dir_y[i] = ray.direction.y();
+    packet.ray.dir_z[i] = ray.direction.z();
+    packet.ray.time[i] = 0;
+    packet.ray.tfar[i] = ray.max_distance;
+    packet.ray.mask[i] = ~0U;
+    packet.ray.id[i] = i;
+    packet.ray.flags[i] = 0;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+}
+
+void occlude_scene(RTCScene scene, RTCRay& ray) {
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(scene, &ray);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, &ray);
+#endif
+}
+
+void fill_mesh_point(const Mesh& mesh, std::uint32_t primitive, float u, float v,
+                     SurfacePoint& point) {
+    const std::array<std::uint32_t, 3>& triangle = mesh.shape->mesh.triangles[primitive];
+    const Vertex& a = mesh.vertices[triangle[0]];
+    const Vertex& b = mesh.vertices[triangle[1]];
+    const Vertex& c = mesh.vertices[triangle[2]];
+    const float w = 1 - u - v;
+    // In double, so that the point lies on the plane to its own rounding, however large the triangle.
+    point.position = (static_cast<double>(w) * a.position.cast<double>() +
+                      static_cast<double>(u) * b.position.cast<double>() +
+                      static_cast<double>(v) * c.position.cast<double>())
+                         .cast<float>();
+    const Vec3 across = (b.position - a.position).cross(c.position - a.position);
+    const float twice_area = across.norm();
+    point.geometric_normal = twice_area > 0 ? Vec3(across * (1 / twice_area)) : across;
+    point.offset =
+        triangle_offset(point.position, point.geometric_normal, a.position, b.position, c.position);
+    point.shading_normal = point.geometric_normal;
+    if (mesh.smooth) {
+        const Vec3 n = w * a.normal + u * b.normal + v * c.normal;
+        const float length = n.norm();
+        if (length > 0) point.shading_normal = n * (1 / length);
+    }
+    point.uv = mesh.mapped ? Vec2(w * Vec2(a.u, a.v) + u * Vec2(b.u, b.v) + v * Vec2(c.u, c.v))
+                           : Vec2(u, v);
+}
+
+void fill_exact_point(const ExactGeometry& exact, const Vec3d& local, SurfacePoint& point) {
+    const Shape& shape = *exact.shape;
+    const Vec3d n = exact.to_local.linear().transpose() * exact_normal(shape, local);
+    point.position = Vec3d(shape.to_world * local).cast<float>();
+    point.offset = std::max(rounding_offset(point.position), exact.least_offset);
+    point.geometric_normal = n.normalized().cast<float>();
+    if (shape.flip_normals) point.geometric_normal = -point.geometric_normal;
+    point.shading_normal = point.geometric_normal;
+    point.uv = exact_uv(shape, local);
+}
+
+}  // namespace
+
+struct Intersector::Embree {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::vector<std::variant<Mesh, ExactGeometry>> geometries;  ///< of the shapes; never move
+
+    explicit Embree(const std::vector<Shape>& shapes) {
+        geometries.reserve(shapes.size());
+        device = rtcNewDevice(nullptr);
+        if (device == nullptr) throw std::runtime_error("Embree: no device");
+        rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
+        scene = rtcNewScene(device);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+        for (std::size_t i = 0; i < shapes.size(); ++i) attach(shapes[i], i);
+        run_single_threaded([this] { rtcCommitScene(scene); });
+    }
+    ~Embree() {
+        if (scene != nullptr) rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+    Embree(const Embree&) = delete;
+    Embree& operator=(const Embree&) = delete;
+
+    void attach(const Shape& shape, std::size_t index) {
+        RTCGeometry geometry = nullptr;
+        if (shape.primitive == Primitive::mesh) {
+            geometries.emplace_back(Mesh(shape));
+            geometry = mesh_geometry(device, std::get<Mesh>(geometries.back()));
+        } else {
+            geometries.emplace_back(
+                ExactGeometry{&shape, shape.to_world.inverse(), least_offset(shape)});
+            geometry = exact_geometry(device, std::get<ExactGeometry>(geometries.back()));
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(index));
+        rtcReleaseGeometry(geometry);
+    }
+};
+
+Intersector::Intersector(const std::vector<Shape>& shapes)
+    : embree_(std::make_unique<Embree>(shapes)) {}
+
+Intersector::~Intersector() = default;
+
+// What Embree says of a ray's end.
+struct Intersector::Arrival {
+    unsigned geometry;
+    unsigned primitive;
+    float u, v;
+    float distance;
+    const ExactHit& exact;
+};
+
+void Intersector::fill(const Arrival& arrival, SurfacePoint& point) const {
+    point.shape = arrival.geometry;
+    point.distance = arrival.distance;
+    const auto& geometry = embree_->geometries[arrival.geometry];
+    if (const auto* mesh = std::get_if<Mesh>(&geometry))
+        fill_mesh_point(*mesh, arrival.primitive, arrival.u, arrival.v, point);
+    else
+        fill_exact_point(std::get<ExactGeometry>(geometry), arrival.exact.local, point);
+}
+
+std::optional<SurfacePoint> Intersector::intersect(const Ray& ray) const {
+    RTCRayHit rayhit;
+    write_ray(ray, rayhit.ray);
+    rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    Query query;
+    intersect_scene(embree_->scene, rayhit, query);
+    const RTCHit& hit = rayhit.hit;
+    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    std::optional<SurfacePoint> found(std::in_place);
+    fill({hit.geomID, hit.primID, hit.u, hit.v, rayhit.ray.tfar, query.exact[0]}, *found);
+    return found;
+}
+
+void Intersector::intersect_together(std::span<const Ray> rays,
+                                     std::span<std::optional<SurfacePoint>> hits) const {
+    Packet packet;
+    alignas(64) std::array<int, most_rays_together> valid{};
+    for (unsigned i = 0; i < rays.size(); ++i) {
+        valid[i] = -1;
+        write_ray(rays[i], i, packet);
+    }
+    Query query;
+    intersect_packet(embree_->scene, valid.data(), packet, query);
+    const RTCHit16& hit = packet.hit;
+    for (unsigned i = 0; i < rays.size(); ++i) {
+        hits[i].reset();
+        if (hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        fill({hit.geomID[i], hit.primID[i], hit.u[i], hit.v[i], packet.ray.tfar[i], query.exact[i]},
+             hits[i].emplace());
+    }
+}
+
+bool Intersector::occluded(const Ray& ray) const {
+    RTCRay shadow;
+    write_ray(ray, shadow);
+    occlude_scene(embree_->scene, shadow);
+    return shadow.tfar < 0;
+}
+
+}  // namespace caustics

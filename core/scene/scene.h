@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/geometry/shape.h"
+#include "core/scene/camera.h"
+#include "core/scene/light.h"
+#include "core/scene/ray.h"
+
+namespace caustics {
+
+class Intersector;
+
+/// An end of a line of sight: a free point (offset 0), or a point on a surface.
+struct SegmentEnd {
+    Vec3 position = Vec3::Zero();
+    Vec3 geometric_normal = Vec3::Zero();  ///< unit, either side
+    float offset = 0;                      ///< of that surface [m]
+};
+
+/// How the pixel's samples are placed: Mitsuba's `independent` and `stratified` (row C4), and
+/// `adaptive` (row J10), which starts with independent ones and doubles them while a pixel's standard
+/// error exceeds a share of its brightness, as the adaptive integrator of Mitsuba 0.6 does. Samples
+/// that decide about more samples are used as well, so that an adaptive picture is slightly biased.
+struct PixelSampling {
+    bool stratified = false;
+    bool jitter = true;  ///< of stratified samples; false = cell centres
+    int sample_count = 4;
+    int max_sample_count = 0;  ///< of adaptive sampling; 0 = the same number everywhere
+    float max_error = 0.05F;   ///< of adaptive sampling: allowed standard error / brightness
+};
+
+/// The parsed scene: plain data, no acceleration structure. All coordinates are relative to `origin`,
+/// so that floats resolve a small scene as well far from the world's origin as near it.
+struct SceneDesc {
+    Vec3d origin = Vec3d::Zero();  ///< of the scene's frame, in the world [m]
+    std::vector<Shape> shapes;
+    std::vector<PointLight> point_lights;
+    std::vector<DirectionalLight> directional_lights;
+    Camera camera;
+    PixelSampling sampling;
+};
+
+/// Surfaces, lights and camera with one intersector for every method. Immutable.
+class Scene {
+public:
+    explicit Scene(SceneDesc desc);
+    ~Scene();
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+
+    std::optional<SurfacePoint> intersect(const Ray& ray) const;
+    /// The same for up to `most_together` rays that lie near each other: they go through the tree side
+    /// by side, which is faster. The hits are those of intersect() but for rounding: a ray that runs
+    /// through an edge may end on the other triangle.
+    static constexpr std::size_t most_together = most_rays_together;
+    void intersect_together(std::span<const Ray> rays,
+                            std::span<std::optional<SurfacePoint>> hits) const;
+    /// Whether any surface lies between two ends.
+    bool occluded(const SegmentEnd& from, const SegmentEnd& to) const;
+    /// Whether any surface lies along a direction (unit).
+    bool occluded_along(const SegmentEnd& from, const Vec3& direction) const;
+
+    const std::vector<Shape>& shapes() const { return shapes_; }
+    const Shape& shape_at(const SurfacePoint& p) const { return shapes_[p.shape]; }
+    const std::vector<Light>& lights() const { return lights_; }
+    /// The area light on a shape, or nullptr.
+    const AreaLight* area_light(std::uint32_t shape) const;
+    /// Indices of the shapes with a perfectly specular part.
+    const std::vector<std::uint32_t>& casters() const { return casters_; }
+    const Camera& camera() const { return camera_; }
+    const PixelSampling& sampling() const { return sampling_; }
+    const Vec3d& origin() const { return origin_; }  ///< as SceneDesc::origin
+    const Box& bounds() const { return bounds_; }    ///< of the surfaces
+    float diameter() const;                          ///< of the bounds [m]
+
+private:
+    std::vector<Shape> shapes_;
+    std::vector<Light> lights_;
+    std::vector<std::int32_t> light_of_shape_;
+    std::vector<std::uint32_t> casters_;
+    Camera camera_;
+    PixelSampling sampling_;
+    Vec3d origin_;
+    Box bounds_;
+    std::unique_ptr<const Intersector> intersector_;
+};
+
+/// Signed distance along a unit direction from a point to where light from that direction begins: just
+/// outside of the bounds of all surfaces [m]. Measured along the line itself, so that a wide floor
+/// sends no light off to start where floats are coarse. A line that misses the bounds begins anywhere.
+float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direction);
+
+/// A surface point moved off its surface to the side that `direction` points to.
+Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction);
+
+/// A ray that leaves an end along a unit direction without meeting its surface again.
+Ray spawn_ray(const SegmentEnd& end, const Vec3& direction);
+
+}  // namespace caustics

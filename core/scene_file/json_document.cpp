@@ -1,0 +1,266 @@
+#include "core/scene_file/json_document.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+
+namespace caustics {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t max_depth = 64;
+
+/// Follows the parser's events to know the pointer of each key, and refuses a key's second time and
+/// control characters: a file's name would end at a NUL, and no name is printed with them.
+class DocumentGuard {
+public:
+    explicit DocumentGuard(const std::string& origin) : origin_(origin) {}
+
+    bool operator()(int, json::parse_event_t event, json& value) {
+        switch (event) {
+            case json::parse_event_t::object_start:
+            case json::parse_event_t::array_start:
+                begin_value();
+                if (levels_.size() >= max_depth)
+                    throw InputError(origin_ + ": " + pointer() + ": nested more than " +
+                                     std::to_string(max_depth) + " levels deep");
+                levels_.push_back({event == json::parse_event_t::array_start, 0, {}, {}});
+                break;
+            case json::parse_event_t::object_end:
+            case json::parse_event_t::array_end: levels_.pop_back(); break;
+            case json::parse_event_t::value:
+                begin_value();
+                if (value.is_string()) require_printable(value.get_ref<const std::string&>());
+                break;
+            case json::parse_event_t::key: begin_key(value.get<std::string>()); break;
+        }
+        return true;
+    }
+
+private:
+    struct Level {
+        bool array;
+        std::size_t count;
+        std::string key;
+        std::set<std::string> keys;
+    };
+
+    void begin_value() {
+        if (!levels_.empty() && levels_.back().array)
+            levels_.back().key = std::to_string(levels_.back().count++);
+    }
+
+    void require_printable(const std::string& text) const {
+        const auto is_control = [](char c) {
+            return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+        };
+        if (std::ranges::any_of(text, is_control))
+            throw InputError(origin_ + ": " + pointer() + ": a control character in " +
+                             shown(text));
+    }
+
+    void begin_key(const std::string& key) {
+        require_printable(key);
+        levels_.back().key = key;
+        if (!levels_.back().keys.insert(key).second)
+            throw InputError(origin_ + ": " + pointer() + ": key " + shown(key) +
+                             " is given twice in one object");
+    }
+
+    std::string pointer() const {
+        std::string path;
+        for (const Level& level : levels_) path = child_pointer(path, level.key);
+        return path.empty() ? "/" : path;
+    }
+
+    std::string origin_;
+    std::vector<Level> levels_;
+};
+
+/// The library's message without its "[json.exception…] " tag.
+std::string untagged(const std::string& message) {
+    const std::size_t end = message.find("] ");
+    return end == std::string::npos ? message : message.substr(end + 2);
+}
+
+std::string numeral(double value) {
+    std::string text(32, '\0');
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+    text.resize(static_cast<std::size_t>(end.ptr - text.data()));
+    return text;
+}
+
+class IncludeResolver {
+public:
+    explicit IncludeResolver(std::map<std::string, std::filesystem::path>& included)
+        : included_(included) {}
+
+    void resolve(json& value, const std::string& pointer, const std::string& local_pointer,
+                 const std::filesystem::path& file) {
+        if (value.is_object() && value.contains("$include")) {
+            include(value, pointer, local_pointer, file);
+        } else if (value.is_object()) {
+            for (auto& [key, child] : value.items())
+                resolve(child, child_pointer(pointer, key), child_pointer(local_pointer, key),
+                        file);
+        } else if (value.is_array()) {
+            for (std::size_t i = 0; i < value.size(); ++i)
+                resolve(value[i], child_pointer(pointer, std::to_string(i)),
+                        child_pointer(local_pointer, std::to_string(i)), file);
+        }
+    }
+
+    void enter(const std::filesystem::path& file) { open_.push_back(identity(file)); }
+
+private:
+    static std::filesystem::path identity(const std::filesystem::path& file) {
+        std::error_code failed;
+        std::filesystem::path path = std::filesystem::weakly_canonical(file, failed);
+        return failed ? file : path;
+    }
+
+    void include(json& value, const std::string& pointer, const std::string& local_pointer,
+                 const std::filesystem::path& file) {
+        const std::string place =
+            file.string() + ": " + child_pointer(local_pointer, "$include") + ": ";
+        if (value.size() != 1)
+            throw InputError(place + "an object with \"$include\" may have no other key (has " +
+                             key_list(value) + ")");
+        const json name = value.at("$include");
+        if (!name.is_string() || name.get_ref<const std::string&>().empty())
+            throw InputError(place + "expected a file name, got " + shown(name));
+        const std::filesystem::path target =
+            (file.parent_path() / name.get<std::string>()).lexically_normal();
+        if (std::find(open_.begin(), open_.end(), identity(target)) != open_.end())
+            throw InputError(place + target.string() +
+                             " includes itself, directly or through others");
+        if (open_.size() >= max_depth)
+            throw InputError(place + "files include each other more than " +
+                             std::to_string(max_depth) + " levels deep");
+        try {
+            value = parse_json(read_whole_file(target), target.string());
+        } catch (const std::filesystem::filesystem_error& e) {
+            throw InputError(place + e.what());
+        } catch (const InputError& e) {
+            throw InputError(std::string(e.what()) + " (included by " +
+                             place.substr(0, place.size() - 2) + ")");
+        }
+        included_[pointer] = target;
+        open_.push_back(identity(target));
+        resolve(value, pointer, "", target);
+        open_.pop_back();
+    }
+
+    std::map<std::string, std::filesystem::path>& included_;
+    std::vector<std::filesystem::path> open_;
+};
+
+}  // namespace
+
+std::map<std::string, std::filesystem::path>::const_iterator JsonDocument::inclusion(
+    const std::string& pointer) const {
+    for (std::string prefix = pointer;;) {
+        const auto found = included.find(prefix);
+        if (found != included.end() || prefix.empty()) return found;
+        prefix.resize(prefix.rfind('/'));
+    }
+}
+
+std::string JsonDocument::place(const std::string& pointer) const {
+    const auto inclusion_point = inclusion(pointer);
+    const auto visible = [](const std::string& p) { return p.empty() ? std::string("/") : p; };
+    if (inclusion_point == included.end()) return one_line(file.string() + ": " + visible(pointer));
+    std::string text = inclusion_point->second.string() + ": " +
+                       visible(pointer.substr(inclusion_point->first.size()));
+    if (!inclusion_point->first.empty())
+        text += " (included as " + pointer + " of " + file.string() + ")";
+    return one_line(text);
+}
+
+void JsonDocument::fail(const std::string& pointer, const std::string& reason) const {
+    throw InputError(place(pointer) + ": " + reason);
+}
+
+std::string child_pointer(const std::string& pointer, const std::string& key) {
+    std::string path = pointer + "/";
+    for (const char c : key) {
+        if (c == '~')
+            path += "~0";
+        else if (c == '/')
+            path += "~1";
+        else
+            path += c;
+    }
+    return path;
+}
+
+std::string shown(const json& value) {
+    if (value.is_number()) return canonical_json(value);
+    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    constexpr std::size_t readable = 60;
+    if (text.size() <= readable) return text;
+    std::size_t end = readable;
+    while ((static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;  // inside a character
+    return text.substr(0, end) + "...";
+}
+
+std::string join(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text.empty() ? "none" : text;
+}
+
+std::string key_list(const json& object) {
+    std::vector<std::string> keys;
+    for (const auto& [key, child] : object.items()) keys.push_back(key);
+    return join(keys);
+}
+
+json parse_json(const std::string& text, const std::string& origin) {
+    try {
+        return json::parse(text, DocumentGuard(origin));
+    } catch (const json::exception& e) {
+        throw InputError(origin + ": " + untagged(e.what()));
+    }
+}
+
+void resolve_includes(json& value, const std::string& pointer, const std::filesystem::path& file,
+                      std::map<std::string, std::filesystem::path>& included) {
+    IncludeResolver resolver(included);
+    resolver.enter(file);
+    resolver.resolve(value, pointer, pointer, file);
+}
+
+std::string canonical_json(const json& value) {
+    std::string text;
+    switch (value.type()) {
+        case json::value_t::object:
+            for (const auto& [key, child] : value.items()) {
+                text += text.empty() ? "{" : ",";
+                text += json(key).dump();
+                text += ':';
+                text += canonical_json(child);
+            }
+            return text.empty() ? "{}" : text + "}";
+        case json::value_t::array:
+            for (const json& child : value) {
+                text += text.empty() ? "[" : ",";
+                text += canonical_json(child);
+            }
+            return text.empty() ? "[]" : text + "]";
+        case json::value_t::number_float: {
+            const double number = value.get<double>();
+            constexpr double exact_integers = 9007199254740992.0;
+            if (std::abs(number) <= exact_integers && std::trunc(number) == number)
+                return std::to_string(static_cast<std::int64_t>(number));
+            return numeral(number);
+        }
+        default: return value.dump();
+    }
+}
+
+}  // namespace caustics

@@ -1,0 +1,258 @@
+#include "core/scene_file/json_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/scene_file/json_document.h"
+
+namespace caustics {
+namespace {
+
+using nlohmann::json;
+
+/// The tokens of a JSON pointer; empty when it is not one.
+std::vector<std::string> pointer_tokens(const std::string& pointer) {
+    try {
+        json::json_pointer rest(pointer);
+        std::vector<std::string> tokens;
+        for (; !rest.empty(); rest.pop_back()) tokens.push_back(rest.back());
+        std::reverse(tokens.begin(), tokens.end());
+        return tokens;
+    } catch (const json::exception&) {
+        return {};
+    }
+}
+
+/// The element of an array that a pointer's token names, or nullptr.
+json* element(json& array, const std::string& token) {
+    std::size_t index = 0;
+    const char* end = token.data() + token.size();
+    const auto parsed = std::from_chars(token.data(), end, index);
+    const bool leading_zero = token.size() > 1 && token[0] == '0';
+    if (parsed.ec != std::errc() || parsed.ptr != end || leading_zero || index >= array.size())
+        return nullptr;
+    return &array[index];
+}
+
+std::string contents(const json& value) {
+    if (value.is_object()) return "is an object with the keys: " + key_list(value);
+    if (value.is_array()) return fmt::format("is an array of {} elements", value.size());
+    return "is " + shown(value);
+}
+
+json value_or_string(const std::string& text, const std::string& place) {
+    if (json::accept(text)) return parse_json(text, place);
+    if (!is_utf8(text)) throw InputError(place + ": the value is not valid UTF-8");
+    return parse_json(json(text).dump(), place);
+}
+
+template <class Value>
+void erase_at_or_below(std::map<std::string, Value>& map, const std::string& pointer) {
+    std::erase_if(map, [&](const auto& entry) {
+        return entry.first == pointer || entry.first.starts_with(pointer + "/");
+    });
+}
+
+}  // namespace
+
+JsonNode::JsonNode(std::shared_ptr<JsonDocument> document, std::string pointer)
+    : document_(std::move(document)), pointer_(std::move(pointer)) {}
+
+JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
+    const auto document = std::make_shared<JsonDocument>();
+    document->file = file;
+    document->root = parse_json(read_whole_file(file), file.string());
+    resolve_includes(document->root, "", file, document->included);
+    return {document, ""};
+}
+
+JsonNode JsonNode::parse_text(const std::string& text, const std::string& origin,
+                              const std::filesystem::path& written_in) {
+    const auto document = std::make_shared<JsonDocument>();
+    document->file = origin;
+    document->written_in = written_in;
+    document->root = parse_json(text, origin);
+    return {document, ""};
+}
+
+void JsonNode::set(const std::string& pointer, const std::string& value) {
+    const std::string what = fmt::format("{}: setting {}", document_->file.string(), pointer);
+    const std::vector<std::string> tokens = pointer_tokens(pointer);
+    if (tokens.empty())
+        throw InputError(what + ": not a JSON pointer, which looks like /water/resolution");
+    json* target = &document_->root;
+    std::string reached;
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+        json* next = nullptr;
+        if (target->is_array()) {
+            next = element(*target, tokens[i]);
+        } else if (target->is_object()) {
+            if (target->contains(tokens[i]) || i + 1 == tokens.size()) next = &(*target)[tokens[i]];
+        }
+        if (next == nullptr)
+            throw InputError(fmt::format("{}: there is nothing of that name; {} {}", what,
+                                         reached.empty() ? "/" : reached, contents(*target)));
+        target = next;
+        reached = child_pointer(reached, tokens[i]);
+    }
+    erase_at_or_below(document_->included, reached);
+    erase_at_or_below(document_->keys, reached);
+    *target = value_or_string(value, what);
+    resolve_includes(*target, reached, JsonNode(document_, reached).file(), document_->included);
+}
+
+bool JsonNode::is_object() const { return document_->value(pointer_).is_object(); }
+bool JsonNode::is_array() const { return document_->value(pointer_).is_array(); }
+bool JsonNode::is_number() const { return document_->value(pointer_).is_number(); }
+bool JsonNode::is_string() const { return document_->value(pointer_).is_string(); }
+bool JsonNode::is_bool() const { return document_->value(pointer_).is_boolean(); }
+
+double JsonNode::as_number() const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_number()) fail("expected a number, got " + shown(value));
+    const double number = value.get<double>();
+    if (!std::isfinite(number)) fail("expected a finite number");
+    return number;
+}
+
+double JsonNode::as_number_in(double low, double high) const {
+    const double number = as_number();
+    if (number < low || number > high)
+        fail(fmt::format("{} is out of range (from {} to {})", number, low, high));
+    return number;
+}
+
+std::int64_t JsonNode::as_integer_in(std::int64_t low, std::int64_t high) const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_number()) fail("expected a whole number, got " + shown(value));
+    const std::string range = fmt::format("is out of range (from {} to {})", low, high);
+    if (value.is_number_float()) {
+        // 1e6 is a whole number too; beyond 2^53 a double no longer says which one.
+        const double number = value.get<double>();
+        if (std::trunc(number) != number) fail("expected a whole number, got " + shown(value));
+        if (std::abs(number) > 9007199254740992.0) fail(shown(value) + " " + range);
+        const auto integer = static_cast<std::int64_t>(number);
+        if (integer < low || integer > high) fail(shown(value) + " " + range);
+        return integer;
+    }
+    const bool too_big =
+        value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{INT64_MAX};
+    if (too_big || value.get<std::int64_t>() < low || value.get<std::int64_t>() > high)
+        fail(shown(value) + " " + range);
+    return value.get<std::int64_t>();
+}
+
+bool JsonNode::as_bool() const {
+    if (!is_bool()) fail("expected true or false, got " + shown(document_->value(pointer_)));
+    return document_->value(pointer_).get<bool>();
+}
+
+std::string JsonNode::as_string() const {
+    if (!is_string()) fail("expected a string, got " + shown(document_->value(pointer_)));
+    return document_->value(pointer_).get<std::string>();
+}
+
+std::size_t JsonNode::as_choice(const std::vector<std::string>& choices) const {
+    const json& value = document_->value(pointer_);
+    const auto found = value.is_string() ? std::find(choices.begin(), choices.end(),
+                                                     value.get_ref<const std::string&>())
+                                         : choices.end();
+    if (found == choices.end())
+        fail(fmt::format("{} is none of the choices ({})", shown(value), join(choices)));
+    return static_cast<std::size_t>(found - choices.begin());
+}
+
+std::vector<double> JsonNode::as_numbers(std::size_t count) const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_array() || value.size() != count)
+        fail(fmt::format("expected an array of {} numbers, got {}", count, shown(value)));
+    std::vector<double> numbers;
+    for (const JsonNode& node : as_array()) numbers.push_back(node.as_number());
+    return numbers;
+}
+
+std::vector<JsonNode> JsonNode::as_array() const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_array()) fail("expected an array, got " + shown(value));
+    std::vector<JsonNode> nodes;
+    for (std::size_t i = 0; i < value.size(); ++i)
+        nodes.push_back(JsonNode(document_, child_pointer(pointer_, std::to_string(i))));
+    return nodes;
+}
+
+bool JsonNode::has(const std::string& key) const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    return value.contains(key);
+}
+
+std::optional<JsonNode> JsonNode::find(const std::string& key) const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    std::vector<std::string>& known = document_->keys[pointer_].known;
+    if (std::find(known.begin(), known.end(), key) == known.end()) known.push_back(key);
+    if (!value.contains(key)) return std::nullopt;
+    return JsonNode(document_, child_pointer(pointer_, key));
+}
+
+JsonNode JsonNode::at(const std::string& key) const {
+    const std::optional<JsonNode> child = find(key);
+    if (!child)
+        fail(fmt::format("key {} is missing (present: {})", shown(key),
+                         key_list(document_->value(pointer_))));
+    return *child;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    JsonDocument::Keys& keys = document_->keys[pointer_];
+    std::vector<std::pair<std::string, JsonNode>> nodes;
+    for (const auto& [key, child] : value.items()) {
+        if (std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end()) continue;
+        if (!keys.taken.insert(key).second) continue;
+        nodes.emplace_back(key, JsonNode(document_, child_pointer(pointer_, key)));
+    }
+    return nodes;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
+    std::vector<std::pair<std::string, JsonNode>> nodes = others();
+    JsonDocument::Keys& keys = document_->keys[pointer_];
+    std::erase_if(nodes, [&](const auto& entry) {
+        if (entry.second.is_object()) return false;
+        keys.taken.erase(entry.first);
+        return true;
+    });
+    return nodes;
+}
+
+void JsonNode::finish() const {
+    const json& value = document_->value(pointer_);
+    if (!value.is_object()) fail("expected an object, got " + shown(value));
+    const JsonDocument::Keys& keys = document_->keys[pointer_];
+    for (const auto& [key, child] : value.items()) {
+        const bool known = std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end();
+        if (!known && !keys.taken.contains(key))
+            fail(fmt::format("unknown key {} (known: {})", shown(key), join(keys.known)));
+    }
+}
+
+void JsonNode::fail(const std::string& reason) const { document_->fail(pointer_, reason); }
+
+std::string JsonNode::place() const { return document_->place(pointer_); }
+
+std::filesystem::path JsonNode::file() const {
+    const auto inclusion = document_->inclusion(pointer_);
+    if (inclusion != document_->included.end()) return inclusion->second;
+    return document_->written_in.empty() ? document_->file : document_->written_in;
+}
+
+std::string JsonNode::canonical() const { return canonical_json(document_->value(pointer_)); }
+
+}  // namespace caustics

@@ -1,0 +1,48 @@
+#include "core/scene_file/scene_frame.h"
+
+#include <algorithm>
+
+namespace caustics::scene_file {
+namespace {
+
+constexpr double near_enough = 8;
+
+}  // namespace
+
+Eigen::AlignedBox3d world_bounds(const Shape& shape) {
+    const Eigen::AlignedBox3d local = local_bounds(shape);
+    Eigen::AlignedBox3d box;
+    for (int i = 0; i < 8; ++i)
+        box.extend(shape.to_world * local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+    return box;
+}
+
+Vec3d frame_origin(const std::vector<Shape>& shapes) {
+    const bool any_caster =
+        std::ranges::any_of(shapes, [](const Shape& shape) { return is_caster(shape.bsdf); });
+    Vec3d sum = Vec3d::Zero();
+    double weights = 0;
+    bool is_near = true;
+    for (const Shape& shape : shapes) {
+        if (any_caster && !is_caster(shape.bsdf)) continue;
+        const Eigen::AlignedBox3d box = world_bounds(shape);
+        const double size = box.diagonal().norm();
+        if (!(size > 0)) continue;
+        is_near = is_near && box.center().norm() <= near_enough * size;
+        sum += box.center() / (size * size);
+        weights += 1 / (size * size);
+    }
+    return is_near ? Vec3d::Zero().eval() : Vec3d(sum / weights);
+}
+
+void place(Shape& shape, const Vec3d& origin) {
+    const Transform to_frame = Eigen::Translation3d(-origin) * shape.to_world;
+    if (shape.primitive == Primitive::mesh) {
+        transform(shape.mesh, to_frame);
+        shape.to_world = Transform::Identity();
+    } else {
+        shape.to_world = to_frame;
+    }
+}
+
+}  // namespace caustics::scene_file

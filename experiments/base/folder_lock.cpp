@@ -1,0 +1,76 @@
+#include "experiments/base/folder_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "experiments/base/environment.h"
+#include "experiments/base/file_io.h"
+
+namespace caustics {
+
+namespace {
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+std::filesystem::path lock_file(const std::filesystem::path& folder) { return folder / ".lock"; }
+
+/// Of the process, not of the open file (as flock is): an orphaned child must not hold it.
+struct flock whole_file_lock() {
+    struct flock lock{};
+    lock.l_type = F_WRLCK;
+    lock.l_whence = SEEK_SET;
+    return lock;
+}
+
+}  // namespace
+
+std::string runner_at_work_on(const std::filesystem::path& folder) {
+    const int file = open(lock_file(folder).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0) return {};
+    struct flock lock = whole_file_lock();
+    const bool held = fcntl(file, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+    close(file);
+    return held ? read_whole_file(lock_file(folder)) : std::string();
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        throw InputError(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
+    const std::filesystem::path name = lock_file(folder);
+    file_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ < 0)
+        throw InputError(fmt::format("{}: cannot be written ({})", folder.string(), reason(errno)));
+
+    const struct flock lock = whole_file_lock();
+    if (fcntl(file_, F_SETLK, &lock) != 0) {
+        const int refusal = errno;
+        close(file_);
+        if (refusal != EACCES && refusal != EAGAIN)
+            throw InputError(
+                fmt::format("{}: cannot be locked ({})", name.string(), reason(refusal)));
+        throw InputError(
+            fmt::format("{}: another runner works on it ({}); wait for it, or use a folder of its "
+                        "own and merge "
+                        "them (see sweep --shard)",
+                        folder.string(), read_whole_file(name)));
+    }
+    const std::string owner = fmt::format("process {} on {}", getpid(), host_name());
+    // Says who it is; the lock itself does not depend on it.
+    if (ftruncate(file_, 0) != 0 || pwrite(file_, owner.data(), owner.size(), 0) < 0) {
+        const int refusal = errno;
+        close(file_);
+        throw InputError(
+            fmt::format("{}: cannot be written ({})", folder.string(), reason(refusal)));
+    }
+}
+
+FolderLock::~FolderLock() { close(file_); }
+
+}  // namespace caustics

@@ -1,0 +1,37 @@
+#include "experiments/base/progress.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace caustics {
+
+namespace {
+
+std::string eta(const std::optional<Eta>& remaining) {
+    if (!remaining) return "-";
+    return (remaining->at_least ? "at least " : "") + clock_text(remaining->seconds);
+}
+
+}  // namespace
+
+std::string clock_text(double seconds) {
+    const long whole = std::lround(seconds);
+    if (whole >= 3600)
+        return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+    return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+void Progress::show(const std::string& what, double share, const std::optional<Eta>& remaining) {
+    // What the line's end loses on a narrow terminal is a part of the name.
+    line_.show(fmt::format("[{}/{}] ETA {}, {:.0f} % {}", finished_, steps_, eta(remaining),
+                           100 * share, what));
+}
+
+void Progress::end(const std::string& result, bool notable, const std::optional<Eta>& remaining) {
+    ++finished_;
+    if (!line_.is_on_terminal() || notable)
+        note(fmt::format("[{}/{}] {}, ETA {}", finished_, steps_, result, eta(remaining)));
+}
+
+}  // namespace caustics

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "experiments/base/file_io.h"
+#include "experiments/cli/verbs.h"
+#include "experiments/picture/metrics.h"
+#include "experiments/picture/previews.h"
+#include "experiments/plan/record.h"
+#include "experiments/run/cli_options.h"
+#include "experiments/run/light_differences.h"
+
+namespace caustics {
+
+namespace {
+
+struct CompareOptions {
+    std::string picture;
+    std::string reference;
+    std::string mask;
+    std::string strip;
+    bool json = false;
+};
+
+PixelMask mask_from(const std::string& file, const Film& reference) {
+    const Film mask = read_exr(file);
+    if (mask.width() != reference.width() || mask.height() != reference.height())
+        throw InputError(fmt::format("{}: the mask is {}x{} pixels, the reference {}x{}", file,
+                                     mask.width(), mask.height(), reference.width(),
+                                     reference.height()));
+    PixelMask counted(mask.pixel_count(), false);
+    for (const Plane& plane : mask.planes())
+        for (std::size_t i = 0; i < counted.size(); ++i)
+            if (plane.values[i] != 0) counted[i] = true;
+    return counted;
+}
+
+const char* unit_of(const std::string& metric) {
+    return metric == "rmse" ? " W/(m^2 sr)" : " (no unit)";
+}
+
+void append_text(std::string& text, const char* title, const nlohmann::json& metrics) {
+    text += fmt::format("{}\n", title);
+    for (const auto& [name, value] : metrics.items())
+        text += fmt::format("  {:<12} {}\n", name,
+                            value.is_null() ? "undefined"
+                            : value.is_number_float()
+                                ? fmt::format("{:.4g}{}", value.get<double>(), unit_of(name))
+                                : value.dump());
+}
+
+/// What the reference's own standard error leaves of a difference, in one line; empty where it tells none.
+std::string said_of_reference(const Film& reference, const std::string& layer,
+                              const PixelMask& reached, const nlohmann::json& metrics) {
+    const auto share =
+        layer == "caustic" ? relative_standard_error(reference, reached) : std::optional<double>();
+    if (!share || !metrics.at("rmse").is_number()) return "";
+    const double error = *share * mean(reference, layer, reached);
+    const double rmse = metrics.at("rmse").get<double>();
+    return fmt::format(
+        "the reference's own standard error is {:.4g} W/(m^2 sr) (root mean square): {}\n", error,
+        rmse <= 1.5 * error
+            ? "the difference is within it, and tells nothing of the picture"
+            : fmt::format("{:.0f} % of rmse squared", 100 * error * error / (rmse * rmse)));
+}
+
+void tell(const std::vector<std::string>& differences) {
+    constexpr std::size_t most = 5;
+    if (differences.empty()) return;
+    const std::vector<std::string> first(
+        differences.begin(),
+        differences.begin() + static_cast<std::ptrdiff_t>(std::min(differences.size(), most)));
+    const std::string more =
+        differences.size() > most ? fmt::format(", and {} more", differences.size() - most) : "";
+    print_notes({fmt::format("the two pictures ask for different light: {}{}",
+                             fmt::join(first, ", "), more)});
+}
+
+int compare(const CompareOptions& options) {
+    if (!options.strip.empty()) require_writable_place(options.strip);
+    const Film picture = read_exr(options.picture);
+    const Film reference = read_exr(options.reference);
+    const std::string layer =
+        picture.has_layer("caustic") && reference.has_layer("caustic") ? "caustic" : "";
+    const PixelMask reached = reached_pixels(picture, reference);
+    const nlohmann::json whole = to_json(measure(picture, reference, layer, reached));
+    const PixelMask mask = options.mask.empty()
+                               ? bright_pixels(reference, layer, reached)
+                               : intersection(reached, mask_from(options.mask, reference));
+    const nlohmann::json masked = to_json(measure(picture, reference, layer, mask));
+    if (!options.strip.empty()) write_png(strip(picture, reference, layer), options.strip);
+
+    const std::vector<std::string> differences = light_differences(picture, reference);
+    tell(differences);
+    const std::string name = layer.empty() ? "beauty" : layer;
+    const double unreached = 1 - fraction(reached);
+    if (options.json) {
+        const std::optional<double> own =
+            layer == "caustic" ? relative_standard_error(reference, reached) : std::nullopt;
+        const nlohmann::json all = {
+            {"layer", name},
+            {"unreached_fraction", unreached},
+            {"mask_fraction", fraction(mask)},
+            {"reference_stderr", own ? nlohmann::json(*own) : nlohmann::json()},
+            {"metrics", whole},
+            {"mask_metrics", masked},
+            {"light_differences", differences},
+            {"formulas", metric_formulas}};
+        write_stdout(all.dump(2) + "\n");
+        return 0;
+    }
+    std::string text =
+        fmt::format("layer {}{}\nunreached pixels left out: {:.4g} % of all\n", name,
+                    layer.empty() ? " (RGB, because not both files have a layer \"caustic\")" : "",
+                    100 * unreached);
+    append_text(text, "all pixels", whole);
+    append_text(
+        text,
+        options.mask.empty() ? "pixels whose reference is at least its mean" : "pixels of the mask",
+        masked);
+    text += said_of_reference(reference, layer, reached, whole);
+    text += metric_formulas;
+    write_stdout(text);
+    return 0;
+}
+
+}  // namespace
+
+Verb add_compare(CLI::App& app) {
+    auto options = std::make_shared<CompareOptions>();
+    CLI::App* const verb = app.add_subcommand("compare", "Errors of a picture against a reference");
+    verb->add_option("PICTURE", options->picture, "EXR to judge")->required();
+    verb->add_option("REFERENCE", options->reference, "EXR to judge it by")->required();
+    verb->add_flag("--json", options->json, "Print JSON");
+    verb->add_option("--mask", options->mask,
+                     "EXR whose pixels other than 0 are judged apart (default: pixels whose "
+                     "reference is at least its mean)")
+        ->type_name("FILE");
+    verb->add_option("--strip", options->strip, "PNG to write: reference | picture | signed error")
+        ->type_name("FILE");
+    verb->footer(
+        "Judges the layer \"caustic\", or RGB when not both files have it, leaving out "
+        "unreached pixels.\n"
+        "A note says where the two ask for different light. --json prints every digit.\n" +
+        std::string(metric_formulas) +
+        "Example:\n  causticbench compare photonmap.exr lighttrace.exr --strip strip.png");
+    return {verb, [options] { return compare(*options); }};
+}
+
+}  // namespace caustics

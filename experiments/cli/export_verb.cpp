@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "core/base/error.h"
+#include "experiments/base/atomic_folder.h"
+#include "experiments/base/file_io.h"
+#include "experiments/base/number_option.h"
+#include "experiments/cli/verbs.h"
+#include "experiments/export/exported_scene.h"
+#include "experiments/run/cli_options.h"
+
+namespace caustics {
+
+namespace {
+
+struct ExportOptions {
+    SceneOptions scene;
+    std::string target;
+    std::string folder;
+    ExportSettings settings;
+};
+
+int export_scene(ExportOptions options) {
+    const SceneFile file = options.scene.load();
+    options.settings.scene_file = options.scene.file;
+    ExportedScene exported = options.target == "mitsuba" ? to_mitsuba(file.desc, options.settings)
+                                                         : to_povray(file.desc, options.settings);
+    if (const Vec3d& o = file.desc.origin; !o.isZero(0))
+        exported.notes.push_back(
+            fmt::format("coordinates are relative to ({:.9g}, {:.9g}, {:.9g}) m of the scene file, "
+                        "where floats resolve the scene",
+                        o.x(), o.y(), o.z()));
+    const std::filesystem::path folder = options.folder;
+    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+        throw InputError(
+            fmt::format("-o {}: is no folder (a file of that name is there)", options.folder));
+    WholeFolder whole(folder);
+    for (const ExportedScene::File& each : exported.files)
+        write_whole_file(whole.path() / each.name, each.bytes);
+    whole.commit();
+    print_notes(exported.notes);
+    write_stderr(fmt::format("{}: {} file{}\n", (folder / exported.files.front().name).string(),
+                             exported.files.size(), exported.files.size() == 1 ? "" : "s"));
+    return 0;
+}
+
+}  // namespace
+
+Verb add_export(CLI::App& app) {
+    auto options = std::make_shared<ExportOptions>();
+    CLI::App* const verb =
+        app.add_subcommand("export", "Write a scene as Mitsuba 3 or POV-Ray 3.7 read it");
+    options->scene.add_to(*verb);
+    verb->add_option("--to", options->target, "The other renderer: mitsuba, povray")
+        ->required()
+        ->check(CLI::IsMember({"mitsuba", "povray"}))
+        ->type_name("NAME");
+    verb->add_option("-o,--output", options->folder,
+                     "Folder to write to, made where it is missing: scene.xml, or scene.pov and "
+                     "scene.ini, and the meshes and textures they name")
+        ->required()
+        ->type_name("DIR");
+    add_number(*verb, "--max-bounces", options->settings.max_bounces, 1, 1000,
+               "Specular events between light and receiver (default 16)");
+    add_number(*verb, "--mesh-resolution", options->settings.mesh_resolution, 1, 4096,
+               "Of exact shapes that the other renderer does not know (default 256)");
+    verb->footer(
+        "Units stay: metres, watts, and pixels in W/(m^2 sr). A scene that the other renderer "
+        "cannot express is refused (exit code 3).\n"
+        "Mitsuba also follows light from one diffuse surface to another: compare over dark "
+        "receivers. POV-Ray does not scale radiance by n^2 where the eye looks into a medium.\n"
+        "Example:\n  causticbench export ring.json --to mitsuba -o ring "
+        "--set '/floor/bsdf={\"type\":\"diffuse\",\"reflectance\":0.01}'\n"
+        "  mitsuba -m scalar_rgb -D spp=4096 ring/scene.xml");
+    return {verb, [options] { return export_scene(*options); }};
+}
+
+}  // namespace caustics

@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/base/parallel.h"
+#include "core/light_path/aimed_emission.h"
+#include "core/scene/transport_hash.h"
+#include "experiments/base/file_io.h"
+#include "experiments/base/interrupt.h"
+#include "experiments/base/number_option.h"
+#include "experiments/cli/map_info.h"
+#include "experiments/cli/verbs.h"
+#include "experiments/picture/beam_picture.h"
+#include "experiments/run/cli_options.h"
+#include "experiments/run/notes.h"
+
+namespace caustics {
+
+namespace {
+
+const char* primitive_name(Primitive primitive) {
+    switch (primitive) {
+        case Primitive::rectangle: return "exact rectangle";
+        case Primitive::disk: return "exact disk";
+        case Primitive::sphere: return "exact sphere";
+        case Primitive::cylinder: return "exact cylinder";
+        case Primitive::heightfield: return "exact heightfield";
+        case Primitive::mesh: return "mesh";
+    }
+    return "";
+}
+
+std::string shape_line(const Shape& shape) {
+    std::string kind = primitive_name(shape.primitive);
+    if (shape.primitive == Primitive::mesh)
+        kind += fmt::format(" of {} triangles", triangle_count(shape));
+    const bool caster = is_caster(shape.bsdf);
+    const bool receiver = is_receiver(shape.bsdf);
+    return fmt::format("  {:<16} {:<28} {}{}\n", shape.name, kind,
+                       caster && receiver ? "caster and receiver"
+                       : caster           ? "caster"
+                                          : "receiver",
+                       shape.radiance ? ", area light" : "");
+}
+
+std::string rgb(const Spectrum& s) { return fmt::format("{:.6g} {:.6g} {:.6g}", s[0], s[1], s[2]); }
+
+struct LightLine {
+    const Scene& scene;
+    std::string operator()(const PointLight& light) const {
+        const Vec3d place = scene.origin() + light.position.cast<double>();
+        return fmt::format("  point at ({:.6g}, {:.6g}, {:.6g}), intensity {} W/sr\n", place.x(),
+                           place.y(), place.z(), rgb(light.intensity));
+    }
+    std::string operator()(const DirectionalLight& light) const {
+        return fmt::format("  directional along ({:.6g}, {:.6g}, {:.6g}), irradiance {} W/m^2\n",
+                           light.direction.x(), light.direction.y(), light.direction.z(),
+                           rgb(light.irradiance));
+    }
+    std::string operator()(const AreaLight& light) const {
+        return fmt::format("  area on {}, {:.6g} m^2, radiance {} W/(m^2 sr)\n",
+                           scene.shapes()[light.shape].name, light.sampler.area(),
+                           rgb(light.radiance));
+    }
+};
+
+std::string sampling_name(const PixelSampling& sampling) {
+    if (sampling.max_sample_count > 0)
+        return fmt::format("adaptive to {}, error {:g}", sampling.max_sample_count,
+                           sampling.max_error);
+    if (!sampling.stratified) return "independent";
+    return sampling.jitter ? "stratified" : "regular";
+}
+
+std::string describe_scene(const SceneOptions& options, const SceneFile& file, const Scene& scene) {
+    std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
+    for (const auto& [name, hash] : file.assets)
+        text += fmt::format("asset    {} ({})\n", name, hash);
+    text += fmt::format("photons  of maps with transport {}\n", hex(transport_digest(scene)));
+    text += fmt::format("diameter {:.6g} m\n", scene.diameter());
+    if (const Vec3d& o = scene.origin(); !o.isZero(0))
+        text +=
+            fmt::format("frame    coordinates are kept relative to ({:.9g}, {:.9g}, {:.9g}) m\n",
+                        o.x(), o.y(), o.z());
+    const PixelSampling& sampling = scene.sampling();
+    text += fmt::format("film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
+                        scene.camera().height, sampling.sample_count, sampling_name(sampling));
+    text += "shapes\n";
+    for (const Shape& shape : scene.shapes()) text += shape_line(shape);
+    text += "lights\n";
+    for (const Light& light : scene.lights()) text += std::visit(LightLine{scene}, light);
+    const AimedEmission emission(scene);
+    text += fmt::format("  power aimed at the casters' bounds: {} W\n",
+                        rgb(emission.empty() ? black() : emission.total_power()));
+    text += "methods\n";
+    for (const std::string& name : method_names()) {
+        const auto reason = why_unsupported(scene, parse_method(name, parameters_node({})));
+        text += fmt::format("  {:<16} {}\n", name, reason ? "no: " + *reason : "yes");
+    }
+    for (const std::string& note : notes_on(scene)) text += "note     " + note + "\n";
+    return text;
+}
+
+struct InfoOptions {
+    SceneOptions scene;  ///< or a photon map
+    std::string map_scene;
+    bool beams = false;
+    std::vector<std::string> params;  ///< of `beamtree`, for its beams
+    std::string output;
+    double dot = 1;
+};
+
+RunOptions drawing_options(const Scene& scene) {
+    RunOptions run;
+    run.threads = available_threads();
+    run.samples_per_pixel = scene.sampling().sample_count;
+    run.adaptive = false;
+    run.progress = [](double) { throw_if_interrupted(); };
+    return run;
+}
+
+void require_png(const std::string& output, const char* what) {
+    if (std::filesystem::path(output).extension() != ".png")
+        throw InputError(fmt::format("-o {}: {} are drawn as .png", output, what));
+    require_writable_place(output);
+}
+
+void info_on_scene(const InfoOptions& options) {
+    if (!options.map_scene.empty())
+        throw InputError(
+            fmt::format("{} is no photon map: --scene is for these", options.scene.file));
+    if (options.beams == options.output.empty() || (!options.beams && !options.params.empty()))
+        throw InputError("--beams and -o belong together, for a scene; --param is for them");
+    if (options.beams) require_png(options.output, "beams");
+    const SceneFile file = options.scene.load();
+    const Scene scene(file.desc);
+    if (options.beams) {
+        const Method method = parse_method("beamtree", parameters_node(options.params));
+        write_png(
+            draw_beams(scene, std::get<BeamTreeParams>(method.params), drawing_options(scene)),
+            options.output);
+    }
+    write_stdout(describe_scene(options.scene, file, scene));
+}
+
+void draw(const InfoOptions& options, SavedPhotons saved) {
+    const SceneFile file = load_scene(options.map_scene, options.scene.overrides());
+    const Scene scene(file.desc);
+    require_transport(saved.origin, scene, options.scene.file);
+    if (options.output.empty()) return;
+    write_png(draw_photons(scene, std::move(saved.photons), options.dot, drawing_options(scene)),
+              options.output);
+}
+
+void info_on_map(const InfoOptions& options) {
+    if (options.map_scene.empty() && !(options.output.empty() && options.scene.sets.empty()))
+        throw InputError("-o and --set need --scene: the scene that the photons are drawn in");
+    if (options.beams || !options.params.empty())
+        throw InputError("--beams and --param are for scenes");
+    if (!options.output.empty()) require_png(options.output, "photons");
+    SavedPhotons saved = load_photon_map(options.scene.file);
+    const std::string text = describe_map(options.scene.file, saved);
+    if (!options.map_scene.empty()) draw(options, std::move(saved));
+    write_stdout(text);
+}
+
+}  // namespace
+
+Verb add_info(CLI::App& app) {
+    auto options = std::make_shared<InfoOptions>();
+    CLI::App* const verb = app.add_subcommand(
+        "info", "What a scene holds and which methods can serve it, or what a photon map holds");
+    options->scene.add_to(*verb);
+    verb->get_option("SCENE")->description("Scene file (JSON), or a photon map's file");
+    verb->add_option("--scene", options->map_scene,
+                     "Of a photon map: the scene that it must belong to, and is drawn in")
+        ->type_name("SCENE");
+    verb->add_option(
+            "-o,--output", options->output,
+            "Picture (.png) of a photon map's photons as dots, through the scene's camera; "
+            "as bright as the logarithm of their number, over the dim scene; or of a scene's beams")
+        ->type_name("FILE");
+    verb->add_flag("--beams", options->beams,
+                   "Draw the caustic polygons of `beamtree` over its picture: orange, blue where "
+                   "they are turned over, white between the two, where the caustic is");
+    add_repeatable(*verb, "--param", options->params,
+                   "With --beams: parameter of `beamtree`, key=value. Repeatable");
+    add_number(*verb, "--dot", options->dot, 0.1, 100.0,
+               "Radius of the dots in pixels (default 1)");
+    verb->footer(
+        "Example:\n  causticbench info pool.json --set /water/resolution=64\n"
+        "  causticbench info pool.json --beams --set /water/resolution=32 -o beams.png\n"
+        "  causticbench info pool.photons --scene pool.json -o photons.png");
+    return {verb, [options] {
+                if (is_photon_map(options->scene.file))
+                    info_on_map(*options);
+                else
+                    info_on_scene(*options);
+                return 0;
+            }};
+}
+
+}  // namespace caustics

@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/export/exported_scene.h"
+#include "experiments/export/mesh_bytes.h"
+#include "experiments/export/xml_writer.h"
+
+namespace caustics {
+
+namespace {
+
+std::string three(const Eigen::Array3f& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }
+
+std::string sixteen(const Eigen::Matrix4d& m) {
+    std::string text;
+    for (Eigen::Index row = 0; row < 4; ++row)
+        for (Eigen::Index column = 0; column < 4; ++column)
+            text += fmt::format("{}{}", text.empty() ? "" : " ", m(row, column));
+    return text;
+}
+
+class MitsubaWriter {
+public:
+    MitsubaWriter(const SceneDesc& scene, const ExportSettings& settings)
+        : scene_(scene), settings_(settings) {}
+
+    ExportedScene write() {
+        out_.files.push_back({"scene.xml", {}});
+        xml_.open("scene", {{"version", "3.0.0"}});
+        write_integrator();
+        write_sensor();
+        for (const PointLight& light : scene_.point_lights) {
+            xml_.open("emitter", {{"type", "point"}});
+            value("point", "position", three(light.position));
+            value("rgb", "intensity", three(light.intensity));
+            xml_.close();
+        }
+        for (const DirectionalLight& light : scene_.directional_lights) {
+            xml_.open("emitter", {{"type", "directional"}});
+            value("vector", "direction", three(light.direction));
+            value("rgb", "irradiance", three(light.irradiance));
+            xml_.close();
+        }
+        for (std::size_t i = 0; i < scene_.shapes.size(); ++i) write_shape(i);
+        xml_.close();
+        out_.files.front().bytes = xml_.text();
+        return std::move(out_);
+    }
+
+private:
+    void value(const std::string& type, const std::string& name, const std::string& text) {
+        xml_.leaf(type, {{"name", name}, {"value", text}});
+    }
+    void number(const std::string& name, double x) { value("float", name, fmt::format("{}", x)); }
+    void transform(const std::string& name, const Eigen::Matrix4d& matrix) {
+        xml_.open("transform", {{"name", name}});
+        xml_.leaf("matrix", {{"value", sixteen(matrix)}});
+        xml_.close();
+    }
+
+    // Particles find the caustics of lights without area, which a path never meets.
+    void write_integrator() {
+        bool casters = false;
+        for (const Shape& shape : scene_.shapes) casters = casters || is_caster(shape.bsdf);
+        const bool points = !scene_.point_lights.empty() || !scene_.directional_lights.empty();
+        xml_.leaf("default",
+                  {{"name", "integrator"}, {"value", casters && points ? "ptracer" : "path"}});
+        // Mitsuba counts segments: the specular events, the receiver and the camera. Where nothing is
+        // specular, longer paths would add the light between receivers alone.
+        const int events = casters ? settings_.max_bounces : 0;
+        xml_.leaf("default", {{"name", "max_depth"}, {"value", std::to_string(events + 2)}});
+        xml_.leaf("default",
+                  {{"name", "spp"}, {"value", std::to_string(scene_.sampling.sample_count)}});
+        xml_.open("integrator", {{"type", "$integrator"}});
+        value("integer", "max_depth", "$max_depth");
+        // No roulette: it would thin out long chains behind a dark receiver.
+        value("integer", "rr_depth", "$max_depth");
+        xml_.close();
+    }
+
+    void write_sensor() {
+        const Camera& camera = scene_.camera;
+        Box bounds;
+        for (const Shape& shape : scene_.shapes) bounds.extend(caustics::bounds(shape));
+        bounds.extend(camera.position());
+        const auto size = static_cast<double>(bounds.diagonal().norm());
+        xml_.open("sensor", {{"type", "perspective"}});
+        value("string", "fov_axis", "x");
+        number("fov", 360 / pi_d * std::atan(camera.half_extent().x()));
+        number("near_clip", 1e-4 * size);
+        number("far_clip", 10 * size);
+        transform("to_world", camera.to_world.matrix());
+        xml_.open("film", {{"type", "hdrfilm"}});
+        value("integer", "width", std::to_string(camera.width));
+        value("integer", "height", std::to_string(camera.height));
+        value("string", "pixel_format", "rgb");
+        value("string", "component_format", "float32");
+        xml_.leaf("rfilter", {{"type", "box"}});
+        xml_.close();
+        write_sampler();
+        xml_.close();
+    }
+
+    void write_sampler() {
+        const PixelSampling& sampling = scene_.sampling;
+        if (sampling.max_sample_count > 0)
+            out_.notes.emplace_back("Mitsuba has no adaptive sampler: independent samples instead");
+        xml_.open("sampler", {{"type", sampling.stratified ? "stratified" : "independent"}});
+        value("integer", "sample_count", "$spp");
+        if (sampling.stratified) value("boolean", "jitter", sampling.jitter ? "true" : "false");
+        xml_.close();
+    }
+
+    std::string place(std::size_t i) const { return "/" + scene_.shapes[i].name; }
+    [[noreturn]] void refuse(std::size_t i, const std::string& reason) const {
+        refuse_export(settings_, place(i), reason);
+    }
+
+    void write_shape(std::size_t i) {
+        const Shape& shape = scene_.shapes[i];
+        const std::string name = plain_name(shape.name, i);
+        const bool mesh =
+            shape.primitive == Primitive::mesh || shape.primitive == Primitive::heightfield;
+        if (mesh)
+            open_mesh(shape, name);
+        else
+            open_exact(i, name);
+        if (shape.radiance) {
+            xml_.open("emitter", {{"type", "area"}});
+            value("rgb", "radiance", three(*shape.radiance));
+            xml_.close();
+        }
+        write_bsdf(i, name);
+        xml_.close();
+    }
+
+    void open_mesh(const Shape& shape, const std::string& name) {
+        const TriangleMesh mesh = baked_mesh(shape, settings_, out_.notes);
+        if (is_caster(shape.bsdf) && !mesh.normals.empty())
+            out_.notes.push_back(
+                "/" + shape.name +
+                ": a caster with vertex normals: Mitsuba weighs what it bends by shading and "
+                "geometric normals, this program keeps its flux; they differ by as much as the "
+                "normals do (--set /" +
+                shape.name + "/face_normals=true makes both the same)");
+        out_.files.push_back({name + ".ply", ply_bytes(mesh)});
+        xml_.open("shape", {{"type", "ply"}, {"id", name}});
+        value("string", "filename", name + ".ply");
+        if (mesh.normals.empty()) value("boolean", "face_normals", "true");
+    }
+
+    void open_exact(std::size_t i, const std::string& name) {
+        const Shape& shape = scene_.shapes[i];
+        const bool round =
+            shape.primitive == Primitive::sphere || shape.primitive == Primitive::cylinder;
+        // Mitsuba turns the normals of a round shape with a negative radius round.
+        if (round && shape.to_world.linear().determinant() < 0)
+            refuse(i, "Mitsuba turns a mirrored round shape inside out; give it a `resolution`");
+        static const char* const types[] = {"rectangle", "disk", "sphere", "cylinder"};
+        xml_.open("shape", {{"type", types[static_cast<int>(shape.primitive)]}, {"id", name}});
+        transform("to_world", shape.to_world.matrix());
+        if (shape.flip_normals) value("boolean", "flip_normals", "true");
+    }
+
+    void write_bsdf(std::size_t i, const std::string& name) {
+        const Bsdf& bsdf = scene_.shapes[i].bsdf;
+        if (bsdf.twosided) xml_.open("bsdf", {{"type", "twosided"}});
+        if (const auto* diffuse = std::get_if<Diffuse>(&bsdf.model)) {
+            xml_.open("bsdf", {{"type", "diffuse"}});
+            write_texture(diffuse->reflectance, name);
+            xml_.close();
+        } else if (const auto* glass = std::get_if<Dielectric>(&bsdf.model)) {
+            write_glass(i, *glass);
+        } else if (const auto* mirror = std::get_if<Conductor>(&bsdf.model)) {
+            xml_.open("bsdf", {{"type", "conductor"}});
+            value("string", "material", "none");
+            value("rgb", "specular_reflectance", three(mirror->specular_reflectance));
+            xml_.close();
+        } else {
+            refuse(i,
+                   "Mitsuba has no schlick bsdf; give the shape one that it has, such as --set "
+                   "'" +
+                       place(i) + "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}'");
+        }
+        if (bsdf.twosided) xml_.close();
+    }
+
+    void write_glass(std::size_t i, const Dielectric& glass) {
+        if (!is_black(glass.absorption) || !is_black(glass.ext_absorption))
+            refuse(i,
+                   "Mitsuba's dielectric does not absorb; set absorption and ext_absorption of the "
+                   "dielectric to 0, such as --set " +
+                       place(i) + "/bsdf/absorption=0");
+        xml_.open("bsdf", {{"type", "dielectric"}});
+        number("int_ior", static_cast<double>(glass.int_ior));
+        number("ext_ior", static_cast<double>(glass.ext_ior));
+        value("rgb", "specular_reflectance", three(glass.specular_reflectance));
+        value("rgb", "specular_transmittance", three(glass.specular_transmittance));
+        xml_.close();
+    }
+
+    void write_texture(const Texture& texture, const std::string& shape) {
+        if (const auto* colour = std::get_if<Spectrum>(&texture)) {
+            value("rgb", "reflectance", three(*colour));
+        } else if (const auto* board = std::get_if<Checkerboard>(&texture)) {
+            xml_.open("texture", {{"name", "reflectance"}, {"type", "checkerboard"}});
+            value("rgb", "color0", three(board->color0));
+            value("rgb", "color1", three(board->color1));
+            transform("to_uv", board->to_uv.matrix().cast<double>());
+            xml_.close();
+        } else {
+            write_bitmap(std::get<Bitmap>(texture), shape);
+        }
+    }
+
+    void write_bitmap(const Bitmap& bitmap, const std::string& shape) {
+        static const char* const filters[] = {"bilinear", "nearest"};
+        static const char* const wraps[] = {"repeat", "mirror", "clamp"};
+        out_.files.push_back({shape + ".pfm", pfm_bytes(bitmap)});
+        xml_.open("texture", {{"name", "reflectance"}, {"type", "bitmap"}});
+        value("string", "filename", shape + ".pfm");
+        value("boolean", "raw", "true");
+        value("string", "filter_type", filters[static_cast<int>(bitmap.filter)]);
+        value("string", "wrap_mode", wraps[static_cast<int>(bitmap.wrap)]);
+        transform("to_uv", bitmap.to_uv.matrix().cast<double>());
+        xml_.close();
+    }
+
+    const SceneDesc& scene_;
+    const ExportSettings& settings_;
+    XmlWriter xml_;
+    ExportedScene out_;
+};
+
+}  // namespace
+
+ExportedScene to_mitsuba(const SceneDesc& scene, const ExportSettings& settings) {
+    return MitsubaWriter(scene, settings).write();
+}
+
+}  // namespace caustics

@@ -1,0 +1,301 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "experiments/export/exported_scene.h"
+
+namespace caustics {
+
+namespace {
+
+template <class Vector>
+std::string three(const Vector& v) {
+    return fmt::format("<{}, {}, {}>", v[0], v[1], v[2]);
+}
+
+std::string matrix(const Transform& to_world) {
+    std::string text;
+    for (Eigen::Index column = 0; column < 4; ++column)
+        for (Eigen::Index row = 0; row < 3; ++row)
+            text += fmt::format("{}{}", text.empty() ? "" : ", ", to_world.matrix()(row, column));
+    return "matrix <" + text + ">";
+}
+
+const Checkerboard* checkerboard(const Shape& shape) {
+    const auto* diffuse = std::get_if<Diffuse>(&shape.bsdf.model);
+    return diffuse == nullptr ? nullptr : std::get_if<Checkerboard>(&diffuse->reflectance);
+}
+
+const Dielectric* glass(const Shape& shape) { return std::get_if<Dielectric>(&shape.bsdf.model); }
+
+// A list of a mesh2 object, one item a line.
+template <class Items, class Text>
+std::string mesh_list(const char* name, const Items& items, const Text& text) {
+    std::string list = fmt::format("  {} {{ {}", name, items.size());
+    for (const auto& item : items) list += ",\n    " + text(item);
+    return list + " }\n";
+}
+
+std::string mesh2(const TriangleMesh& mesh, const Checkerboard* board) {
+    std::string text = "mesh2 {\n";
+    text += mesh_list("vertex_vectors", mesh.positions, [](const Vec3& p) { return three(p); });
+    if (!mesh.normals.empty())
+        text += mesh_list("normal_vectors", mesh.normals, [](const Vec3& n) { return three(n); });
+    if (board != nullptr)
+        text += mesh_list("uv_vectors", mesh.uvs, [board](const Vec2& uv) {
+            const Vec3 placed = board->to_uv * Vec3(uv.x(), uv.y(), 0);
+            return fmt::format("<{}, {}>", placed.x(), placed.y());
+        });
+    // POV-Ray's flat triangles turn their front to where their corners run clockwise.
+    text += mesh_list("face_indices", mesh.triangles,
+                      [](const auto& t) { return fmt::format("<{}, {}, {}>", t[0], t[2], t[1]); });
+    return text;
+}
+
+class PovrayWriter {
+public:
+    PovrayWriter(const SceneDesc& scene, const ExportSettings& settings)
+        : scene_(scene), settings_(settings), world_(scene) {}
+
+    ExportedScene write() {
+        check_insides();
+        text_ = "#version 3.7;\n";
+        write_settings();
+        write_camera();
+        for (const PointLight& light : scene_.point_lights) write_light(light);
+        for (const DirectionalLight& light : scene_.directional_lights) write_light(light);
+        for (const Shape& shape : scene_.shapes) write_shape(shape);
+        out_.files = {{"scene.ini", ini()}, {"scene.pov", text_}};
+        return std::move(out_);
+    }
+
+private:
+    [[noreturn]] void refuse(const Shape& shape, const std::string& reason) const {
+        refuse_export(settings_, "/" + shape.name, reason);
+    }
+
+    // POV-Ray takes a ray's first meeting with a surface for the way into it, so that a dielectric
+    // without an outside all round is right only when seen from outside.
+    void check_from_outside(const Ray& ray, const std::string& who) const {
+        const auto hit = world_.intersect(ray);
+        if (!hit || hit->geometric_normal.dot(ray.direction) <= 0) return;
+        const Shape& shape = world_.shape_at(*hit);
+        if (glass(shape) != nullptr && shape.primitive != Primitive::sphere)
+            refuse(shape, "POV-Ray takes the first meeting with a dielectric for the way in, but " +
+                              who + " looks at this one from inside");
+    }
+
+    void check_insides() const {
+        const Camera& camera = scene_.camera;
+        for (int y = 0; y < camera.height; ++y)
+            for (int x = 0; x < camera.width; ++x)
+                check_from_outside({camera.position(), camera.direction(x + 0.5, y + 0.5)},
+                                   "the camera");
+        constexpr int rays = 4096;
+        const double golden_angle = pi_d * (3 - std::sqrt(5.0));
+        for (const PointLight& light : scene_.point_lights)
+            for (int i = 0; i < rays; ++i) {
+                const double z = 1 - (2 * i + 1.0) / rays;
+                const double r = std::sqrt(1 - z * z);
+                const Vec3d direction(r * std::cos(i * golden_angle),
+                                      r * std::sin(i * golden_angle), z);
+                check_from_outside({light.position, direction.cast<float>()}, "a light");
+            }
+    }
+
+    void write_settings() {
+        const bool casters = !world_.casters().empty();
+        text_ += fmt::format(
+            "global_settings {{\n  assumed_gamma 1.0\n  ambient_light rgb 0\n"
+            "  max_trace_level {}\n  adc_bailout 0\n",
+            settings_.max_bounces + 2);
+        if (casters)
+            text_ += fmt::format(
+                "  #ifndef (Photon_Count) #declare Photon_Count = 200000; #end\n"
+                "  #ifndef (Photon_Gather) #declare Photon_Gather = 100; #end\n"
+                "  photons {{\n    count Photon_Count\n"
+                "    #ifdef (Photon_Radius) radius Photon_Radius gather 0, 1000000\n"
+                "    #else gather 20, Photon_Gather #end\n"
+                "    autostop 1\n    max_trace_level {}\n    adc_bailout 0\n  }}\n",
+                settings_.max_bounces + 1);
+        text_ += "}\n";
+    }
+
+    void write_camera() {
+        const Camera& camera = scene_.camera;
+        const Eigen::Matrix3d axes = camera.to_world.linear();
+        const Vec2d extent = 2 * camera.half_extent();
+        // +x of the camera is the picture's left.
+        text_ += fmt::format(
+            "camera {{\n  perspective\n  location {}\n  right {}\n  up {}\n  direction {}\n}}\n",
+            three(Vec3d(camera.to_world.translation())), three(Vec3d(-extent.x() * axes.col(0))),
+            three(Vec3d(extent.y() * axes.col(1))), three(Vec3d(axes.col(2))));
+    }
+
+    // A surface of pigment p under light of colour c is p c cos(theta) bright, and p E / pi in
+    // truth; light fades by 2 / (1 + (d / fade_distance)^2), which is the inverse square for a
+    // fade_distance that is nothing beside d.
+    void write_light(const PointLight& light) {
+        const double fade = 1e-5 * static_cast<double>(world_.diameter());
+        const SpectrumSum colour = light.intensity.cast<double>() / (2 * pi_d * fade * fade);
+        text_ += fmt::format(
+            "light_source {{\n  {}, rgb {}\n  fade_distance {}\n  fade_power 2\n"
+            "  photons {{ reflection on refraction on }}\n}}\n",
+            three(light.position), three(colour), fade);
+    }
+
+    void write_light(const DirectionalLight& light) {
+        const Vec3 centre = world_.bounds().center();
+        const Vec3 from = centre - 2 * world_.diameter() * light.direction;
+        const SpectrumSum colour = light.irradiance.cast<double>() / pi_d;
+        text_ += fmt::format(
+            "light_source {{\n  {}, rgb {}\n  parallel\n  point_at {}\n"
+            "  photons {{ reflection on refraction on }}\n}}\n",
+            three(from), three(colour), three(centre));
+    }
+
+    void write_shape(const Shape& shape) {
+        if (shape.radiance)
+            refuse(shape,
+                   "POV-Ray's area lights are points on a grid without Lambert's cosine; export "
+                   "scenes with point or directional lights");
+        text_ += fmt::format("// {}\n", plain_name(shape.name, 0));
+        write_geometry(shape);
+        if (glass(shape) != nullptr)
+            write_glass(shape, *glass(shape));
+        else if (const auto* mirror = std::get_if<Conductor>(&shape.bsdf.model))
+            write_opaque(shape,
+                         fmt::format("pigment {{ rgb 0 }} finish {{ ambient 0 diffuse 0 reflection "
+                                     "{{ rgb {} }} }}",
+                                     three(mirror->specular_reflectance)),
+                         "photons { target reflection on refraction off collect off }");
+        else if (const auto* diffuse = std::get_if<Diffuse>(&shape.bsdf.model))
+            write_opaque(shape,
+                         pigment(shape, diffuse->reflectance) + " finish { ambient 0 diffuse 1 }",
+                         "");
+        else
+            refuse(shape,
+                   "POV-Ray has no schlick bsdf; give the shape one that it has, such as "
+                   "--set '/" +
+                       shape.name + "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}'");
+        text_ += "}\n";
+    }
+
+    void write_geometry(const Shape& shape) {
+        const Checkerboard* board = checkerboard(shape);
+        const char* exact = nullptr;
+        if (shape.primitive == Primitive::sphere) exact = "sphere { 0, 1";
+        if (shape.primitive == Primitive::disk) exact = "disc { 0, z, 1";
+        if (shape.primitive == Primitive::cylinder) exact = "cylinder { 0, z, 1 open";
+        if (exact != nullptr && board == nullptr) {
+            text_ += fmt::format("{}\n  {}\n", exact, matrix(shape.to_world));
+            return;
+        }
+        if (exact != nullptr)
+            refuse(shape,
+                   "POV-Ray's texture coordinates of exact round shapes are others; give the "
+                   "shape a `resolution`");
+        // Two triangles are a rectangle exactly.
+        ExportSettings settings = settings_;
+        if (shape.primitive == Primitive::rectangle) settings.mesh_resolution = 1;
+        std::vector<std::string> unsaid;
+        text_ += mesh2(baked_mesh(shape, settings,
+                                  shape.primitive == Primitive::rectangle ? unsaid : out_.notes),
+                       board);
+    }
+
+    std::string pigment(const Shape& shape, const Texture& texture) const {
+        if (const auto* colour = std::get_if<Spectrum>(&texture))
+            return fmt::format("pigment {{ rgb {} }}", three(*colour));
+        const auto* board = std::get_if<Checkerboard>(&texture);
+        if (board == nullptr)
+            refuse(shape, "bitmap textures are not exported to POV-Ray; give the shape one colour");
+        return fmt::format("uv_mapping pigment {{ checker color rgb {}, color rgb {} scale 0.5 }}",
+                           three(board->color0), three(board->color1));
+    }
+
+    // One-sided surfaces are black from behind.
+    void write_opaque(const Shape& shape, const std::string& texture, const std::string& photons) {
+        const std::string black = "pigment { rgb 0 } finish { ambient 0 diffuse 0 }";
+        const bool inverted = shape.flip_normals && shape.primitive != Primitive::rectangle &&
+                              shape.primitive != Primitive::mesh &&
+                              shape.primitive != Primitive::heightfield;
+        const bool both = shape.bsdf.twosided;
+        text_ += fmt::format("  texture {{ {} }}\n", inverted && !both ? black : texture);
+        if (!both)
+            text_ += fmt::format("  interior_texture {{ {} }}\n", inverted ? texture : black);
+        if (!photons.empty()) text_ += "  " + photons + "\n";
+    }
+
+    void check_glass(const Shape& shape, const Dielectric& dielectric) {
+        if (!(dielectric.specular_reflectance == 1).all() ||
+            !(dielectric.specular_transmittance == 1).all())
+            refuse(shape,
+                   "specular_reflectance and specular_transmittance of a dielectric are not "
+                   "exported to POV-Ray; leave them 1");
+        if (!is_black(dielectric.ext_absorption))
+            refuse(shape, "POV-Ray knows no absorption outside of a dielectric (ext_absorption)");
+        if (!is_black(dielectric.absorption) && shape.primitive != Primitive::sphere)
+            refuse(shape,
+                   "POV-Ray absorbs light only between two surfaces of one object, not "
+                   "from water to its floor; set absorption 0, such as --set /" +
+                       shape.name + "/bsdf/absorption=0");
+        if (shape.flip_normals && shape.primitive == Primitive::sphere)
+            refuse(shape, "POV-Ray's spheres have their medium inside; leave flip_normals away");
+        if (ext_ior_ && *ext_ior_ != dielectric.ext_ior)
+            refuse(shape,
+                   "POV-Ray has one medium outside of all dielectrics; give all the same "
+                   "ext_ior");
+        ext_ior_ = dielectric.ext_ior;
+    }
+
+    void write_glass(const Shape& shape, const Dielectric& dielectric) {
+        check_glass(shape, dielectric);
+        text_ +=
+            "  texture { pigment { rgbt 1 } finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel "
+            "on } conserve_energy } }\n";
+        text_ += fmt::format("  interior {{ ior {}", static_cast<double>(dielectric.int_ior) /
+                                                         static_cast<double>(dielectric.ext_ior));
+        // Fading of power 1000 and above is exp(-(1 - fade_color) d / fade_distance).
+        if (const float most = dielectric.absorption.maxCoeff(); most > 0)
+            text_ += fmt::format(" fade_distance {} fade_power 1001 fade_color rgb {}", 1 / most,
+                                 three(Spectrum(1 - dielectric.absorption / most)));
+        text_ += " }\n  photons { target reflection on refraction on collect off }\n";
+    }
+
+    std::string ini() {
+        constexpr int finest = 9;
+        int root = static_cast<int>(std::lround(std::sqrt(scene_.sampling.sample_count)));
+        if (root > finest) {
+            root = finest;
+            out_.notes.emplace_back("POV-Ray takes at most 81 rays a pixel");
+        }
+        std::string text = fmt::format(
+            "Input_File_Name=scene.pov\nOutput_File_Name=scene.exr\nOutput_File_Type=E\n"
+            "Output_Alpha=Off\nDisplay=Off\nWidth={}\nHeight={}\n",
+            scene_.camera.width, scene_.camera.height);
+        // Threshold 0: every pixel, not only the edges.
+        if (root > 1)
+            text += fmt::format(
+                "Antialias=On\nSampling_Method=1\nAntialias_Threshold=0.0\nAntialias_Depth={}\n"
+                "Antialias_Gamma=1.0\nJitter=Off\n",
+                root);
+        return text;
+    }
+
+    const SceneDesc& scene_;
+    const ExportSettings& settings_;
+    Scene world_;
+    std::optional<float> ext_ior_;
+    std::string text_;
+    ExportedScene out_;
+};
+
+}  // namespace
+
+ExportedScene to_povray(const SceneDesc& scene, const ExportSettings& settings) {
+    return PovrayWriter(scene, settings).write();
+}
+
+}  // namespace caustics

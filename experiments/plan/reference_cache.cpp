@@ -1,0 +1,105 @@
+#include "experiments/plan/reference_cache.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "experiments/base/csv.h"
+#include "experiments/picture/metrics.h"
+#include "experiments/plan/reference_extension.h"
+
+namespace caustics {
+
+namespace {
+
+/// What is kept of a rendered picture.
+Film reference_film(const Film& rendered) {
+    Film film(rendered.width(), rendered.height());
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        film.set_rgb("", i, rendered.rgb("", i));
+        film.set_rgb("caustic", i, rendered.rgb("caustic", i));
+    }
+    if (const std::vector<float>* const unreached = rendered.find("unreached.Y"))
+        film.plane("unreached.Y") = *unreached;
+    if (rendered.find("stderr.R") == nullptr) return film;
+    std::vector<float>& grey = film.plane("stderr.Y");
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        const SpectrumSum s = rendered.rgb("stderr", i).cast<double>();
+        grey[i] = static_cast<float>(std::sqrt(s.square().sum() / 3));
+    }
+    return film;
+}
+
+}  // namespace
+
+std::string reference_key(const RunRequest& request, const SceneFile& scene) {
+    const nlohmann::json configuration = {
+        {"reference_version", reference_version}, {"scene", scene.hash},
+        {"method", request.method.name},          {"parameters", identity(request.method)},
+        {"spp", request.samples_per_pixel},       {"seed", request.seed},
+        {"width", scene.desc.camera.width},       {"height", scene.desc.camera.height}};
+    return hex(fnv1a(configuration.dump()));
+}
+
+std::filesystem::path ReferenceCache::file_of(const ReferenceRequest& request) const {
+    const std::string name = request.key + ".exr";
+    const std::filesystem::path kept = request.kept_folder / name;
+    const bool keeps =
+        std::filesystem::exists(kept) ||
+        (policy_ == ReferencePolicy::rebuild && std::filesystem::is_directory(request.kept_folder));
+    return keeps ? kept : own_folder_ / name;
+}
+
+bool ReferenceCache::must_render(const ReferenceRequest& request) const {
+    if (policy_ == ReferencePolicy::rebuild && !rendered_.contains(request.key)) return true;
+    return !std::filesystem::exists(file_of(request));
+}
+
+void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& options) const {
+    const SceneFile file = load_scene(request.request.scene_file, request.request.overrides);
+    if (reference_key(request.request, file) != request.key)
+        throw InputError(
+            fmt::format("{}: changed while the sweep runs", request.request.scene_file.string()));
+    const Scene scene(file.desc);
+    std::optional<SmallerReference> begun;
+    if (policy_ == ReferencePolicy::extend)
+        begun = find_smaller({request.kept_folder, own_folder_}, request.request, file);
+    Stopwatch stopwatch;
+    const RunResult result = run(
+        scene, begun ? remainder(request.request, *begun) : request.request, options, stopwatch);
+    for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the reference");
+    Film film = reference_film(result.film);
+    if (begun) film = joined(request.request, *begun, film);
+    film.metadata = picture_metadata(request.request, file, result.report);
+    // The command names the scene as it was reached from here, and the version that of today; the
+    // file depends on neither.
+    film.metadata.erase("command");
+    film.metadata["reference_key"] = request.key;
+    if (begun) film.metadata["extends"] = begun->file.filename().string();
+    if (result.why_empty) film.metadata["why_empty"] = *result.why_empty;
+    const std::filesystem::path target = file_of(request);
+    std::filesystem::create_directories(target.parent_path());
+    write_exr(film, target);
+}
+
+std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& request) {
+    if (last_ && last_->key == request.key) return last_;
+    const std::filesystem::path file = file_of(request);
+    auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), 0, {}});
+    for (const char* layer : {"", "caustic"})
+        if (!reference->film.has_layer(layer))
+            throw InputError(
+                fmt::format("{}: not a reference: no layer \"{}\" (remake it with "
+                            "--references rebuild)",
+                            file.string(), layer));
+    const PixelMask reached = reached_pixels(reference->film, reference->film);
+    reference->mean = mean(reference->film, "caustic", reached);
+    reference->standard_error = relative_standard_error(reference->film, reached);
+    last_ = reference;
+    return reference;
+}
+
+}  // namespace caustics

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "core/render/film.h"
+#include "core/scene_file/scene_reader.h"
+#include "experiments/plan/reference_request.h"
+
+namespace caustics {
+
+/// Of the files; part of every key.
+inline constexpr int reference_version = 1;
+
+/// Hash of everything a reference picture depends on: scene (film and sampler included), method,
+/// parameters in force, samples a pixel, seed, format.
+std::string reference_key(const RunRequest& request, const SceneFile& scene);
+
+/// A picture that trials are judged by: layers caustic, R G B (beauty), stderr.Y (root mean square
+/// over the channels) and, where it applies, unreached.
+struct Reference {
+    std::string key;
+    Film film;
+    double mean = 0;  ///< of the caustic layer over reached pixels and channels
+    std::optional<double> standard_error;  ///< sqrt(mean s^2) / mean(r) of the caustic layer
+};
+
+/// What is done about references that are there: used; rendered anew; or used, and one that differs only in
+/// having fewer samples taken as the beginning of one that is not there (reference_extension.h).
+enum class ReferencePolicy { keep, rebuild, extend };
+
+/// References as files KEY.exr: looked for in the folder kept beside the sweep files, then in the
+/// sweep's own, else rendered and written there.
+class ReferenceCache {
+public:
+    ReferenceCache(std::filesystem::path own_folder, ReferencePolicy policy)
+        : own_folder_(std::move(own_folder)), policy_(policy) {}
+
+    /// Whether it has to be rendered before get().
+    bool must_render(const ReferenceRequest& request) const;
+    /// Renders it and writes its file. `options` brings threads and progress.
+    void render(const ReferenceRequest& request, const RunOptions& options) const;
+    /// Takes note that it was rendered, for `rebuild`; here or in another process.
+    void note_rendered(const ReferenceRequest& request) { rendered_.insert(request.key); }
+    /// Reads it; the last one stays in memory. Throws InputError.
+    std::shared_ptr<const Reference> get(const ReferenceRequest& request);
+
+private:
+    std::filesystem::path file_of(const ReferenceRequest& request) const;
+
+    std::filesystem::path own_folder_;
+    ReferencePolicy policy_;
+    std::set<std::string> rendered_;
+    std::shared_ptr<const Reference> last_;
+};
+
+}  // namespace caustics

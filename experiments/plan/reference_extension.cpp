@@ -1,0 +1,132 @@
+#include "experiments/plan/reference_extension.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+
+namespace caustics {
+
+namespace {
+
+using json = nlohmann::json;
+
+/// The parameter that says how many samples there are; nullptr for methods without.
+const char* samples_name(const std::string& method) {
+    if (method == "lighttrace") return "paths";
+    if (method == "pathtrace") return "spp";
+    return nullptr;
+}
+
+Method with_samples(const Method& method, std::uint64_t samples) {
+    json parameters = describe(method);
+    parameters[samples_name(method.name)] = samples;
+    std::vector<std::string> assignments;
+    for (const auto& [key, value] : parameters.items())
+        assignments.push_back(key + "=" + value.dump());
+    return parse_method(method.name, parameters_node(assignments));
+}
+
+json without_samples(json parameters, const std::string& method) {
+    parameters.erase(samples_name(method));
+    return parameters;
+}
+
+/// Paths that a picture was made of, or as many a pixel: pathtrace gives each camera sample as many, so rounds up.
+double weight(const RunRequest& request, std::uint64_t samples) {
+    if (request.method.name != "pathtrace") return static_cast<double>(samples);
+    const auto each = static_cast<std::uint64_t>(request.samples_per_pixel);
+    return static_cast<double>((samples + each - 1) / each * each);
+}
+
+std::string said(const Film& film, const char* name) {
+    const auto found = film.metadata.find(name);
+    return found == film.metadata.end() ? "" : found->second;
+}
+
+bool belongs_to(const Film& film, const RunRequest& wanted, const SceneFile& scene) {
+    const json theirs = json::parse(said(film, "parameters"), nullptr, false);
+    return theirs.is_object() && theirs.contains(samples_name(wanted.method.name)) &&
+           said(film, "scene_hash") == scene.hash && said(film, "method") == wanted.method.name &&
+           said(film, "seed") == fmt::format("{}", wanted.seed) &&
+           said(film, "spp") == fmt::format("{}", wanted.samples_per_pixel) &&
+           film.width() == scene.desc.camera.width && film.height() == scene.desc.camera.height &&
+           film.has_layer("caustic") && film.find("stderr.Y") != nullptr &&
+           without_samples(theirs, wanted.method.name) ==
+               without_samples(describe(wanted.method), wanted.method.name);
+}
+
+/// Empty for a file that is no picture: the trials that need that reference will say so.
+std::optional<Film> readable(const std::filesystem::path& file) {
+    try {
+        return read_exr(file);
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> samples_of(const Method& method) {
+    const char* const name = samples_name(method.name);
+    if (name == nullptr) return {};
+    return describe(method).at(name).get<std::uint64_t>();
+}
+
+std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::path>& folders,
+                                             const RunRequest& wanted, const SceneFile& scene) {
+    std::optional<SmallerReference> best;
+    const std::optional<std::uint64_t> most = samples_of(wanted.method);
+    if (!most) return best;
+    for (const std::filesystem::path& folder : folders) {
+        if (!std::filesystem::is_directory(folder)) continue;
+        std::vector<std::filesystem::path> files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+            if (entry.path().extension() == ".exr") files.push_back(entry.path());
+        std::ranges::sort(files);  // a folder has no order
+        for (const std::filesystem::path& file : files) {
+            std::optional<Film> film = readable(file);
+            if (!film || !belongs_to(*film, wanted, scene)) continue;
+            const auto samples = json::parse(said(*film, "parameters"))
+                                     .at(samples_name(wanted.method.name))
+                                     .get<std::uint64_t>();
+            if (samples < *most && (!best || samples > best->samples))
+                best = SmallerReference{file, std::move(*film), samples};
+        }
+    }
+    return best;
+}
+
+RunRequest remainder(const RunRequest& wanted, const SmallerReference& begun) {
+    RunRequest rest = wanted;
+    rest.method = with_samples(wanted.method, *samples_of(wanted.method) - begun.samples);
+    // Other random numbers than those of any part before.
+    rest.seed = fnv1a(fmt::format("{} after {} samples", wanted.seed, begun.samples));
+    return rest;
+}
+
+Film joined(const RunRequest& wanted, const SmallerReference& begun, const Film& rest) {
+    const double a = weight(wanted, begun.samples);
+    const double b = weight(wanted, *samples_of(wanted.method) - begun.samples);
+    Film film(rest.width(), rest.height());
+    for (const Plane& plane : rest.planes()) {
+        const std::vector<float>* const first = begun.film.find(plane.channel);
+        if (first == nullptr)
+            throw InputError(fmt::format("{}: no channel {} (remake it with --references rebuild)",
+                                         begun.file.string(), plane.channel));
+        const bool is_error = plane.channel == "stderr.Y";
+        std::vector<float>& mean = film.plane(plane.channel);
+        for (std::size_t i = 0; i < mean.size(); ++i) {
+            const double x = a * static_cast<double>((*first)[i]);
+            const double y = b * static_cast<double>(plane.values[i]);
+            mean[i] = static_cast<float>((is_error ? std::hypot(x, y) : x + y) / (a + b));
+        }
+    }
+    return film;
+}
+
+}  // namespace caustics

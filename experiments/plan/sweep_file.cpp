@@ -1,0 +1,181 @@
+#include "experiments/plan/sweep_file.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "experiments/plan/record.h"
+
+namespace caustics {
+
+namespace {
+
+constexpr std::int64_t most = 1'000'000'000;
+constexpr std::size_t most_trials = 1'000'000;  ///< a plan is held in memory
+
+/// Of a product of lists, before it is formed.
+void require_few(double trials, const JsonNode& node) {
+    if (trials > static_cast<double>(most_trials))
+        node.fail(fmt::format(
+            "makes {} trials, more than {} (split the sweep file)",
+            trials < 1e15 ? fmt::format("{:.0f}", trials) : fmt::format("{:.3g}", trials),
+            most_trials));
+}
+
+std::vector<JsonNode> list(const JsonNode& node) {
+    std::vector<JsonNode> elements = node.as_array();
+    if (elements.empty()) node.fail("an empty list makes no trials (give at least one value)");
+    return elements;
+}
+
+int integer(const JsonNode& node, const std::string& key, std::int64_t low, int otherwise,
+            std::int64_t high = most) {
+    const std::optional<JsonNode> child = node.find(key);
+    return child ? static_cast<int>(child->as_integer_in(low, high)) : otherwise;
+}
+
+std::vector<std::filesystem::path> read_scenes(const JsonNode& node) {
+    std::vector<std::filesystem::path> scenes;
+    for (const JsonNode& scene : list(node)) {
+        const std::filesystem::path file =
+            (scene.file().parent_path() / scene.as_string()).lexically_normal();
+        try {
+            require_regular_file(file);
+        } catch (const InputError& error) {
+            scene.fail(error.what());
+        }
+        scenes.push_back(file);
+    }
+    return scenes;
+}
+
+/// Of two axes for the same value, one would change nothing.
+void require_own_pointer(const std::vector<SweepFile::Axis>& axes, const std::string& pointer,
+                         const JsonNode& node) {
+    const auto same = std::ranges::find(axes, pointer, &SweepFile::Axis::pointer);
+    if (same != axes.end())
+        node.fail(fmt::format("{} is what \"{}\" sets already", pointer, same->name));
+}
+
+SweepFile::Axis read_axis(const std::string& name, const JsonNode& node) {
+    const bool letters =
+        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+    if (name.empty() || !letters)
+        node.fail("becomes a column: use small letters, digits and underscores for its name");
+    if (is_record_column(name) && !is_swept_column(name))
+        node.fail(fmt::format("\"{}\" is a column of every trial: choose another name", name));
+    SweepFile::Axis axis;
+    axis.name = name;
+    axis.pointer = node.at("pointer").as_string();
+    for (const JsonNode& value : list(node.at("values"))) axis.values.push_back(value.canonical());
+    node.finish();
+    return axis;
+}
+
+/// A JSON object of the chosen parameters.
+std::string object_text(const std::vector<std::pair<std::string, std::string>>& params) {
+    std::string text = "{";
+    for (const auto& [key, value] : params)
+        text += fmt::format("{}\"{}\": {}", text.size() > 1 ? ", " : "", key, value);
+    return text + "}";
+}
+
+/// A parameter that leaves a file behind is refused: the trials would overwrite each other's.
+Method method_of_trials(const std::string& name, const JsonNode& params) {
+    const Method method = parse_method(name, params);
+    if (writes_files(method))
+        params.at("save").fail(
+            "not in a sweep, whose trials would overwrite each other's file (save it by the verb "
+            "render, then load it here)");
+    return method;
+}
+
+/// All combinations of a method's parameter lists, the last key varying fastest.
+std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
+    const JsonNode name_node = node.at("method");
+    const std::string name = method_names()[name_node.as_choice(method_names())];
+    std::vector<SweepFile::MethodCase> cases(1);
+    std::string place = node.place();
+    if (const std::optional<JsonNode> params = node.find("param")) {
+        place = params->place();
+        for (const auto& [key, value] : params->others()) {
+            const std::vector<JsonNode> choices =
+                value.is_array() ? list(value) : std::vector<JsonNode>{value};
+            require_few(static_cast<double>(cases.size()) * static_cast<double>(choices.size()),
+                        *params);
+            std::vector<SweepFile::MethodCase> product;
+            for (const SweepFile::MethodCase& so_far : cases)
+                for (const JsonNode& choice : choices) {
+                    product.push_back(so_far);
+                    product.back().params.emplace_back(key, choice.canonical());
+                }
+            cases = std::move(product);
+        }
+    }
+    node.finish();
+    for (SweepFile::MethodCase& each : cases)
+        each.method = method_of_trials(
+            name, JsonNode::parse_text(object_text(each.params), place, node.file()));
+    return cases;
+}
+
+SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
+    SweepFile::Reference reference;
+    const std::string name = method_names()[node.at("method").as_choice(method_names())];
+    const std::optional<JsonNode> params = node.find("param");
+    reference.method = method_of_trials(
+        name, JsonNode::parse_text(params ? params->canonical() : "{}",
+                                   params ? params->place() : node.place(), node.file()));
+    if (params) params->others();
+    reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp));
+    reference.seed = static_cast<std::uint64_t>(integer(node, "seed", 0, 1));
+    node.finish();
+    return reference;
+}
+
+double count_trials(const SweepFile& sweep) {
+    double trials = sweep.repeats;
+    for (const SweepFile::Axis& axis : sweep.axes)
+        trials *= static_cast<double>(axis.values.size());
+    for (const std::size_t factor : {sweep.scenes.size(), sweep.methods.size(), sweep.seeds.size()})
+        trials *= static_cast<double>(factor);
+    return trials;
+}
+
+}  // namespace
+
+SweepFile read_sweep_file(const std::filesystem::path& file) {
+    const JsonNode node = JsonNode::parse_file(file);
+    SweepFile sweep;
+    sweep.file = file;
+    node.at("version").as_integer_in(1, 1);
+    sweep.scenes = read_scenes(node.at("scenes"));
+    if (const std::optional<JsonNode> set = node.find("set"))
+        for (const auto& [name, node_of_axis] : set->others()) {
+            SweepFile::Axis axis = read_axis(name, node_of_axis);
+            require_own_pointer(sweep.axes, axis.pointer, node_of_axis.at("pointer"));
+            sweep.axes.push_back(std::move(axis));
+        }
+    for (const JsonNode& method : list(node.at("methods")))
+        for (SweepFile::MethodCase& each : read_method(method))
+            sweep.methods.push_back(std::move(each));
+    if (const std::optional<JsonNode> seeds = node.find("seeds")) {
+        for (const JsonNode& seed : list(*seeds))
+            sweep.seeds.push_back(
+                static_cast<std::uint64_t>(seed.as_integer_in(0, 1'000'000'000'000'000)));
+    } else {
+        sweep.seeds = {1};
+    }
+    sweep.repeats = integer(node, "repeats", 1, 1);
+    sweep.spp = integer(node, "spp", 1, 16);
+    sweep.threads = integer(node, "threads", 1, 1, most_threads);
+    if (const std::optional<JsonNode> reference = node.find("reference"))
+        sweep.reference = read_reference(*reference, sweep.spp);
+    node.finish();
+    require_few(count_trials(sweep), node);
+    return sweep;
+}
+
+}  // namespace caustics

@@ -1,0 +1,217 @@
+#include "experiments/plan/sweep_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "experiments/run/cli_options.h"
+#include "experiments/plan/record.h"
+#include "experiments/plan/reference_cache.h"
+#include "experiments/plan/sweep_file.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+using Assignments = std::vector<std::pair<std::string, std::string>>;
+
+/// A scene under one combination of the swept values.
+struct SceneVariant {
+    std::filesystem::path file;
+    Overrides overrides;
+    Assignments swept;
+    std::string hash;
+    std::optional<ReferenceRequest> reference;
+};
+
+std::vector<SceneVariant> variants(const SweepFile& sweep) {
+    std::vector<SceneVariant> all;
+    for (const std::filesystem::path& scene : sweep.scenes) all.push_back({scene, {}, {}, {}, {}});
+    for (const SweepFile::Axis& axis : sweep.axes) {
+        std::vector<SceneVariant> product;
+        for (const SceneVariant& so_far : all)
+            for (const std::string& value : axis.values) {
+                product.push_back(so_far);
+                product.back().overrides.emplace_back(axis.pointer, value);
+                product.back().swept.emplace_back(axis.name, value);
+            }
+        all = std::move(product);
+    }
+    // Whatever the columns' names, /water comes before /water/resolution, which is in it.
+    for (SceneVariant& variant : all) std::ranges::sort(variant.overrides);
+    return all;
+}
+
+/// "sweep.json: /set/alpha: 7: " for the value that the scene cannot be loaded with, or
+/// "sweep.json: /scenes: " when it cannot be loaded anyway.
+std::string place_of_mistake(const SweepFile& sweep, const SceneVariant& variant) {
+    const std::string file = sweep.file.string();
+    Overrides so_far;
+    for (const auto& next : variant.overrides) {
+        try {
+            load_scene(variant.file, so_far);
+        } catch (const InputError&) {
+            break;
+        }
+        so_far.push_back(next);
+    }
+    if (so_far.empty()) return fmt::format("{}: /scenes: ", file);
+    const auto& [pointer, value] = so_far.back();
+    const auto axis = std::ranges::find(sweep.axes, pointer, &SweepFile::Axis::pointer);
+    return fmt::format("{}: /set/{}: {}: ", file, axis->name, value);
+}
+
+SceneFile load(const SweepFile& sweep, const SceneVariant& variant) {
+    try {
+        return load_scene(variant.file, variant.overrides);
+    } catch (const InputError& error) {
+        throw InputError(place_of_mistake(sweep, variant) + error.what());
+    }
+}
+
+/// What loading the variant tells: {"hash", "reference_key"}. Loads it as trials will, so that
+/// whatever is wrong shows before anything runs.
+json examine(const SweepFile& sweep, const SceneVariant& variant) {
+    const SceneFile file = load(sweep, variant);
+    samples_per_pixel(file.desc.sampling, sweep.spp);
+    json facts = {{"hash", file.hash}};
+    if (!variant.reference) return facts;
+    const RunRequest& request = variant.reference->request;
+    PixelSampling fixed_rate = file.desc.sampling;
+    fixed_rate.max_sample_count = 0;
+    samples_per_pixel(fixed_rate, request.samples_per_pixel);
+    const Scene scene(file.desc);
+    if (const auto reason = why_unsupported(scene, request.method))
+        throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),
+                                           variant.file.string(), *reason));
+    facts["reference_key"] = reference_key(request, file);
+    return facts;
+}
+
+void ask_for_reference(const SweepFile& sweep, SceneVariant& variant) {
+    if (!sweep.reference) return;
+    ReferenceRequest reference;
+    reference.request = {variant.file, variant.overrides, sweep.reference->method,
+                         sweep.reference->seed, sweep.reference->spp};
+    reference.kept_folder = kept_references(sweep.file);
+    variant.reference = reference;
+}
+
+void resolve(const SweepFile& sweep, std::vector<SceneVariant>& all, const Isolation& isolation) {
+    for (SceneVariant& variant : all) ask_for_reference(sweep, variant);
+    const json facts = json::parse(isolation([&] {
+        json found = json::array();
+        for (const SceneVariant& variant : all) found.push_back(examine(sweep, variant));
+        return found.dump();
+    }));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        all[i].hash = facts[i].at("hash").get<std::string>();
+        if (all[i].reference)
+            all[i].reference->key = facts[i].at("reference_key").get<std::string>();
+    }
+}
+
+std::string slug_word(const std::string& text) {
+    std::string word;
+    for (const char c : text)
+        if (c != '"') word += std::isalnum(static_cast<unsigned char>(c)) || c == '.' ? c : '_';
+    return word;
+}
+
+/// For people to read; what tells trials apart is the hash behind it.
+std::string slug(const Trial& trial) {
+    constexpr std::size_t longest = 100;
+    std::string words = slug_word(trial.scene_name) + "-" + trial.request.method.name;
+    for (const auto& [key, value] : trial.swept)
+        words += fmt::format("-{}{}", slug_word(key), slug_word(value));
+    words.resize(std::min(words.size(), longest));
+    words += fmt::format("-s{}", trial.request.seed);
+    if (trial.repeat > 1) words += fmt::format("-r{}", trial.repeat);
+    return words;
+}
+
+/// What the trials of a cell share.
+json configuration_of(const Trial& trial) {
+    return {{"record_version", record_version},
+            {"scene", trial.scene_hash},
+            {"method", trial.request.method.name},
+            {"parameters", identity(trial.request.method)},
+            {"spp", trial.request.samples_per_pixel},
+            {"reference", trial.reference ? trial.reference->key : ""}};
+}
+
+/// Names a trial of the cell of that configuration.
+void identify(Trial& trial, json& configuration) {
+    configuration["seed"] = trial.request.seed;
+    configuration["repeat"] = trial.repeat;
+    trial.config_hash = hex(fnv1a(configuration.dump()));
+    trial.id = slug(trial) + "-" + trial.config_hash;
+}
+
+Trial make_trial(const SweepFile& sweep, const SceneVariant& variant,
+                 const SweepFile::MethodCase& method) {
+    Trial trial;
+    trial.request = {variant.file, variant.overrides, method.method, 1, sweep.spp};
+    trial.threads = sweep.threads;
+    trial.scene_name = variant.file.stem().string();
+    trial.scene_hash = variant.hash;
+    trial.method_files = files_read(method.method);
+    trial.swept = variant.swept;
+    trial.swept.insert(trial.swept.end(), method.params.begin(), method.params.end());
+    trial.reference = variant.reference;
+    trial.cell = hex(fnv1a(configuration_of(trial).dump()));
+    return trial;
+}
+
+void add_trials(const SweepFile& sweep, SweepPlan& plan, std::set<std::string>& known,
+                const Isolation& isolation) {
+    std::vector<SceneVariant> scenes = variants(sweep);
+    resolve(sweep, scenes, isolation);
+    for (const SceneVariant& variant : scenes)
+        for (const SweepFile::MethodCase& method : sweep.methods) {
+            const Trial first = make_trial(sweep, variant, method);
+            json configuration = configuration_of(first);
+            for (const std::uint64_t seed : sweep.seeds)
+                for (int repeat = 1; repeat <= sweep.repeats; ++repeat) {
+                    Trial trial = first;
+                    trial.request.seed = seed;
+                    trial.repeat = repeat;
+                    identify(trial, configuration);
+                    if (known.insert(trial.config_hash).second)
+                        plan.trials.push_back(std::move(trial));
+                    else
+                        ++plan.duplicates;
+                }
+        }
+}
+
+void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {
+    for (const Trial& trial : plan.trials)
+        for (const auto& [key, value] : trial.swept)
+            if (std::ranges::count(columns, key) == 0) columns.push_back(key);
+}
+
+}  // namespace
+
+std::filesystem::path kept_references(const std::filesystem::path& sweep_file) {
+    return (std::filesystem::absolute(sweep_file).parent_path().parent_path() / "references")
+        .lexically_normal();
+}
+
+SweepPlan read_plan(const std::vector<std::filesystem::path>& files, const Isolation& isolation) {
+    SweepPlan plan;
+    plan.files = files;
+    std::set<std::string> known;
+    for (const std::filesystem::path& file : files)
+        add_trials(read_sweep_file(file), plan, known, isolation);
+    add_columns(plan, plan.swept);
+    return plan;
+}
+
+}  // namespace caustics

@@ -1,0 +1,131 @@
+#include "experiments/plan/trial_store.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "experiments/base/file_io.h"
+#include "experiments/plan/record.h"
+
+namespace caustics {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view new_prefix = ".tmp-";
+constexpr std::string_view old_prefix = ".old-";
+
+[[noreturn]] void cannot_be_written(const fs::path& place, const std::error_code& error) {
+    throw InputError(fmt::format("{}: cannot be written ({})", place.string(), error.message()));
+}
+
+/// Waits until the file or folder is on the disk: a rename may get there before the data does.
+void bring_to_disk(const fs::path& place) {
+    const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool failed = descriptor < 0 || fsync(descriptor) != 0;
+    const int error = errno;
+    if (descriptor >= 0) close(descriptor);
+    if (failed) cannot_be_written(place, {error, std::generic_category()});
+}
+
+}  // namespace
+
+void JobStore::prepare() const {
+    try {
+        fs::create_directories(trials_);
+        for (const fs::directory_entry& entry : fs::directory_iterator(trials_)) {
+            const std::string name = entry.path().filename().string();
+            const fs::path replaced =
+                trials_ / name.substr(std::min(name.size(), old_prefix.size()));
+            if (name.starts_with(old_prefix) && !fs::exists(replaced))
+                fs::rename(entry.path(), replaced);
+            else if (name.starts_with(old_prefix) || name.starts_with(new_prefix))
+                fs::remove_all(entry.path());
+        }
+    } catch (const fs::filesystem_error& error) {
+        cannot_be_written(trials_, error.code());
+    }
+}
+
+std::optional<nlohmann::json> JobStore::record(const std::string& id) const {
+    const fs::path file = record_of(id);
+    const auto require = [&](bool whole, const std::string& flaw) {
+        if (!whole)
+            throw InputError(fmt::format("{}: broken record ({}); a sweep runs the trial again",
+                                         file.string(), flaw));
+    };
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (status.type() == fs::file_type::not_found) return {};
+    require(!error, error.message());
+    require(fs::is_regular_file(status), "not a file");
+    nlohmann::json record = nlohmann::json::parse(read_whole_file(file), nullptr, false);
+    require(!record.is_discarded(), "not JSON");
+    const std::string flaw = flaw_of(record);
+    require(flaw.empty(), flaw);
+    require(record.contains("trial") && record.at("trial") == nlohmann::json(id),
+            "/trial: names another trial");
+    return record;
+}
+
+fs::path JobStore::temporary_of(const std::string& id) const {
+    return trials_ / fmt::format("{}{}", new_prefix, id);
+}
+
+fs::path JobStore::begin(const std::string& id) const {
+    fs::path folder = temporary_of(id);
+    std::error_code error;
+    fs::remove_all(folder, error);
+    if (!error) fs::create_directory(folder, error);
+    if (error) cannot_be_written(folder, error);
+    return folder;
+}
+
+void JobStore::commit(const std::string& id, const nlohmann::json& record) const {
+    const fs::path folder = temporary_of(id);
+    const fs::path old = trials_ / fmt::format("{}{}", old_prefix, id);
+    const fs::path place = folder_of(id);
+    write_whole_file(folder / "record.json",
+                     record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    try {
+        for (const fs::directory_entry& file : fs::directory_iterator(folder))
+            bring_to_disk(file.path());
+        bring_to_disk(folder);
+        if (fs::exists(place)) fs::rename(place, old);
+        fs::rename(folder, place);
+        fs::remove_all(old);
+    } catch (const fs::filesystem_error& error) {
+        cannot_be_written(place, error.code());
+    }
+}
+
+std::vector<std::string> JobStore::trials() const {
+    std::vector<std::string> ids;
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(trials_, none)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(old_prefix) && !name.starts_with(new_prefix) &&
+            entry.is_directory(none))
+            ids.push_back(name);
+    }
+    return ids;
+}
+
+void JobStore::drop(const std::string& id) const {
+    std::error_code ignored;
+    fs::remove_all(temporary_of(id), ignored);
+}
+
+void JobStore::remove(const std::string& id) const {
+    std::error_code error;
+    fs::remove_all(folder_of(id), error);
+    if (error) cannot_be_written(folder_of(id), error);
+}
+
+}  // namespace caustics

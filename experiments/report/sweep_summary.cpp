@@ -1,0 +1,110 @@
+#include "experiments/report/sweep_summary.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "experiments/base/progress.h"
+
+namespace caustics {
+
+SweepSummary::Values SweepSummary::values_of(const TableRow& row) const {
+    Values values;
+    for (const std::string& key : swept_)
+        if (const std::string& value = row.text(key); !value.empty()) values[key] = value;
+    return values;
+}
+
+std::string SweepSummary::words(const Values& values) const {
+    std::vector<std::string> parts;
+    for (const std::string& key : swept_)
+        if (const auto found = values.find(key); found != values.end())
+            parts.push_back(fmt::format("{} {}", key, found->second));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+void SweepSummary::Range::take_in(std::optional<double> value) {
+    if (!value) return;
+    low = std::min(low, *value);
+    high = std::max(high, *value);
+}
+
+void SweepSummary::add(const TableRow& row) {
+    ++statuses_[row.text("status")];
+    seconds_.take_in(row.number("total_s"));
+    if (const std::optional<double> bytes = row.number("peak_rss_bytes"))
+        memory_.take_in(*bytes / (1 << 20));
+    reference_error_.take_in(row.number("reference_stderr"));
+    if (row.text("method") != "none") energy_.take_in(row.number("mean_ratio"));
+    const std::optional<double> rmse = row.number("rmse");
+    if (!rmse) return;
+    const Values values = values_of(row);
+    const auto [place, is_first] =
+        scenes_[row.text("scene")].try_emplace(row.text("reference"), Judged{{}, values});
+    Judged& judged = place->second;
+    std::erase_if(judged.common, [&](const auto& item) {
+        const auto found = values.find(item.first);
+        return found == values.end() || found->second != item.second;
+    });
+    if (*rmse < judged.best.rmse) judged.best = {*rmse, row.text("method"), values};
+}
+
+std::string SweepSummary::Range::text() const {
+    return low > high ? "-" : fmt::format("{:.4g} to {:.4g}", low, high);
+}
+
+std::string SweepSummary::statuses_text() const {
+    std::vector<std::string> parts;
+    for (const auto& [status, count] : statuses_)
+        parts.push_back(fmt::format("{} {}", count, status));
+    return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// "ring, alpha 0.1: 0.0123 (photonmap, photons 10000, nearest 50)".
+std::string SweepSummary::best_line(const std::string& scene, const Judged& judged) const {
+    Values own = judged.best.values;
+    std::erase_if(own, [&](const auto& item) { return judged.common.contains(item.first); });
+    // What is the same everywhere says nothing.
+    Values setting = judged.common;
+    std::erase_if(setting, [&](const auto& item) {
+        return std::ranges::all_of(scenes_, [&](const auto& each) {
+            return std::ranges::all_of(each.second, [&](const auto& other) {
+                const auto found = other.second.common.find(item.first);
+                return found != other.second.common.end() && found->second == item.second;
+            });
+        });
+    });
+    return fmt::format("{}{}{}: {:.4g} ({}{}{})", scene, setting.empty() ? "" : ", ",
+                       words(setting), judged.best.rmse, judged.best.method,
+                       own.empty() ? "" : ", ", words(own));
+}
+
+/// The lowest error of each scene as it was set.
+std::string SweepSummary::best_text() const {
+    constexpr std::size_t most = 12;
+    std::vector<std::string> lines;
+    for (const auto& [scene, settings] : scenes_)
+        for (const auto& [reference, judged] : settings) lines.push_back(best_line(scene, judged));
+    if (lines.empty()) return "-";
+    std::ranges::sort(lines);
+    if (lines.size() > most + 1) {
+        const std::size_t more = lines.size() - most;
+        lines.resize(most);
+        lines.push_back(fmt::format("and {} more settings (records.csv has them)", more));
+    }
+    return fmt::format("{}", fmt::join(lines, "\n           "));
+}
+
+std::string SweepSummary::text(std::size_t planned, std::size_t ran, double seconds) const {
+    return fmt::format(
+        "trials     {} planned: {}; {} run now in {}\n"
+        "best RMSE  {}\n"
+        "energy     mean(caustic) / mean(reference) from {}\n"
+        "time       a trial takes {} s, peak memory {} MiB\n"
+        "references standard error a pixel {} of the mean\n",
+        planned, statuses_text(), ran, clock_text(seconds), best_text(), energy_.text(),
+        seconds_.text(), memory_.text(), reference_error_.text());
+}
+
+}  // namespace caustics

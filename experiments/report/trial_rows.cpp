@@ -1,0 +1,67 @@
+#include "experiments/report/trial_rows.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/hash.h"
+#include "experiments/base/csv.h"
+#include "experiments/base/file_io.h"
+#include "experiments/plan/record.h"
+
+namespace caustics {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The content of a file of that checksum; empty when it is not that, or not there.
+std::string content_of(const fs::path& file, const std::string& checksum) {
+    if (!fs::is_regular_file(file)) return {};
+    std::string content = read_whole_file(file);
+    return hex(fnv1a(content)) == checksum ? content : std::string();
+}
+
+}  // namespace
+
+TrialRows::TrialRows(const fs::path& folder, const JobStore& store)
+    : store_(store), index_(read_table_index(folder)), columns_of_all_(record_columns({})) {
+    csv_ = content_of(folder / "records.csv", index_.csv);
+    const bool has_lines = !content_of(folder / "records.jsonl", index_.jsonl).empty();
+    if (csv_.empty() || !has_lines) index_ = {};
+    std::string_view header = csv_;
+    columns_ = take_csv_line(header);
+    for (const TableIndex::Row& row : index_.rows) rows_.emplace(row.trial, &row);
+}
+
+TableRow TrialRows::row_at(std::size_t offset) const {
+    std::string_view line = std::string_view(csv_).substr(offset);
+    return {columns_, take_csv_line(line)};
+}
+
+std::optional<TableRow> TrialRows::row(const std::string& trial) const {
+    const auto known = rows_.find(trial);
+    const bool holds = known != rows_.end() && !known->second->record.empty() &&
+                       known->second->record == file_stamp(store_.record_of(trial));
+    if (holds) return row_at(known->second->offset);
+    const std::optional<nlohmann::json> record = store_.record(trial);
+    if (!record) return {};
+    return TableRow(columns_of_all_, csv_cells(record_row(*record, columns_of_all_)));
+}
+
+bool TrialRows::are_the_table_of(const PlanFile& plan) const {
+    if (!index_.complete || columns_ != record_columns(plan.swept)) return false;
+    auto row = index_.rows.begin();
+    for (const PlanFile::Entry& trial : plan.trials) {
+        const std::string stamp = file_stamp(store_.record_of(trial.id));
+        if (stamp.empty()) continue;
+        if (row == index_.rows.end() || row->trial != trial.id || row->record != stamp)
+            return false;
+        ++row;
+    }
+    return row == index_.rows.end();
+}
+
+void TrialRows::visit_table(const std::function<void(const TableRow&)>& visit) const {
+    for (const TableIndex::Row& row : index_.rows) visit(row_at(row.offset));
+}
+
+}  // namespace caustics

@@ -1,0 +1,97 @@
+#include "experiments/run/cli_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "experiments/base/file_io.h"
+#include "experiments/base/interrupt.h"
+#include "experiments/base/number_option.h"
+
+namespace caustics {
+
+CLI::Option* add_repeatable(CLI::App& verb, const std::string& name,
+                            std::vector<std::string>& values, const std::string& help) {
+    return verb.add_option(name, values, help)->type_size(1)->allow_extra_args(false);
+}
+
+void SceneOptions::add_to(CLI::App& verb) {
+    verb.add_option("SCENE", file, "Scene file (JSON)")->required();
+    add_repeatable(verb, "--set", sets,
+                   "Change the scene: /json/pointer=value, JSON or else a string. Repeatable")
+        ->type_name("/POINTER=VALUE");
+}
+
+Overrides SceneOptions::overrides() const {
+    Overrides all;
+    for (const std::string& set : sets) {
+        const std::size_t equals = set.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw InputError(fmt::format("--set \"{}\": expected /json/pointer=value", set));
+        all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+    }
+    return all;
+}
+
+SceneFile SceneOptions::load() const { return load_scene(file, overrides()); }
+
+void MethodOptions::add_to(CLI::App& verb) {
+    std::string known;
+    for (const std::string& each : method_names()) known += (known.empty() ? "" : ", ") + each;
+    verb.add_option("--method", name, "Caustic method: " + known)->required()->type_name("NAME");
+    add_repeatable(verb, "--param", params, "Parameter of the method: key=value. Repeatable")
+        ->type_name("KEY=VALUE");
+}
+
+Method MethodOptions::parse() const { return parse_method(name, parameters_node(params)); }
+
+void MachineFlags::add_to(CLI::App& verb, const std::string& default_threads) {
+    add_number(verb, "--threads", threads, 1, most_threads,
+               "Number of threads (default: " + default_threads + ")");
+    std::string known;
+    for (const Isa each : supported_isas())
+        known += (known.empty() ? "" : ", ") + std::string(name(each));
+    verb.add_option_function<std::string>(
+            "--isa", [this](const std::string& wanted) { isa = isa_from_name(wanted); },
+            "Instruction set of the hot loops: " + known + " (default: the last)")
+        ->type_name("NAME");
+}
+
+void RunFlags::add_to(CLI::App& verb) {
+    add_number<std::uint64_t>(verb, "--seed", seed, 0, std::numeric_limits<std::uint64_t>::max(),
+                              "Seed of all random numbers (default 1)");
+    machine.add_to(verb, "those available");
+}
+
+RunOptions RunFlags::options(int samples_per_pixel) const {
+    RunOptions options;
+    options.seed = seed;
+    options.threads = machine.threads > 0 ? machine.threads : available_threads();
+    options.isa = machine.isa;
+    options.samples_per_pixel = samples_per_pixel;
+    options.progress = [](double) { throw_if_interrupted(); };
+    return options;
+}
+
+int samples_per_pixel(const PixelSampling& sampling, int asked) {
+    const int count = asked > 0 ? asked : sampling.sample_count;
+    const int root = static_cast<int>(std::lround(std::sqrt(count)));
+    if (sampling.stratified && root * root != count)
+        throw InputError(fmt::format(
+            "--spp {}: the scene's stratified sampler takes n^2 samples a pixel (nearest: {})",
+            count, root * root));
+    if (sampling.max_sample_count > 0 && (count < 2 || count > sampling.max_sample_count))
+        throw InputError(fmt::format(
+            "--spp {}: the scene's adaptive sampler starts with 2 to {} samples a pixel", count,
+            sampling.max_sample_count));
+    return count;
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) write_stderr(fmt::format("note: {}\n", note));
+}
+
+}  // namespace caustics

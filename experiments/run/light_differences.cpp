@@ -1,0 +1,77 @@
+#include "experiments/run/light_differences.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+
+/// An attribute of a picture, an empty object where it is missing or not one.
+json attribute(const Film& film, const char* name) {
+    const auto found = film.metadata.find(name);
+    if (found == film.metadata.end()) return json::object();
+    json value = json::parse(found->second, nullptr, false);
+    return value.is_object() ? value : json::object();
+}
+
+/// How many samples estimate the light is no part of it.
+json without_sampler(json scene) {
+    for (json& child : scene)
+        if (child.is_object()) child.erase("sampler");
+    return scene;
+}
+
+/// Whatever is written in a file, without its control characters.
+std::string visible(const std::string& key) {
+    const std::string quoted = json(key).dump(-1, ' ', false, json::error_handler_t::replace);
+    return quoted.substr(1, quoted.size() - 2);
+}
+
+/// By pointer; of an empty object nothing.
+json plain_values(const json& object) {
+    json values = object.flatten();
+    values.erase("");
+    return values;
+}
+
+std::string text_of(const json& values, const std::string& key) {
+    return values.contains(key) ? values.at(key).dump() : "absent";
+}
+
+/// The members that differ between two objects of plain values.
+void add_differences(std::vector<std::string>& all, const json& a, const json& b) {
+    std::set<std::string> keys;
+    for (const json* each : {&a, &b})
+        for (const auto& member : each->items()) keys.insert(member.key());
+    for (const std::string& key : keys)
+        if (text_of(a, key) != text_of(b, key))
+            all.push_back(
+                fmt::format("{}: {} against {}", visible(key), text_of(a, key), text_of(b, key)));
+}
+
+/// Of the parameters only those that both methods have and that say which light paths count.
+json path_parameters(const Film& film, const json& other) {
+    constexpr const char* name = "max_bounces";
+    const json all = attribute(film, "parameters");
+    return all.contains(name) && other.contains(name) ? json{{name, all.at(name)}} : json::object();
+}
+
+}  // namespace
+
+std::vector<std::string> light_differences(const Film& picture, const Film& reference) {
+    std::vector<std::string> all;
+    add_differences(all, path_parameters(picture, attribute(reference, "parameters")),
+                    path_parameters(reference, attribute(picture, "parameters")));
+    if (!picture.metadata.contains("scene") || !reference.metadata.contains("scene")) return all;
+    add_differences(all, plain_values(without_sampler(attribute(picture, "scene"))),
+                    plain_values(without_sampler(attribute(reference, "scene"))));
+    add_differences(all, attribute(picture, "scene_assets"), attribute(reference, "scene_assets"));
+    return all;
+}
+
+}  // namespace caustics

@@ -1,0 +1,208 @@
+#include "experiments/run/notes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <variant>
+
+#include "core/geometry/vertex_normals.h"
+#include "core/light_path/light_path.h"
+#include "core/scene/crossing_dielectrics.h"
+#include "core/scene/eye_medium.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double least_share_told = 0.01;
+
+std::optional<double> resolved(const BuildReport& report, const char* name) {
+    const auto found = report.resolved.find(name);
+    if (found == report.resolved.end()) return {};
+    return found->second;
+}
+
+// How many times its size a caster may lie from the origin of the scene's frame until roundings of
+// coordinates change its light by 0.1 % (tests/agreement/far_scenes_test.cpp). The polygons of beams
+// are far smaller than their caster.
+constexpr double far_for_photons = 1000;
+constexpr double far_for_beams = 10;
+
+/// The caster that lies farthest from the frame's origin, in its own sizes, where that is beyond `most`.
+std::optional<std::string> far_caster(const Scene& scene, double most) {
+    std::optional<std::string> note;
+    for (const std::uint32_t caster : scene.casters()) {
+        const Shape& shape = scene.shapes()[caster];
+        const Box box = bounds(shape);
+        const auto times = static_cast<double>(box.center().norm() / box.diagonal().norm());
+        if (!(times > most)) continue;
+        most = times;
+        note = fmt::format(
+            "{} lies {:.2g} times its size from the other casters; its light is good to 0.1 % only "
+            "within {} times (beams: {}): put casters so far apart into scenes of their own",
+            shape.name, times, far_for_photons, far_for_beams);
+    }
+    return note;
+}
+
+bool has_area_light(const Scene& scene) {
+    return std::ranges::any_of(scene.lights(), [](const Light& light) {
+        return std::holds_alternative<AreaLight>(light);
+    });
+}
+
+bool has_exact_receiver(const Scene& scene) {
+    return std::ranges::any_of(scene.shapes(), [](const Shape& shape) {
+        return shape.primitive != Primitive::mesh && is_receiver(shape.bsdf);
+    });
+}
+
+std::optional<std::string> what_crosses(const Scene& scene) {
+    const auto pairs = crossing_dielectrics(scene);
+    if (pairs.empty()) return {};
+    return fmt::format(
+        "the dielectrics {} and {}{} cross: which medium is inside both is not known, and light "
+        "that "
+        "comes there is not to be trusted",
+        scene.shapes()[pairs[0].first].name, scene.shapes()[pairs[0].second].name,
+        pairs.size() == 1   ? ""
+        : pairs.size() == 2 ? " (and 1 pair more)"
+                            : fmt::format(" (and {} pairs more)", pairs.size() - 1));
+}
+
+/// Parameters of a method that differ from its defaults.
+class SetParameters {
+public:
+    explicit SetParameters(const Method& method)
+        : values_(describe(method)),
+          defaults_(describe(parse_method(method.name, parameters_node({})))) {}
+
+    /// "name=value", or nothing where the method has its default or no such parameter.
+    std::optional<std::string> find(const char* name) const {
+        const auto value = values_.find(name);
+        if (value == values_.end() || *value == defaults_.value(name, json())) return {};
+        return fmt::format("{}={}", name,
+                           value->is_string() ? value->get<std::string>() : value->dump());
+    }
+
+private:
+    json values_;
+    json defaults_;
+};
+
+/// From here on a smooth normal is a guess over a hard edge.
+constexpr double hard_bend = 30 * pi_d / 180;
+
+/// A caster, and by how much its smooth normals differ from its triangles.
+struct BentCaster {
+    std::string name;
+    double bend = 0;  ///< [rad]
+
+    std::string text() const {
+        return fmt::format("{}, by up to {:.0f} degrees", name, bend * 180 / pi_d);
+    }
+};
+
+std::vector<BentCaster> bent_casters(const Scene& scene) {
+    std::vector<BentCaster> casters;
+    for (const std::uint32_t i : scene.casters()) {
+        const Shape& shape = scene.shapes()[i];
+        casters.push_back({shape.name, largest_bend(shape.mesh)});
+    }
+    return casters;
+}
+
+/// Of the light that met casters, what a smooth normal sent to the wrong side, if the method counts it.
+std::optional<double> misdirected_share(const BuildReport& report) {
+    if (!report.counters.contains("photons_misdirected")) return {};
+    const LightPathCounts counts = light_path_counts(report.counters);
+    const std::uint64_t met = counts.aimed + counts.branched - counts.missed;
+    if (met == 0) return {};
+    return static_cast<double>(counts.misdirected) / static_cast<double>(met);
+}
+
+void note_misdirected(const Scene& scene, const BuildReport& report,
+                      std::vector<std::string>& all) {
+    const double share = misdirected_share(report).value_or(0);
+    if (share < least_share_told) return;
+    const std::vector<BentCaster> casters = bent_casters(scene);
+    const auto most = std::ranges::max_element(casters, {}, &BentCaster::bend);
+    all.push_back(fmt::format(
+        "{:.1f} % of the light paths that met casters are lost where smooth normals send them to "
+        "the wrong side of a surface; the normals differ most from the triangles on {} "
+        "(face_normals: true shades the triangles of a mesh flat; a finer resolution bends less)",
+        100 * share, most->text()));
+}
+
+void note_photons(const BuildReport& report, std::vector<std::string>& all) {
+    if (const auto faint = resolved(report, "faint_flux_share"))
+        all.push_back(fmt::format(
+            "{:.0f} % of the light in the weakest channel is carried by photons in which that "
+            "channel is below 1/128 of the greatest: they hold it in whole units, at random, so "
+            "that its mean is right and its noise larger than that of the other channels",
+            100 * *faint));
+    if (const auto version = resolved(report, "photon_map_version"))
+        all.push_back(fmt::format(
+            "the photon map's file has version {}: it does not say where the photons' surfaces "
+            "face, so that photons of a floor count at the foot of its walls (trace and save it "
+            "again)",
+            *version));
+}
+
+}  // namespace
+
+std::vector<std::string> notes_on(const Scene& scene) {
+    std::vector<std::string> all;
+    for (const BentCaster& caster : bent_casters(scene))
+        if (caster.bend > hard_bend)
+            all.push_back(fmt::format(
+                "smooth normals differ from the triangles of {}: where a mesh has none, they are "
+                "averaged over hard edges too, and light that they send to the wrong side of the "
+                "surface is lost (face_normals: true shades the triangles flat)",
+                caster.text()));
+    if (const auto crossing = what_crosses(scene)) all.push_back(*crossing);
+    if (eye_medium(scene).ambiguous)
+        all.push_back(
+            "the dielectrics about the eye disagree on the medium it is in: what it sees directly "
+            "is not attenuated (ext_absorption says what is round a dielectric)");
+    return all;
+}
+
+std::vector<std::string> notes(const Scene& scene, const Method& method,
+                               const BuildReport& report) {
+    std::vector<std::string> all;
+    note_misdirected(scene, report, all);
+    note_photons(report, all);
+    const std::optional<double> captured = resolved(report, "flux_share_captured");
+    if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
+        all.push_back(*far);
+    if (!captured) return all;
+    if (*captured < 1 - least_share_told)
+        all.push_back(fmt::format(
+            "{} loses {:.1f} % of the light between specular surfaces, {:.1f} % in paths too weak "
+            "to "
+            "be followed and the rest where polygons are too coarse for what they meet (photonmap "
+            "follows it; max_bounces=1 asks for the paths with one event alone)",
+            method.name, 100 * (1 - *captured),
+            100 * resolved(report, "flux_share_pruned").value_or(0)));
+
+    const SetParameters parameters(method);
+    const auto add = [&](const char* name, bool useless, const char* why) {
+        if (const auto given = parameters.find(name); given && useless)
+            all.push_back(fmt::format("{} makes no difference in this scene: {}", *given, why));
+    };
+    add("polygons", resolved(report, "quads") == 0, "no caster is divided into a regular grid");
+    add("light_samples", !has_area_light(scene), "it has no area light");
+    add("mesh_resolution", resolved(report, "casters_tessellated") == 0,
+        "every caster is a mesh, which is taken as it is");
+    add("receiver_resolution", !has_exact_receiver(scene),
+        "every receiver is a mesh, which is taken as it is");
+    return all;
+}
+
+}  // namespace caustics

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/run/methods.h"
+
+namespace caustics {
+
+/// What a user should know of a scene, one line each and mostly none: casters whose smooth normals
+/// differ much from their triangles, and an eye whose medium cannot be told.
+std::vector<std::string> notes_on(const Scene& scene);
+
+/// What a user should know of a picture that could be made, beside that of its scene: a caster so far
+/// from the others that floats are too coarse for it, how much light beams lose between specular
+/// surfaces and smooth normals between a surface's sides (from 1 % on), photons with channels that
+/// differ much, an old photon map's file, and parameters that were set and make no difference.
+std::vector<std::string> notes(const Scene& scene, const Method& method, const BuildReport& report);
+
+}  // namespace caustics

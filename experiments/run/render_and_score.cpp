@@ -1,0 +1,103 @@
+#include "experiments/run/render_and_score.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "experiments/base/environment.h"
+#include "experiments/base/shell_word.h"
+#include "experiments/run/notes.h"
+#include "experiments/run/why_empty.h"
+
+namespace caustics {
+
+namespace {
+
+/// Passes follow each other: counts add up, memory and parameters chosen are those of the largest.
+void add(BuildReport& report, const BuildReport& pass) {
+    report.bytes = std::max(report.bytes, pass.bytes);
+    for (const auto& [name, count] : pass.counters) report.counters[name] += count;
+    for (const auto& [name, value] : pass.resolved)
+        report.resolved[name] = std::max(report.resolved[name], value);
+}
+
+}  // namespace
+
+std::string command(const std::string& verb, const RunRequest& request) {
+    std::string line = fmt::format("causticbench {} {} --method {}", verb,
+                                   shell_path(request.scene_file), request.method.name);
+    for (const auto& [pointer, value] : request.overrides)
+        line += " --set " + shell_word(pointer + "=" + value);
+    const nlohmann::json parameters = describe(request.method);
+    for (const auto& [key, value] : parameters.items())
+        line +=
+            " --param " +
+            shell_word(key + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
+    if (verb == "render") line += fmt::format(" --spp {}", request.samples_per_pixel);
+    return line + fmt::format(" --seed {}", request.seed);
+}
+
+std::map<std::string, std::string> picture_metadata(const RunRequest& request,
+                                                    const SceneFile& scene,
+                                                    const BuildReport& report) {
+    nlohmann::json assets = nlohmann::json::object();
+    for (const auto& [name, hash] : scene.assets) assets[name] = hash;
+    std::map<std::string, std::string> metadata = {
+        {"scene", scene.canonical},
+        {"scene_assets", assets.dump()},
+        {"scene_hash", scene.hash},
+        {"method", request.method.name},
+        {"parameters", describe(request.method).dump()},
+        {"seed", fmt::format("{}", request.seed)},
+        {"spp", fmt::format("{}", request.samples_per_pixel)},
+        {"code_version", code_version()},
+        {"command", command("render", request)}};
+    for (const auto& [parameter, hash] : files_read(request.method))
+        metadata[parameter + "_hash"] = hash;
+    if (!report.resolved.empty()) metadata["resolved"] = nlohmann::json(report.resolved).dump();
+    return metadata;
+}
+
+RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
+              Stopwatch& stopwatch) {
+    options.seed = request.seed;
+    options.samples_per_pixel = request.samples_per_pixel;
+    options.origin = command("render", request);
+    std::string stage;
+    const auto on_phase = options.begin_phase;
+    const auto begin_stage = [&](const char* name) {
+        stage = name;
+        stopwatch.begin(stage);
+        if (on_phase) on_phase(stage);
+    };
+    options.begin_phase = [&](std::string_view phase) {
+        stopwatch.begin(fmt::format("{}/{}", stage, phase));
+        if (on_phase) on_phase(phase);
+    };
+
+    BuildReport report;
+    const auto build_pass = [&](int pass) {
+        begin_stage("precompute");
+        auto built = build(scene, request.method, options, pass);
+        add(report, built->build_report());
+        begin_stage("render");
+        return built;
+    };
+    Rendering rendering = render(scene, {pass_count(request.method), build_pass}, options);
+    stopwatch.stop();
+
+    RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}};
+    result.counters = result.report.counters;
+    for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
+    BuildReport all = result.report;
+    all.counters = result.counters;
+    result.notes = notes(scene, request.method, all);
+    std::ranges::copy(notes_on(scene), std::back_inserter(result.notes));
+    result.why_empty =
+        why_empty(scene, request.method, result.film, result.report, result.counters);
+    return result;
+}
+
+}  // namespace caustics

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/render/renderer.h"
+#include "core/scene_file/scene_reader.h"
+#include "experiments/base/stopwatch.h"
+#include "experiments/run/methods.h"
+
+namespace caustics {
+
+/// A picture to make: what a trial, a reference and the verb `render` have in common.
+struct RunRequest {
+    std::filesystem::path scene_file;
+    Overrides overrides;
+    Method method;
+    std::uint64_t seed = 1;
+    int samples_per_pixel = 1;
+};
+
+/// The command line of a verb that makes it, with every parameter in force.
+std::string command(const std::string& verb, const RunRequest& request);
+
+/// The resolved configuration as attributes of a picture: scene, method with every parameter in
+/// force and what it chose by itself, seed, samples, code version, and the command that makes it.
+/// The same request gives the same text, whatever the number of threads.
+std::map<std::string, std::string> picture_metadata(const RunRequest& request,
+                                                    const SceneFile& scene,
+                                                    const BuildReport& report);
+
+/// Values in a record's JSON: what the method counted and chose.
+struct RunResult {
+    Film film;
+    BuildReport report;
+    Counters counters;                     ///< of build and queries
+    std::optional<std::string> why_empty;  ///< of a caustic that is black all over
+    std::vector<std::string> notes;        ///< what a user should know, one line each
+};
+
+/// Builds the method and renders, cutting the time into "precompute", "precompute/PHASE", "render"
+/// and "render/PHASE" by the phases the method names. `options` brings threads and progress, and
+/// hears of both stages and of the phases.
+RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
+              Stopwatch& stopwatch);
+
+}  // namespace caustics

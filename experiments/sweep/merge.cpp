@@ -1,0 +1,205 @@
+#include "experiments/sweep/merge.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/base/error.h"
+#include "experiments/base/atomic_folder.h"
+#include "experiments/base/file_io.h"
+#include "experiments/base/folder_lock.h"
+#include "experiments/plan/plan_file.h"
+#include "experiments/plan/trial_store.h"
+#include "experiments/report/record_table.h"
+#include "experiments/report/trial_rows.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// Where each value of something was found: value -> folder or trial of its first record.
+using Origins = std::map<std::string, std::string>;
+
+/// Which folder has a trial, and in how many codes, instruction sets and processors they ran.
+struct Survey {
+    std::map<std::string, fs::path> folder_of;
+    Origins code;
+    Origins isa;
+    Origins cpu;
+};
+
+constexpr std::size_t most_named = 5;
+
+/// "a, b, c and 7 more"
+std::string some(const std::vector<std::string>& names) {
+    const std::vector<std::string> first(
+        names.begin(),
+        names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), most_named)));
+    const std::string more =
+        names.size() > most_named ? fmt::format(" and {} more", names.size() - most_named) : "";
+    return fmt::format("{}{}", fmt::join(first, ", "), more);
+}
+
+std::string all(const Origins& origins) {
+    std::vector<std::string> parts;
+    for (const auto& [value, folder] : origins)
+        parts.push_back(fmt::format("\"{}\" in {}", value, folder));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::vector<PlanFile> read_plans(const std::vector<fs::path>& folders) {
+    std::vector<PlanFile> plans;
+    for (const fs::path& folder : folders) {
+        if (const std::string runner = runner_at_work_on(folder); !runner.empty())
+            throw InputError(fmt::format("{}: a runner still works on it ({}); wait for it",
+                                         folder.string(), runner));
+        plans.push_back(read_plan_of(folder));
+        if (plans.back().trials != plans[0].trials)
+            throw InputError(
+                fmt::format("{}: not the plan of {} (other sweep files, filters or "
+                            "scenes): they do not belong together",
+                            folder.string(), folders[0].string()));
+    }
+    return plans;
+}
+
+void take_in(Survey& survey, const PlanFile& plan, const fs::path& folder) {
+    const JobStore store(folder);
+    const TrialRows rows(folder, store);
+    for (const PlanFile::Entry& trial : plan.trials) {
+        const std::optional<TableRow> row = rows.row(trial.id);
+        if (!row) continue;
+        const auto [place, is_new] = survey.folder_of.emplace(trial.id, folder);
+        if (!is_new)
+            throw InputError(fmt::format("{}: is in {} and in {}", trial.id, place->second.string(),
+                                         folder.string()));
+        survey.code.emplace(row->text("code_version"), folder.string());
+        survey.isa.emplace(row->text("isa"), folder.string());
+        survey.cpu.emplace(row->text("cpu"), folder.string());
+    }
+}
+
+void require_whole(const Survey& survey, const PlanFile& plan) {
+    std::vector<std::string> missing;
+    for (const PlanFile::Entry& trial : plan.trials)
+        if (trial.chosen && !survey.folder_of.contains(trial.id)) missing.push_back(trial.id);
+    if (!missing.empty())
+        throw InputError(fmt::format("{} of the plan's trials are in none of the folders: {}",
+                                     missing.size(), some(missing)));
+    if (survey.code.size() > 1) throw InputError("records by different code: " + all(survey.code));
+    if (survey.isa.size() > 1)
+        throw InputError("records of different instruction sets: " + all(survey.isa));
+}
+
+/// Copies a file, or a folder with all in it. A symbolic link is refused, because it would bring in
+/// whatever it names.
+void copy_plain(const fs::path& from, const fs::path& to) {
+    const fs::file_status status = fs::symlink_status(from);
+    if (fs::is_directory(status)) {
+        fs::create_directories(to);
+        for (const fs::directory_entry& entry : fs::directory_iterator(from))
+            copy_plain(entry.path(), to / entry.path().filename());
+    } else if (fs::is_regular_file(status)) {
+        fs::copy_file(from, to, fs::copy_options::skip_existing);
+    } else {
+        throw InputError(fmt::format("{}: {}, and only plain files and folders are merged",
+                                     from.string(),
+                                     fs::is_symlink(status) ? "is a symbolic link" : "is no file"));
+    }
+}
+
+/// Files of a folder inside each of the folders, the first of each name.
+void copy_files(const std::vector<fs::path>& folders, const fs::path& inside,
+                const fs::path& target, const std::function<bool(const fs::path&)>& wanted) {
+    for (const fs::path& folder : folders) {
+        if (!fs::is_directory(folder / inside)) continue;
+        fs::create_directories(target / inside);
+        for (const fs::directory_entry& file : fs::directory_iterator(folder / inside))
+            if (wanted(file.path()))
+                copy_plain(file.path(), target / inside / file.path().filename());
+    }
+}
+
+/// One figure a cell, although several shards may have drawn one.
+std::set<std::string> figures_of(const PlanFile& plan, const std::vector<fs::path>& folders) {
+    std::set<std::string> names;
+    std::set<std::string> cells;
+    for (const PlanFile::Entry& trial : plan.trials) {
+        const std::string name = trial.id + ".png";
+        for (const fs::path& folder : folders)
+            if (fs::exists(folder / "report/figures" / name) && cells.insert(trial.cell).second)
+                names.insert(name);
+    }
+    return names;
+}
+
+/// What the shards' machines were: "shards" beside the folders they came from.
+std::string environments(const std::vector<fs::path>& folders) {
+    json shards = json::array();
+    for (const fs::path& folder : folders) {
+        const fs::path file = folder / "environment.json";
+        if (!fs::exists(file)) continue;  // a shard without trials
+        json environment =
+            fs::is_regular_file(file) ? json::parse(read_whole_file(file), nullptr, false) : json();
+        if (!environment.is_object())
+            throw InputError(fmt::format("{}: broken (not a JSON object)", file.string()));
+        environment["folder"] = folder.string();
+        shards.push_back(std::move(environment));
+    }
+    return json{{"shards", shards}}.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+/// What the tables lack, a line each.
+std::vector<std::string> write_merged(const std::vector<fs::path>& folders, const PlanFile& plan,
+                                      const Survey& survey, const fs::path& target) {
+    fs::create_directories(target / "trials");
+    for (const auto& [id, folder] : survey.folder_of)
+        copy_plain(folder / "trials" / id, target / "trials" / id);
+    copy_files(folders, "references", target,
+               [](const fs::path& file) { return file.extension() == ".exr"; });
+    const std::set<std::string> figures = figures_of(plan, folders);
+    copy_files(folders, "report/figures", target,
+               [&](const fs::path& file) { return figures.contains(file.filename().string()); });
+    write_plan(plan, target);
+    write_whole_file(target / "environment.json", environments(folders));
+    return write_records(target, JobStore(target), plan, {}, [](const TableRow&) {});
+}
+
+/// Throws InputError for what the file system refuses.
+std::vector<std::string> write_whole(const std::vector<fs::path>& folders, const PlanFile& plan,
+                                     const Survey& survey, const fs::path& target) {
+    try {
+        WholeFolder whole(target);
+        std::vector<std::string> lacks = write_merged(folders, plan, survey, whole.path());
+        whole.commit();
+        return lacks;
+    } catch (const fs::filesystem_error& error) {
+        throw InputError(
+            fmt::format("{}: cannot be written ({})", target.string(), reason_of(error)));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
+                                       const fs::path& target) {
+    if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target)))
+        throw InputError(fmt::format("{}: is there already (name a new folder)", target.string()));
+    const std::vector<PlanFile> plans = read_plans(folders);
+    Survey survey;
+    for (const fs::path& folder : folders) take_in(survey, plans[0], folder);
+    require_whole(survey, plans[0]);
+
+    std::vector<std::string> warnings = write_whole(folders, plans[0], survey, target);
+    if (survey.cpu.size() > 1)
+        warnings.push_back("times from different processors do not compare: " + all(survey.cpu));
+    return warnings;
+}
+
+}  // namespace caustics

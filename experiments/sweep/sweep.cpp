@@ -1,0 +1,338 @@
+#include "experiments/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "experiments/base/environment.h"
+#include "experiments/base/file_io.h"
+#include "experiments/base/folder_lock.h"
+#include "experiments/base/interrupt.h"
+#include "experiments/base/progress.h"
+#include "experiments/base/stopwatch.h"
+#include "experiments/report/record_table.h"
+#include "experiments/report/strips.h"
+#include "experiments/report/sweep_summary.h"
+#include "experiments/run/cli_options.h"
+#include "experiments/sweep/sweep_status.h"
+
+namespace caustics {
+
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+std::string status_of(const json& record) { return record.at("status").get<std::string>(); }
+
+bool is_failure(const std::string& status) { return status == "failed" || status == "timeout"; }
+
+std::string result_text(const json& record) {
+    const json::json_pointer rmse("/metrics/rmse");
+    if (record.contains("message"))
+        return status_of(record) + ": " + record.at("message").get<std::string>();
+    if (record.contains(rmse) && record.at(rmse).is_number())
+        return fmt::format("rmse {:.4g}", record.at(rmse).get<double>());
+    return status_of(record);
+}
+
+constexpr std::string_view temporary_mark = ".tmp-";  ///< of WholeFile
+
+/// Removes files that killed processes left under temporary names.
+void remove_leftovers(const fs::path& folder) {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+        if (entry.is_regular_file() &&
+            entry.path().filename().string().find(temporary_mark) != std::string::npos)
+            fs::remove(entry.path(), ignored);
+}
+
+std::size_t trials_of_others(const SweepPlan& plan, const JobStore& store) {
+    std::set<std::string> own;
+    for (const Trial& trial : plan.trials) own.insert(trial.id);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        store.trials(), [&](const std::string& id) { return !own.contains(id); }));
+}
+
+/// "a.json b.json"
+std::string sweep_words(const PlanFile& plan) {
+    std::string words;
+    for (const std::string& sweep : plan.sweeps) words += (words.empty() ? "" : " ") + sweep;
+    return words;
+}
+
+class Sweep {
+public:
+    Sweep(const SweepPlan& plan, const SweepOptions& options)
+        : plan_(plan),
+          options_(options),
+          lock_(options.folder),
+          store_(options.folder),
+          references_(options.folder / "references", options.references) {
+        store_.prepare();
+        remove_leftovers(options.folder);
+        remove_leftovers(figures_folder());
+        // Shards may share a folder of references, where others are at work.
+        const fs::path references = options.folder / "references";
+        if (!fs::is_symlink(references)) remove_leftovers(references);
+        status_ = sweep_status(plan, options, store_);
+        others_ = trials_of_others(plan, store_);
+        progress_.emplace(status_.share.size(), status_.share.size() - status_.todo.size());
+    }
+
+    int run() {
+        warn();
+        write_plan(plan_file(plan_), options_.folder);
+        if (!status_.todo.empty())
+            write_whole_file(options_.folder / "environment.json", environment().dump(2) + "\n");
+        try {
+            render_references();
+            if (!options_.only_references) run_trials();
+        } catch (...) {
+            save_table_of_the_stopped();
+            throw;
+        }
+        progress_.reset();
+        if (options_.only_references) return broken_references_.empty() ? 0 : 1;
+        SweepSummary summary(plan_.swept);
+        print_notes(write_table(&summary));
+        const fs::path figures = figures_folder();
+        fs::create_directories(figures);
+        print_notes(write_figures(
+            plan_, store_, [&](const Trial& trial) { return known_status(trial) == "done"; },
+            references_, figures));
+        write_stdout(fmt::format(
+            "records    {}{}\nfigures    {}\n{}", (options_.folder / "records.csv").string(),
+            others_ == 0 ? "" : fmt::format(" (without {} trials of other sweeps)", others_),
+            figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall)));
+        return status_.count("failed") + status_.count("timeout") == 0 ? 0 : 1;
+    }
+
+private:
+    fs::path figures_folder() const { return options_.folder / "report" / "figures"; }
+
+    std::string known_status(const Trial& trial) const {
+        const auto found = status_.statuses.find(trial.id);
+        return found == status_.statuses.end() ? std::string() : found->second;
+    }
+
+    /// A warning of finished trials that the table leaves out, because this sweep has none such.
+    std::string others_text() const {
+        if (others_ == 0) return {};
+        return fmt::format(
+            "warning: {} holds {} trials that {} does not name, by other sweeps or by other "
+            "scenes: "
+            "records.csv leaves them out{}",
+            options_.folder.string(), others_, sweep_words(plan_file(plan_)), earlier_sweep());
+    }
+
+    /// How to get a table of both, where the plan before is one of other sweep files.
+    std::string earlier_sweep() const {
+        try {
+            const PlanFile before = read_plan_of(options_.folder);
+            const PlanFile now = plan_file(plan_);
+            if (before.sweeps == now.sweeps) return {};
+            return fmt::format(" (the plan before was of {}; name both for one table)",
+                               sweep_words(before));
+        } catch (const InputError&) {
+            return {};
+        }
+    }
+
+    void warn() {
+        for (const auto& [id, what] : status_.broken) {
+            progress_->note("note: " + what);
+            store_.remove(id);
+        }
+        if (const std::string line = others_text(); !line.empty()) progress_->note(line);
+        const std::string code = status_.code_warning();
+        if (!code.empty() && !options_.force) progress_->note("warning: " + code);
+        if (plan_.duplicates > 0)
+            progress_->note(
+                fmt::format("note: the sweep names {} trials more than once; each is "
+                            "run once",
+                            plan_.duplicates));
+        const std::size_t failed = status_.count("failed") + status_.count("timeout");
+        if (failed > 0 && !options_.rerun_failed && !options_.force)
+            progress_->note(fmt::format(
+                "note: {} trials failed or took too long before (--rerun failed runs them again)",
+                failed));
+        const std::size_t processors = own_processors().size();
+        for (const Trial* trial : status_.todo) {
+            const int wanted = options_.trials.jobs * options_.trials.threads_of(*trial);
+            if (options_.trials.jobs == 1 || static_cast<std::size_t>(wanted) <= processors)
+                continue;
+            progress_->note(fmt::format(
+                "warning: {} trials at a time share {} processors: their times are no measurement",
+                options_.trials.jobs, processors));
+            return;
+        }
+    }
+
+    /// References use every thread there is: their time is no measurement.
+    void render_references() {
+        std::vector<const ReferenceRequest*> missing = status_.references(references_);
+        // With everything done, `--references rebuild` still remakes what the trials stand on.
+        if (options_.references == ReferencePolicy::rebuild && status_.todo.empty()) {
+            SweepStatus all = status_;
+            all.todo = all.share;
+            missing = all.references(references_);
+        }
+        for (const ReferenceRequest* request : missing) {
+            try {
+                render_reference(*request);
+                references_.note_rendered(*request);
+            } catch (const Interrupted&) {
+                throw;
+            } catch (const std::exception& error) {
+                broken_references_[request->key] = error.what();
+                progress_->note(
+                    fmt::format("failed: reference {}: {}", request->key, error.what()));
+            }
+        }
+    }
+
+    void render_reference(const ReferenceRequest& request) {
+        const std::string what =
+            fmt::format("reference {} {} for {}", request.request.method.name, request.key,
+                        request.request.scene_file.stem().string());
+        progress_->show(what, 0, remaining());
+        const auto render = [&](const ChildProcess::Tell& tell) {
+            RunOptions options;
+            options.threads = available_threads();
+            options.adaptive = false;
+            options.progress = tell;
+            references_.render(request, options);
+            return std::string();
+        };
+        run_in_child(render, [&](double share) {
+            if (progress_->is_due()) progress_->show(what, share, remaining());
+        });
+    }
+
+    void run_trials() {
+        TrialRunner runner(store_, references_, options_.trials);
+        runner_ = &runner;
+        next_ = 0;
+        bool stop = false;
+        while (!runner.running().empty() || (!stop && next_ < status_.todo.size())) {
+            while (!stop && next_ < status_.todo.size() && runner.has_room())
+                stop = !start(*status_.todo[next_++]) && options_.fail_fast;
+            for (const TrialRunner::Finished& each : runner.wait())
+                if (!finish(*each.trial, each.record) && options_.fail_fast) stop = true;
+            show();
+            if (interrupt_requested()) {
+                for (const TrialRunner::Running& each : runner.running())
+                    unfinished_[each.trial->id] = runner.unfinished_record(*each.trial);
+                throw Interrupted();
+            }
+        }
+        runner_ = nullptr;
+    }
+
+    /// False when the trial failed at once.
+    bool start(const Trial& trial) {
+        const auto broken = trial.reference ? broken_references_.find(trial.reference->key)
+                                            : broken_references_.end();
+        if (broken == broken_references_.end()) {
+            runner_->start(trial);
+            return true;
+        }
+        return finish(trial, runner_->refuse(trial, "reference: " + broken->second));
+    }
+
+    /// False when it failed.
+    bool finish(const Trial& trial, const json& record) {
+        const std::string status = status_of(record);
+        status_.statuses[trial.id] = status;
+        ++ran_;
+        if (status == "done") status_.costs.add(trial, {record.at("elapsed_s").get<double>(), 0});
+        std::string line = fmt::format("{}: {}, {:.2f} s", trial.id, result_text(record),
+                                       record.at("elapsed_s").get<double>());
+        if (is_failure(status))
+            line += fmt::format(" (log: {})", (store_.folder_of(trial.id) / "log.txt").string());
+        progress_->end(line, status != "done", remaining());
+        return !is_failure(status);
+    }
+
+    void show() {
+        if (!progress_->is_due()) return;
+        const std::vector<TrialRunner::Running> running = runner_->running();
+        if (running.empty()) return;
+        const std::string more =
+            running.size() > 1 ? fmt::format(" and {} more", running.size() - 1) : "";
+        progress_->show(running[0].trial->id + more, running[0].share, remaining());
+    }
+
+    /// Seconds that the trials will still take; empty before anything tells.
+    std::optional<double> remaining() {
+        const auto now = std::chrono::steady_clock::now();
+        const double age = std::chrono::duration<double>(now - estimated_).count();
+        // A long list is not added up for each of its trials.
+        constexpr double oldest = 1;
+        constexpr std::size_t long_list = 100;
+        const bool is_long = status_.todo.size() - next_ > long_list;
+        if (is_long && waiting_ && age < oldest) return std::max(0.0, *waiting_ - age);
+        estimated_ = now;
+        waiting_.reset();
+        double sum = 0;
+        for (std::size_t i = next_; i < status_.todo.size(); ++i) {
+            const std::optional<Cost> cost = status_.costs.of(*status_.todo[i]);
+            if (!cost) return {};
+            sum += cost->seconds;
+        }
+        if (runner_ != nullptr)
+            for (const TrialRunner::Running& each : runner_->running())
+                if (const std::optional<Cost> cost = status_.costs.of(*each.trial))
+                    sum += std::max(0.0, cost->seconds - each.seconds);
+        waiting_ = sum / options_.trials.jobs;
+        return waiting_;
+    }
+
+    std::vector<std::string> write_table(SweepSummary* summary) const {
+        return write_records(options_.folder, store_, plan_file(plan_), unfinished_,
+                             [&](const TableRow& row) {
+                                 if (summary != nullptr) summary->add(row);
+                             });
+    }
+
+    /// What stopped the sweep is what the user must hear of, not that the table could not be
+    /// written because of it.
+    void save_table_of_the_stopped() {
+        progress_.reset();
+        try {
+            write_table(nullptr);
+        } catch (const std::exception&) {}
+    }
+
+    const SweepPlan& plan_;
+    const SweepOptions& options_;
+    FolderLock lock_;
+    JobStore store_;
+    ReferenceCache references_;
+    SweepStatus status_;
+    std::optional<Progress> progress_;
+    TrialRunner* runner_ = nullptr;
+    std::size_t next_ = 0;  ///< of status_.todo
+    std::map<std::string, json> unfinished_;
+    std::map<std::string, std::string> broken_references_;
+    std::size_t ran_ = 0;
+    std::size_t others_ = 0;  ///< trials in the folder that are not in the plan
+    std::optional<double> waiting_;
+    std::chrono::steady_clock::time_point estimated_;
+    Stopwatch watch_;
+};
+
+}  // namespace
+
+int run_sweep(const SweepPlan& plan, const SweepOptions& options) {
+    return Sweep(plan, options).run();
+}
+
+}  // namespace caustics

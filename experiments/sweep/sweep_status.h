@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/plan/reference_cache.h"
+#include "experiments/plan/sweep_plan.h"
+#include "experiments/plan/trial_store.h"
+#include "experiments/sweep/cost_estimate.h"
+#include "experiments/sweep/sweep_options.h"
+
+namespace caustics {
+
+/// How far a sweep is, from its plan and what its folder holds.
+struct SweepStatus {
+    std::vector<const Trial*> share;                ///< the shard's trials, in the order to run
+    std::vector<const Trial*> todo;                 ///< those of them to run
+    std::map<std::string, std::string> statuses;    ///< by id, of the trials with a record
+    std::map<std::string, std::string> broken;      ///< ids of broken records, with what is wrong
+    std::map<std::string, std::size_t> other_code;  ///< records by another code version
+    CostEstimate costs;                             ///< from the records
+
+    /// Of the shard's trials.
+    std::size_t count(const std::string& status) const;
+    /// The references of `todo` that have to be rendered, each once.
+    std::vector<const ReferenceRequest*> references(const ReferenceCache& cache) const;
+    /// Seconds and bytes of `todo`, one after the other; empty when nothing tells.
+    std::optional<Cost> cost() const;
+    /// A line on results by other code; empty when there are none.
+    std::string code_warning() const;
+};
+
+/// Looks at every trial once (TrialRows).
+SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options, const JobStore& store);
+
+}  // namespace caustics

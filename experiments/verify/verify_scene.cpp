@@ -1,0 +1,361 @@
+#include "experiments/verify/verify_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "core/base/error.h"
+#include "core/light_path/empty_caustic.h"
+#include "core/render/renderer.h"
+#include "experiments/base/step_progress.h"
+#include "experiments/base/stopwatch.h"
+#include "experiments/picture/metrics.h"
+#include "experiments/run/caustic_survey.h"
+#include "experiments/run/methods.h"
+#include "experiments/verify/light_audit.h"
+
+namespace caustics {
+
+namespace {
+
+using Verdict = Finding::Verdict;
+
+constexpr int max_bounces = 16;
+constexpr int width = 48;
+constexpr int columns = 6;
+constexpr int rows = 4;
+constexpr std::uint64_t seeds = 12;
+/// Errors by twelve seeds follow Student's law of eleven degrees: beyond six of them lies one cell in ten
+/// thousand.
+constexpr double widest = 6;
+constexpr double allowed_in_all = 0.02;
+constexpr double allowed_in_cells = 0.1;
+/// What a method may be off in all, if more effort makes it less.
+constexpr double most_while_shrinking = 0.1;
+
+Verdict verdict(bool holds) { return holds ? Verdict::holds : Verdict::fails; }
+
+/// What a check gives each method to do, at first and where that does not do.
+std::vector<std::string> effort(const std::string& method, bool more) {
+    using Efforts = std::map<std::string, std::vector<std::string>>;
+    static const Efforts first = {{"pathtrace", {"spp=64"}},
+                                  {"lighttrace", {"paths=400000"}},
+                                  {"photonmap", {"photons=60000", "nearest=60"}},
+                                  {"beamtree", {"mesh_resolution=64"}},
+                                  {"illuminationmap", {"emitted=1000000", "resolution=64"}},
+                                  {"causticpolygons", {"mesh_resolution=32"}}};
+    static const Efforts second = {{"photonmap", {"photons=480000", "nearest=60"}},
+                                   {"beamtree", {"mesh_resolution=128"}},
+                                   {"illuminationmap", {"emitted=4000000", "resolution=128"}},
+                                   {"causticpolygons", {"mesh_resolution=64"}}};
+    return (more ? second : first).at(method);
+}
+
+Method with_effort(const std::string& name, bool more = false) {
+    return parse_method(name, parameters_node(effort(name, more)));
+}
+
+bool is_reference(const std::string& method) {
+    return method == "pathtrace" || method == "lighttrace";
+}
+
+SceneDesc made_small(SceneDesc desc) {
+    Camera& camera = desc.camera;
+    camera.height = std::max(rows, width * camera.height / camera.width);
+    camera.width = width;
+    desc.sampling = PixelSampling{};
+    return desc;
+}
+
+Film picture(const Scene& scene, const Method& method, RunOptions options, std::uint64_t seed) {
+    options.seed = seed;
+    options.samples_per_pixel = scene.sampling().sample_count;
+    const auto build_pass = [&](int pass) { return build(scene, method, options, pass); };
+    return render(scene, {pass_count(method), build_pass}, options).film;
+}
+
+bool same_bits(const Film& a, const Film& b) {
+    return std::ranges::equal(a.planes(), b.planes(), [](const Plane& x, const Plane& y) {
+        return x.channel == y.channel && x.values == y.values;
+    });
+}
+
+/// Which cell a pixel belongs to.
+std::size_t cell_of(const Film& film, std::size_t pixel) {
+    const auto w = static_cast<std::size_t>(film.width()),
+               h = static_cast<std::size_t>(film.height());
+    return pixel / w * rows / h * columns + pixel % w * columns / w;
+}
+
+/// Mean caustic of each cell, and of the whole as the last number, over seeds.
+struct CellLight {
+    std::vector<double> mean = std::vector<double>(columns * rows + 1, 0.0);
+    std::vector<double> error = std::vector<double>(columns * rows + 1, 0.0);
+};
+
+CellLight cell_light(const std::vector<Film>& films, const PixelMask& counted) {
+    CellLight light;
+    const auto n = static_cast<double>(films.size());
+    std::vector<std::vector<double>> means;
+    for (const Film& film : films) {
+        std::vector<double> sum(light.mean.size(), 0.0), count(light.mean.size(), 0.0);
+        for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+            if (!counted[i]) continue;
+            for (const std::size_t cell : {cell_of(film, i), sum.size() - 1}) {
+                sum[cell] += static_cast<double>(film.rgb("caustic", i).mean());
+                count[cell] += 1;
+            }
+        }
+        for (std::size_t cell = 0; cell < sum.size(); ++cell)
+            sum[cell] = count[cell] > 0 ? sum[cell] / count[cell] : 0;
+        means.push_back(std::move(sum));
+    }
+    for (std::size_t cell = 0; cell < light.mean.size(); ++cell) {
+        for (const auto& one : means) light.mean[cell] += one[cell] / n;
+        double squares = 0;
+        for (const auto& one : means) squares += std::pow(one[cell] - light.mean[cell], 2);
+        light.error[cell] = n > 1 ? std::sqrt(squares / (n - 1) / n) : 0;
+    }
+    return light;
+}
+
+class SceneVerifier {
+public:
+    SceneVerifier(const SceneFile& file, const std::vector<std::string>& methods,
+                  const RunOptions& options)
+        : desc_(made_small(file.desc)), scene_(desc_), options_(options) {
+        for (const std::string& name : method_names())
+            if (name != "none" && (methods.empty() || std::ranges::count(methods, name) > 0))
+                methods_.push_back(name);
+    }
+
+    SceneReport run() {
+        StepProgress progress(2 * methods_.size() + 2);
+        progress.begin("account of the light");
+        audit();
+        look_for_the_caustic();
+        progress.end("done");
+        for (const std::string& name : methods_) {
+            progress.begin(name + " by threads");
+            check_threads(name, progress);
+            progress.expect_later(Eta(comparing(served_).seconds, true));
+            progress.end("done");
+        }
+        compare(progress);
+        return std::move(report_);
+    }
+
+private:
+    void add(std::string what, Verdict result, std::string detail) {
+        report_.findings.push_back({std::move(what), result, std::move(detail)});
+    }
+
+    void audit() {
+        for (const LightAccount& account : audit_lights(desc_, max_bounces)) {
+            if (!account.nothing_aimed.empty()) {
+                add("light: " + account.light, Verdict::told, account.nothing_aimed);
+                continue;
+            }
+            add("light: " + account.light, verdict(account.holds()),
+                fmt::format("sent towards casters {:.4g} W = met none {:.4g} + escaped {:.4g} + "
+                            "absorbed {:.4g} + on black sides {:.4g} + cut off {:.4g} + arrived "
+                            "{:.4g} (by branches {:.4g}, error {:.2g})",
+                            account.sent, account.missed, account.escaped, account.absorbed,
+                            account.on_black_side, account.depth_limited, account.arrived,
+                            account.arrived_by_branches,
+                            std::hypot(account.arrived_error, account.branches_error)));
+        }
+    }
+
+    /// From the light to the camera, up to where it ends.
+    void look_for_the_caustic() {
+        std::string casters;
+        for (const std::uint32_t i : scene_.casters())
+            casters += (casters.empty() ? "" : ", ") + scene_.shapes()[i].name;
+        add("caustic: casters", Verdict::told, casters.empty() ? "none" : casters);
+        if (const auto reason = why_nothing_is_aimed(scene_)) {
+            add("caustic: light towards them", Verdict::told, "no caustic: " + *reason);
+            return;
+        }
+        const CausticSurvey survey = survey_caustic(scene_, max_bounces);
+        if (survey.counts.stored == 0) {
+            add("caustic: light from them", Verdict::told,
+                "no caustic: " + why_nothing_arrives(survey.counts));
+            return;
+        }
+        add("caustic: light from them", Verdict::told,
+            fmt::format("{} of {} light paths arrive on receivers", survey.counts.stored,
+                        survey.counts.emitted));
+        add("caustic: seen", Verdict::told,
+            survey.seen > 0
+                ? fmt::format("{} of them where the camera looks straight at", survey.seen)
+                : "not straight: " + why_unseen(survey));
+    }
+
+    /// A picture, while the progress of its step stays up to date.
+    Film picture_of(const Method& method, RunOptions options, std::uint64_t seed,
+                    StepProgress& progress, double share) const {
+        options.progress = [&](double) { progress.share(share); };
+        return picture(scene_, method, options, seed);
+    }
+
+    void check_threads(const std::string& name, StepProgress& progress) {
+        if (const auto reason = why_unsupported(scene_, with_effort(name))) {
+            add("threads: " + name, Verdict::told, "cannot serve the scene: " + *reason);
+            return;
+        }
+        RunOptions options = options_;
+        options.threads = 1;
+        const Stopwatch watch;
+        const Film alone = picture_of(with_effort(name), options, 1, progress, 0);
+        seconds_of_picture_[name] = watch.total().wall;
+        bool same = true;
+        for (options.threads = 2; options.threads <= std::max(2, options_.threads);
+             options.threads = std::max(options.threads + 1, options_.threads)) {
+            const Stopwatch again;
+            const Film other = picture_of(with_effort(name), options, 1, progress, 0.5);
+            if (options_.threads > 1) seconds_of_picture_[name] = again.total().wall;
+            same = same && same_bits(alone, other);
+        }
+        add("threads: " + name, verdict(same),
+            same ? "the same picture with one and more" : "pictures with one and more differ");
+        served_.push_back(name);
+    }
+
+    std::vector<Film> films_of(const std::string& name, bool more, StepProgress& progress) const {
+        std::vector<Film> films;
+        for (std::uint64_t seed = 1; seed <= seeds; ++seed)
+            films.push_back(picture_of(with_effort(name, more), options_, seed, progress,
+                                       static_cast<double>(seed - 1) / seeds));
+        return films;
+    }
+
+    /// Seconds that the pictures of a method's first effort take, as far as one was timed.
+    std::optional<double> seconds_of(const std::string& method) const {
+        const auto found = seconds_of_picture_.find(method);
+        if (found == seconds_of_picture_.end()) return {};
+        return seeds * found->second;
+    }
+
+    /// What comparing these methods takes, at least: which will want more effort, nothing tells.
+    Eta comparing(std::span<const std::string> methods) const {
+        Eta eta(0);
+        for (const std::string& name : methods) {
+            eta.seconds += seconds_of(name).value_or(0);
+            eta.at_least = eta.at_least || !is_reference(name);
+        }
+        return eta;
+    }
+
+    void compare(StepProgress& progress) {
+        if (why_nothing_is_aimed(scene_)) return;
+        const bool has_area_lights_alone =
+            !why_unsupported(scene_, with_effort("pathtrace")).has_value();
+        const std::string reference = has_area_lights_alone ? "pathtrace" : "lighttrace";
+        std::erase(served_, reference);
+        progress.expect_later(comparing(served_));
+        progress.begin("reference", seconds_of(reference));
+        const std::vector<Film> truth = films_of(reference, false, progress);
+        progress.end("done");
+        const PixelMask counted = reached_pixels(truth.front(), truth.front());
+        add("reference", Verdict::told,
+            fmt::format("{}, {} seeds, {:.0f} % of the pixels reached", reference, seeds,
+                        100 * fraction(counted)));
+        for (std::size_t i = 0; i < served_.size(); ++i) {
+            progress.expect_later(comparing(std::span(served_).subspan(i + 1)));
+            progress.begin(served_[i], seconds_of(served_[i]));
+            compare(served_[i], truth, progress);
+            progress.end("done");
+        }
+    }
+
+    void compare(const std::string& name, const std::vector<Film>& truth, StepProgress& progress) {
+        const std::vector<Film> films = films_of(name, false, progress);
+        const PixelMask counted = reached_pixels(films.front(), truth.front());
+        const CellLight known = cell_light(truth, counted);
+        const Gap first = gap(name, cell_light(films, counted), known);
+        if (first.holds || is_reference(name)) {
+            add("against the reference: " + name, verdict(first.holds), first.text);
+            return;
+        }
+        progress.begin(name + " with more effort");
+        const std::vector<Film> better = films_of(name, true, progress);
+        const Gap second = gap(name, cell_light(better, counted), known);
+        const bool shrinks = second.whole <= most_while_shrinking &&
+                             1.3 * second.whole <= first.whole &&
+                             second.cells_off <= first.cells_off;
+        add("against the reference: " + name, verdict(second.holds || shrinks),
+            first.text + "; with more effort " + second.text);
+    }
+
+    /// How far a method is from the reference.
+    struct Gap {
+        double whole;  ///< of its mean
+        std::size_t cells_off;
+        bool holds;
+        std::string text;
+    };
+
+    static Gap gap(const std::string& name, const CellLight& found, const CellLight& truth) {
+        const std::size_t whole = truth.mean.size() - 1;
+        const double mean = truth.mean[whole];
+        const double in_cells = is_reference(name) ? 0 : allowed_in_cells;
+        const double in_all = is_reference(name) ? 0 : allowed_in_all;
+        std::size_t off = 0;
+        for (std::size_t cell = 0; cell < whole; ++cell) {
+            const double error = std::hypot(found.error[cell], truth.error[cell]);
+            const double room = widest * error + in_cells * (truth.mean[cell] + mean);
+            off += std::abs(found.mean[cell] - truth.mean[cell]) > room ? 1 : 0;
+        }
+        if (!(mean > 0))
+            return {0, off, off == 0,
+                    fmt::format("the reference is black; {} of {} cells are not", off, whole)};
+        const double error = std::hypot(found.error[whole], truth.error[whole]) / mean;
+        const double miss = std::abs(found.mean[whole] / mean - 1);
+        return {miss, off, off == 0 && miss <= widest * error + in_all,
+                fmt::format("mean {:.4f} +- {:.4f} of it, {} of {} cells off",
+                            found.mean[whole] / mean, error, off, whole)};
+    }
+
+    SceneDesc desc_;
+    Scene scene_;
+    RunOptions options_;
+    std::vector<std::string> methods_;
+    std::vector<std::string> served_;
+    std::map<std::string, double> seconds_of_picture_;  ///< with all threads
+    SceneReport report_;
+};
+
+const char* word(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::holds: return "holds";
+        case Verdict::fails: return "FAILS";
+        default: return "-";
+    }
+}
+
+}  // namespace
+
+bool SceneReport::holds() const {
+    return std::ranges::none_of(findings,
+                                [](const Finding& each) { return each.verdict == Verdict::fails; });
+}
+
+std::string SceneReport::text() const {
+    std::string text;
+    for (const Finding& each : findings)
+        text += fmt::format("{:<5} {:<38} {}\n", word(each.verdict), each.what, each.detail);
+    return text + (holds() ? "verify: all holds\n" : "verify: something does not hold\n");
+}
+
+SceneReport verify_scene(const SceneFile& file, const std::vector<std::string>& methods,
+                         const RunOptions& options) {
+    return SceneVerifier(file, methods, options).run();
+}
+
+}  // namespace caustics

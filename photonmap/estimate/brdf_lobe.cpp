@@ -1,0 +1,50 @@
+#include "photonmap/estimate/brdf_lobe.h"
+
+#include "core/math/frame.h"
+
+namespace caustics {
+
+namespace {
+
+void copy(const Vec3& from, float (&to)[3]) {
+    for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+Lobe lobe_of(const Vec3& normal, const Vec3& wo, float alpha) {
+    const Frame frame(normal);
+    Lobe lobe{};
+    copy(normal, lobe.normal);
+    copy(frame.s, lobe.tangent);
+    copy(frame.t, lobe.bitangent);
+    copy(wo, lobe.wo);
+    // In double: at grazing angles rounding would be felt.
+    lobe.cosine = static_cast<float>(normal.cast<double>().dot(wo.cast<double>()));
+    lobe.alpha = alpha;
+    return lobe;
+}
+
+}  // namespace
+
+Reflection reflection_of(const ReceiverPoint& point) {
+    Reflection reflection;
+    const Vec3& n = point.shading_normal;
+    if (!(n.dot(point.wo) > 0)) return reflection;
+    if (const auto* diffuse = std::get_if<Diffuse>(&point.bsdf->model)) {
+        reflection.model = Reflection::Model::lambert;
+        copy(n, reflection.lobe.normal);
+        reflection.scale = evaluate(diffuse->reflectance, point.uv).cast<double>() / pi_d;
+    } else if (const auto* schlick = std::get_if<Schlick>(&point.bsdf->model)) {
+        reflection.model = Reflection::Model::schlick;
+        reflection.lobe = lobe_of(n, point.wo, schlick->alpha);
+        const auto cosine = static_cast<double>(reflection.lobe.cosine);
+        const auto alpha = static_cast<double>(schlick->alpha);
+        reflection.scale = evaluate(schlick->reflectance, point.uv).cast<double>() * alpha /
+                           (pi_d * (cosine + alpha * (1 - cosine)));
+    } else {
+        reflection.model = Reflection::Model::other;
+        reflection.scale = SpectrumSum::Ones();
+    }
+    return reflection;
+}
+
+}  // namespace caustics

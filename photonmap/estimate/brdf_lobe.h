@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/caustic_estimator.h"
+#include "photonmap/kernels/shading_kernel.h"
+
+namespace caustics {
+
+/// The f_r of a receiver point seen along its `wo`, taken apart for shading many photons:
+/// f_r(wi) = `scale` x a factor of wi that a kernel works out.
+struct Reflection {
+    enum class Model {
+        black,    ///< no light reaches the viewer
+        lambert,  ///< the kernel `facing`
+        schlick,  ///< the kernel `schlick`
+        other     ///< evaluate(bsdf, ...), photon by photon
+    };
+    Model model = Model::black;
+    Lobe lobe{};
+    SpectrumSum scale = SpectrumSum::Zero();  ///< holds the reflectance at the point
+};
+
+/// The point's texture is evaluated here, once.
+Reflection reflection_of(const ReceiverPoint& point);
+
+}  // namespace caustics

@@ -1,0 +1,117 @@
+#include "photonmap/estimate/shading.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "photonmap/photons/photon.h"
+
+namespace caustics {
+
+namespace {
+
+const ShadingKernels& kernels_for([[maybe_unused]] Isa isa) {
+#ifdef CAUSTICS_X86_KERNELS
+    if (isa == Isa::avx512) return avx512_shading;
+    if (isa == Isa::avx2) return avx2_shading;
+#endif
+    return plain_shading;
+}
+
+SpectrumSum sum_in_runs(ShadingKernel* kernel, const Lobe& lobe, const WeightedPhotons& all) {
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (std::size_t first = 0; first < all.photons.count; first += longest_run) {
+        const ShadedPhotons run{all.photons.energy + first, all.photons.direction + first,
+                                all.weight != nullptr ? all.weight + first : nullptr,
+                                std::min(longest_run, all.photons.count - first),
+                                // Before the run it wraps round to a number beyond it.
+                                all.left_out - first};
+        kernel(direction_tables(), lobe, run, sum.data());
+    }
+    return sum;
+}
+
+Rgbe energy_of(const GatheredPhotons& photons, std::size_t i) {
+    return std::bit_cast<Rgbe>(photons.energy[i]);
+}
+
+DirectionCode direction_of(const GatheredPhotons& photons, std::size_t i) {
+    return std::bit_cast<DirectionCode>(photons.direction[i]);
+}
+
+/// f_r by evaluate(), photon by photon.
+SpectrumSum sum_evaluated(const ReceiverPoint& point, const WeightedPhotons& all) {
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (std::size_t i = 0; i < all.photons.count; ++i) {
+        if (i == all.left_out) continue;
+        const DirectionCode code = direction_of(all.photons, i);
+        const Spectrum reflection = evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo,
+                                             decode_direction(code.theta, code.phi));
+        const Spectrum flux = decode_rgbe(energy_of(all.photons, i));
+        const float weight = all.weight != nullptr ? all.weight[i] : 1.0F;
+        sum += (reflection * flux * weight).cast<double>();
+    }
+    return sum;
+}
+
+/// Powers of two by an Rgbe's exponent: its mantissas' unit.
+const std::array<float, 256> mantissa_units = [] {
+    std::array<float, 256> units{};
+    for (std::uint32_t e = 1; e < 255; ++e) units[e] = std::bit_cast<float>(e << 23U) * 0x1p-9F;
+    return units;
+}();
+
+}  // namespace
+
+Shading::Shading(Isa isa) : kernels_(kernels_for(isa)) {}
+
+void Shading::weigh(const FilterPolynomial& filter, const GatheredPhotons& photons,
+                    double squared_radius, float* weight) const {
+    // Where photons fall into one point the radius may be too small for a float's reciprocal.
+    constexpr auto smallest = static_cast<double>(std::numeric_limits<float>::min());
+    const auto inverse = static_cast<float>(1 / std::max(squared_radius, smallest));
+    kernels_.weigh(filter, {photons.squared_distance, photons.count, inverse, weight});
+}
+
+SpectrumSum Shading::arriving(const WeightedPhotons& photons) const {
+    return sum_in_runs(kernels_.arriving, Lobe{}, photons);
+}
+
+SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons& photons) const {
+    const Reflection reflection = reflection_of(point);
+    const auto sum_by = [&](ShadingKernel* kernel) -> SpectrumSum {
+        return sum_in_runs(kernel, reflection.lobe, photons) * reflection.scale;
+    };
+    switch (reflection.model) {
+        case Reflection::Model::lambert:
+            // All photons are in front already where the normals are one.
+            return sum_by(point.shading_normal == point.geometric_normal ? kernels_.arriving
+                                                                         : kernels_.facing);
+        case Reflection::Model::schlick: return sum_by(kernels_.schlick);
+        case Reflection::Model::other: return sum_evaluated(point, photons);
+        case Reflection::Model::black: break;
+    }
+    return SpectrumSum::Zero();
+}
+
+SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons& photons,
+                               ReflectionTable& table) const {
+    const Reflection reflection = reflection_of(point);
+    table.turn_to(point, reflection);
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (std::size_t i = 0; i < photons.photons.count; ++i) {
+        if (i == photons.left_out) continue;
+        const DirectionCode wi = direction_of(photons.photons, i);
+        const Rgbe energy = energy_of(photons.photons, i);
+        const float* const factor =
+            table.factor(static_cast<std::uint16_t>(wi.theta + 256 * wi.phi));
+        const float weight = photons.weight != nullptr ? photons.weight[i] : 1.0F;
+        const float unit = mantissa_units[energy.exponent] * weight;
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[static_cast<Eigen::Index>(c)] +=
+                static_cast<double>(factor[c] * unit * static_cast<float>(energy.mantissa[c]));
+    }
+    return sum * reflection.scale;
+}
+
+}  // namespace caustics

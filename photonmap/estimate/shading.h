@@ -1,0 +1,47 @@
+#pragma once
+
+#include <limits>
+
+#include "core/caustic_estimator.h"
+#include "photonmap/estimate/brdf_lobe_table.h"
+#include "photonmap/tree/gathered_photons.h"
+
+namespace caustics {
+
+/// Gathered photons and how much each counts.
+struct WeightedPhotons {
+    static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+    GatheredPhotons photons;
+    const float* weight = nullptr;  ///< a factor for each photon, padded as they are; null: 1
+    std::size_t left_out = none;    ///< index of a photon that does not count
+};
+
+/// Sums over gathered photons, the numerator of [J96, eq. 4]. Directions are decoded at the centres
+/// of their cells, energies exactly. The order of summation is fixed by the instruction set;
+/// all agree to 1e-5, and on which photons count exactly.
+class Shading {
+public:
+    explicit Shading(Isa isa);
+
+    /// Weights of photons in a disc of that squared radius [m^2], padded as they are.
+    void weigh(const FilterPolynomial& filter, const GatheredPhotons& photons,
+               double squared_radius, float* weight) const;
+
+    /// Sum of flux x weight, in the map's unit of flux.
+    SpectrumSum arriving(const WeightedPhotons& photons) const;
+
+    /// Sum of f_r(wo, wi) x flux x weight [1/sr], f_r about the point's shading normal and 0 when wo
+    /// or wi is below it. The photons must have arrived on the side of its geometric normal.
+    /// Lambert's and Schlick's laws have kernels; any other is evaluated photon by photon.
+    SpectrumSum reflected(const ReceiverPoint& point, const WeightedPhotons& photons) const;
+
+    /// The same by a table of f_r, one photon after another.
+    SpectrumSum reflected(const ReceiverPoint& point, const WeightedPhotons& photons,
+                          ReflectionTable& table) const;
+
+private:
+    const ShadingKernels& kernels_;
+};
+
+}  // namespace caustics

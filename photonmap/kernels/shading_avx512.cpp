@@ -1,0 +1,183 @@
+#include <immintrin.h>
+
+#include "photonmap/kernels/filter_loop.h"
+#include "photonmap/kernels/simd_avx512.h"
+
+namespace caustics {
+
+namespace {
+
+using Floats = __m512;
+using Words = __m512i;
+
+Floats all(float value) { return _mm512_set1_ps(value); }
+Floats product(Floats a, Floats b) { return _mm512_mul_ps(a, b); }
+Floats sum(Floats a, Floats b) { return _mm512_add_ps(a, b); }
+
+struct Vectors {
+    Floats x, y, z;
+};
+
+Vectors all_of(const float* v) { return {all(v[0]), all(v[1]), all(v[2])}; }
+
+Floats dot(const Vectors& a, const Vectors& b) {
+    return sum(product(a.x, b.x), sum(product(a.y, b.y), product(a.z, b.z)));
+}
+
+__mmask16 has_bit(Words words, int bit) {
+    return _mm512_test_epi32_mask(words, _mm512_set1_epi32(bit));
+}
+
+/// `words` with its lower bits turned round where `bit` is set: cells beyond the middle of the range
+/// mirror those before it.
+Words folded(Words words, int bit) {
+    return _mm512_mask_xor_epi32(words, has_bit(words, bit), words, _mm512_set1_epi32(bit - 1));
+}
+
+/// Entries of a table of 32 floats by the lowest five bits.
+Floats entry_of_32(const float* table, Words index) {
+    return _mm512_permutex2var_ps(_mm512_load_ps(table), index, _mm512_load_ps(table + 16));
+}
+Floats entry_of_64(const float* table, Words index) {
+    return _mm512_mask_blend_ps(has_bit(index, 32), entry_of_32(table, index),
+                                entry_of_32(table + 32, index));
+}
+Floats entry_of_128(const float* table, Words index) {
+    return _mm512_mask_blend_ps(has_bit(index, 64), entry_of_64(table, index),
+                                entry_of_64(table + 64, index));
+}
+
+/// `values` with the sign turned where bit 7 of `words` is set.
+Floats negated_by_bit_7(Floats values, Words words) {
+    constexpr int first_xor_both_others = 0x78;
+    return _mm512_castsi512_ps(_mm512_ternarylogic_epi32(
+        _mm512_castps_si512(values), _mm512_slli_epi32(words, 24),
+        _mm512_set1_epi32(static_cast<int>(0x80000000U)), first_xor_both_others));
+}
+
+/// Tables are looked up in registers: a gather loads its sixteen entries one by one.
+Vectors directions(const DirectionTables& tables, const uint16_t* code) {
+    const Words cells =
+        _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(code)));
+    const Words theta = folded(cells, 128);
+    const Floats sine = entry_of_128(tables.theta_sine, theta);
+    const Floats z = negated_by_bit_7(entry_of_128(tables.theta_cosine, theta), cells);
+    const Words turn = _mm512_srli_epi32(cells, 8);
+    const Words phi = folded(turn, 64);
+    const Floats along_x = negated_by_bit_7(entry_of_64(tables.phi_cosine, phi),
+                                            _mm512_xor_si512(turn, _mm512_slli_epi32(turn, 1)));
+    const Floats along_y = negated_by_bit_7(entry_of_64(tables.phi_sine, phi), turn);
+    return {product(sine, along_x), product(sine, along_y), z};
+}
+
+/// The lanes of photons that count.
+__mmask16 counted(const ShadedPhotons& photons, size_t i) {
+    const size_t left = photons.count - i;
+    unsigned lanes = left >= 16 ? 0xFFFFU : (1U << left) - 1;
+    if (photons.left_out - i < 16) lanes &= ~(1U << (photons.left_out - i));
+    return static_cast<__mmask16>(lanes);
+}
+
+double total(Floats lanes) {
+    const __m256 eight =
+        _mm256_add_ps(_mm512_castps512_ps256(lanes), _mm512_extractf32x8_ps(lanes, 1));
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return static_cast<double>(_mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two))));
+}
+
+/// Sums of energies, a lane for every sixteenth photon.
+class Sums {
+public:
+    void add(const ShadedPhotons& photons, size_t i, __mmask16 lanes, Floats factor) {
+        const Words energy = _mm512_loadu_si512(photons.energy + i);
+        const Words byte = _mm512_set1_epi32(255);
+        // 2^(exponent - 136) in two factors, because the smallest are no normal floats.
+        const Words power = _mm512_slli_epi32(_mm512_srli_epi32(energy, 24), 23);
+        if (photons.weight != nullptr)
+            factor = product(factor, _mm512_loadu_ps(photons.weight + i));
+        const Floats scale = product(_mm512_castsi512_ps(power), all(0x1p-9F));
+        const Floats unit = _mm512_maskz_mul_ps(lanes, factor, scale);
+        const Words red = _mm512_and_si512(energy, byte);
+        const Words green = _mm512_and_si512(_mm512_srli_epi32(energy, 8), byte);
+        const Words blue = _mm512_and_si512(_mm512_srli_epi32(energy, 16), byte);
+        red_ = sum(red_, product(unit, _mm512_cvtepi32_ps(red)));
+        green_ = sum(green_, product(unit, _mm512_cvtepi32_ps(green)));
+        blue_ = sum(blue_, product(unit, _mm512_cvtepi32_ps(blue)));
+    }
+    void add_to(double* rgb) const {
+        rgb[0] += total(red_);
+        rgb[1] += total(green_);
+        rgb[2] += total(blue_);
+    }
+
+private:
+    Floats red_ = _mm512_setzero_ps();
+    Floats green_ = _mm512_setzero_ps();
+    Floats blue_ = _mm512_setzero_ps();
+};
+
+void add_arriving(const DirectionTables&, const Lobe&, const ShadedPhotons& photons, double* rgb) {
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 16)
+        sums.add(photons, i, counted(photons, i), all(1));
+    sums.add_to(rgb);
+}
+
+void add_facing(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
+                double* rgb) {
+    const Vectors n = all_of(lobe.normal);
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 16) {
+        const Floats v_in = dot(n, directions(tables, photons.direction + i));
+        sums.add(photons, i, _mm512_mask_cmp_ps_mask(counted(photons, i), v_in, all(0), _CMP_GT_OQ),
+                 all(1));
+    }
+    sums.add_to(rgb);
+}
+
+/// a b + c, rounded once: for what need not be equal to the last bit on every instruction set.
+Floats fused(Floats a, Floats b, Floats c) { return _mm512_fmadd_ps(a, b, c); }
+
+Floats fused_dot(const Vectors& a, const Vectors& b) {
+    return fused(a.x, b.x, fused(a.y, b.y, product(a.z, b.z)));
+}
+
+/// The formula of schlick_factor.
+void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
+                 double* rgb) {
+    const Vectors n = all_of(lobe.normal), tangent = all_of(lobe.tangent);
+    const Vectors bitangent = all_of(lobe.bitangent);
+    const Floats alpha = all(lobe.alpha), one = all(1), zero = all(0);
+    const Floats twice_alpha = all(2 * lobe.alpha), twice_rest = all(2 * (1 - lobe.alpha));
+    const Vectors wo = all_of(lobe.wo);
+    const Floats u = all(1 - lobe.cosine);
+    const Floats d = all(lobe.cosine + lobe.alpha * (1 - lobe.cosine));
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 16) {
+        const Vectors wi = directions(tables, photons.direction + i);
+        const Floats v_in = dot(n, wi);
+        const Vectors s{sum(wo.x, wi.x), sum(wo.y, wi.y), sum(wo.z, wi.z)};
+        const Floats across = fused_dot(tangent, s);
+        const Floats aside = fused_dot(bitangent, s);
+        const Floats along = fused_dot(n, s);
+        const Floats sine2 = fused(across, across, product(aside, aside));
+        const Floats square = fused(along, along, sine2);
+        const Floats twice_spread = fused(twice_alpha, square, product(twice_rest, sine2));
+        const Floats peak = _mm512_div_ps(square, twice_spread);
+        const Floats u_in = _mm512_sub_ps(one, v_in);
+        const Floats d_in = fused(alpha, u_in, v_in);
+        const Floats numerator = fused(peak, peak, fused(u, v_in, product(u_in, d)));
+        const __mmask16 lanes =
+            _mm512_mask_cmp_ps_mask(counted(photons, i), v_in, zero, _CMP_GT_OQ);
+        sums.add(photons, i, lanes, _mm512_div_ps(numerator, d_in));
+    }
+    sums.add_to(rgb);
+}
+
+}  // namespace
+
+const ShadingKernels avx512_shading{add_arriving, add_facing, add_schlick,
+                                    weigh_photons<Avx512Lanes>};
+
+}  // namespace caustics

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "photonmap/photons/direction_tables.h"
+
+namespace caustics {
+
+/// One receiver point's reflection as the kernels take it: f_r about the shading normal, seen from
+/// `wo`, divided by the reflectance. The two tangents complete the normal to a frame.
+struct Lobe {
+    float normal[3];
+    float tangent[3];
+    float bitangent[3];
+    float wo[3];
+    float cosine;  ///< v = n.wo of [J96, eq. 5], > 0
+    float alpha;   ///< of Schlick's model
+};
+
+/// A run of gathered photons; arrays as in GatheredPhotons.
+struct ShadedPhotons {
+    const uint32_t* energy;
+    const uint16_t* direction;
+    const float* weight;  ///< a factor for each photon; null: 1
+    size_t count;
+    size_t left_out;  ///< index of a photon that does not count; `count` or more: none
+};
+
+/// Adds to rgb[3] the sum over photons of energy x weight x
+///   `arriving`: 1;
+///   `facing`: 1 where n.wi > 0, else 0 (Lambert's law but for the factor 1/pi);
+///   `schlick`: pi f_r (alpha + (1 - alpha) v) / alpha by [J96, eqs. 5-6] where n.wi > 0, else 0.
+///
+/// n.wi is rounded step by step as `evaluate(bsdf, ...)` does it, on every instruction set, so that
+/// all agree on which photons count. Runs should be at most `longest_run` photons, so that sums in
+/// float lose nothing that matters. The order of summation depends on the instruction set alone.
+using ShadingKernel = void(const DirectionTables& tables, const Lobe& lobe,
+                           const ShadedPhotons& photons, double* rgb);
+
+inline constexpr size_t longest_run = 512;
+
+/// A filter's weight as a polynomial of (d/r)^2, or of d/r where `of_distance`.
+struct FilterPolynomial {
+    static constexpr size_t most_coefficients = 8;
+    float coefficient[most_coefficients];  ///< of the powers 0, 1, ..., degree
+    size_t degree;
+    bool of_distance;
+};
+
+/// Photons whose weights are wanted. Arrays as in GatheredPhotons.
+struct FilteredPhotons {
+    const float* squared_distance;
+    size_t count;
+    float inverse_squared_radius;
+    float* weight;
+};
+
+/// Writes the photons' weights, by Horner's rule; the same bits on every instruction set.
+using WeighingKernel = void(const FilterPolynomial& filter, const FilteredPhotons& photons);
+
+struct ShadingKernels {
+    ShadingKernel* arriving;
+    ShadingKernel* facing;
+    ShadingKernel* schlick;
+    WeighingKernel* weigh;
+};
+
+extern const ShadingKernels plain_shading;
+extern const ShadingKernels avx2_shading;
+extern const ShadingKernels avx512_shading;
+
+/// What `schlick` multiplies a photon's energy by.
+float schlick_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
+/// What `facing` multiplies a photon's energy by.
+float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
+
+}  // namespace caustics

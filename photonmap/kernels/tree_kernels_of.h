@@ -1,0 +1,25 @@
+#pragma once
+
+#include "photonmap/kernels/column_scan.h"
+#include "photonmap/kernels/n_chooser.h"
+#include "photonmap/kernels/packed_walk.h"
+#include "photonmap/kernels/simd_subtree_build.h"
+
+namespace caustics {
+
+/// The loops for registers of one kind.
+template <typename Lanes>
+struct TreeKernelsOf {
+    static constexpr TreeKernels value{
+        .find_packed = &PackedWalk<Lanes>::find,
+        .find_in_columns = &ColumnScan<Lanes>::find,
+        .shrink = &CandidateLoops<Lanes>::shrink,
+        .farthest = &CandidateLoops<Lanes>::farthest,
+        .choose_count = &CountChoiceOf<Lanes>::choose,
+        .bounds = &SmallOrder<Lanes>::bounds,
+        .order_small = &SmallOrder<Lanes>::order,
+        .fill_buckets = &SmallOrder<Lanes>::fill_buckets,
+    };
+};
+
+}  // namespace caustics

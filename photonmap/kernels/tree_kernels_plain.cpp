@@ -1,0 +1,8 @@
+#include "photonmap/kernels/simd_plain.h"
+#include "photonmap/kernels/tree_kernels_of.h"
+
+namespace caustics {
+
+const TreeKernels& plain_tree_kernels() { return TreeKernelsOf<PlainLanes>::value; }
+
+}  // namespace caustics

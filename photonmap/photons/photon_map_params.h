@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/light_path/light_path.h"
+#include "core/scene_file/json_reader.h"
+
+namespace caustics {
+
+/// How a map's photons are ordered for finding the nearest; all give the same answers.
+enum class TreeKind {
+    balanced,    ///< the left-balanced heap of [J96, section 2], 20 bytes a photon
+    unbalanced,  ///< photons inserted in the order of arrival, with child pointers, 28 bytes
+    packed       ///< buckets of photons, searched a register at a time, 20.1 bytes
+};
+
+/// "balanced", "unbalanced", "packed".
+const char* name(TreeKind kind);
+
+/// How photons weigh by their distance (density_filter.h).
+enum class FilterKind { none, cone, gaussian, epanechnikov };
+
+/// "none", "cone", "gaussian", "epanechnikov".
+const char* name(FilterKind kind);
+
+/// `photonmap` [J96]: photons traced from the lights through the casters, stored 20 bytes each in
+/// a kd-tree, radiance from the N nearest (eqs. 1-4) or from all within a radius.
+struct PhotonMapParams {
+    enum class Estimator {
+        unbiased,  ///< the outermost photon only sets the radius: mean (N-1)/(pi r_N^2)
+        raw        ///< eq. 4 as printed; reads high by N/(N-1) in a uniform field
+    };
+    enum class Emission {
+        random,
+        stratified  ///< one jittered particle a stratum, in Morton order: less noise, and faster
+    };
+    std::uint64_t photons = 100'000;  ///< to store; 0 when `emitted` is given instead
+    std::uint64_t emitted = 0;        ///< to emit; 0 when `photons` is given
+    Emission emission = Emission::random;
+    Interaction interaction = Interaction::roulette;
+    TreeKind tree = TreeKind::balanced;
+    static constexpr int default_adaptive_nearest = 200;
+    static constexpr int least_adaptive_nearest = 20;  ///< for AdaptiveCount's ladder to have room
+    static constexpr int most_adaptive_nearest = 100'000;
+    int nearest = 50;       ///< N; at least 2 for `unbiased`
+    bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveCount)
+    double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
+    double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
+    FilterKind filter = FilterKind::none;
+    /// Progressive: so many maps of that size, one after another, whose estimates are averaged
+    /// (progressive.h).
+    int passes = 1;
+    Estimator estimator = Estimator::unbiased;
+    /// Shade by tables of f_r over the directions that stored photons can have [J96, section 5],
+    /// one photon after another, instead of a register of photons at a time.
+    bool tables = false;
+    int max_bounces = 16;  ///< specular events between light and receiver
+    /// File that the traced photons are written to; empty: none. See photon_map_file.h.
+    std::filesystem::path save = {};
+    /// File that the photons come from instead of being traced; empty: none. Then photons and
+    /// emitted are 0, and how the photons were traced stands in the file.
+    std::filesystem::path load = {};
+};
+
+/// Relative names of files start at the folder of the file that names them (a sweep file), or at
+/// the working folder. Throws InputError for what cannot be used or is not built yet.
+void read(const JsonNode& node, PhotonMapParams& params);
+
+}  // namespace caustics

@@ -1,0 +1,286 @@
+#include "photonmap/photons/scene_photons.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/light_path/aimed_emission.h"
+#include "core/light_path/empty_caustic.h"
+#include "photonmap/photons/stratified_square.h"
+
+namespace caustics {
+
+namespace {
+
+/// A tree's indices have 32 bits, its node numbers' children one more.
+constexpr std::uint64_t most_photons = 2'000'000'000;
+
+constexpr std::size_t pilot_parts = 16;
+/// The pilot goes on until it has stored this many photons, or lost patience.
+constexpr std::uint64_t pilot_photons = 256;
+/// How many standard errors the planned number of paths leaves room for.
+constexpr double safety = 4.5;
+
+/// Paths of a scene: emission, specular chain, photons.
+class ScenePaths final : public PathTracer {
+public:
+    struct Settings {
+        LightPathSettings path;
+        /// Strata of the paths: path number i stands in stratum i, or, where `repeated`, i modulo
+        /// their number. Other paths are random.
+        std::optional<StratifiedSquare> strata;
+        bool repeated = false;
+        std::uint64_t seed = 1;
+        Stage stage = Stage::photons;
+    };
+
+    ScenePaths(const Scene& scene, const AimedEmission& emission, const Settings& settings)
+        : scene_(scene), emission_(emission), settings_(settings) {}
+
+    void trace(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const override {
+        chunk.counts.emitted += last - first;
+        if (settings_.strata)
+            trace_together(first, last, chunk);
+        else
+            for (; first < last; ++first) trace_alone(first, chunk);
+    }
+
+private:
+    /// Paths that are emitted together.
+    struct Batch {
+        EmissionSamples samples;
+        std::vector<LightPathStart> starts;
+        std::vector<std::optional<Deposit>> deposits;
+    };
+
+    // Neighbours in the square start side by side.
+    void trace_together(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const {
+        Batch batch;
+        while (first < last) {
+            const std::size_t count = std::min<std::uint64_t>(last - first, EmissionSamples::most);
+            draw(first, count, batch.samples);
+            batch.starts.clear();
+            emission_.emit(batch.samples, batch.starts);
+            chunk.counts.aimed += batch.starts.size();
+            follow(batch, chunk);
+            first += count;
+        }
+    }
+
+    // What random paths hit is nowhere near: their rays wait for memory, and emission is done meanwhile.
+    void trace_alone(std::uint64_t path, PhotonChunk& chunk) const {
+        Rng rng(settings_.seed, settings_.stage, path);
+        const auto particle = emission_.emit(rng);
+        if (!particle) return;
+        ++chunk.counts.aimed;
+        if (splits()) {
+            follow_branches(*particle, path, rng, chunk);
+        } else if (const auto deposit =
+                       trace_light_path(scene_, *particle, settings_.path, rng, chunk.counts)) {
+            chunk.add(path, *deposit);
+        }
+    }
+
+    void draw(std::uint64_t first, std::size_t count, EmissionSamples& samples) const {
+        const auto stage = static_cast<std::uint32_t>(settings_.stage);
+        samples.draw({settings_.seed, stage, first, count}, emission_.kernels());
+        const std::uint64_t size = settings_.strata->size();
+        for (std::size_t i = 0; i < count;) {
+            const std::uint64_t stratum = settings_.repeated ? (first + i) % size : first + i;
+            if (stratum >= size) return;
+            const std::size_t run = std::min<std::uint64_t>(count - i, size - stratum);
+            settings_.strata->place(stratum, samples.x().subspan(i, run),
+                                    samples.y().subspan(i, run));
+            i += run;
+        }
+    }
+
+    void follow(Batch& batch, PhotonChunk& chunk) const {
+        if (splits()) {
+            for (LightPathStart& start : batch.starts)
+                follow_branches(start.particle, start.path, start.rng, chunk);
+            return;
+        }
+        batch.deposits.resize(batch.starts.size());
+        trace_light_paths(scene_, batch.starts, settings_.path, chunk.counts, batch.deposits);
+        for (std::size_t i = 0; i < batch.starts.size(); ++i)
+            if (batch.deposits[i]) chunk.add(batch.starts[i].path, *batch.deposits[i]);
+    }
+
+    void follow_branches(const LightParticle& particle, std::uint64_t path, Rng& rng,
+                         PhotonChunk& chunk) const {
+        chunk.deposits.clear();
+        trace_split_path(scene_, particle, settings_.path, rng, chunk.counts, chunk.deposits);
+        for (const Deposit& deposit : chunk.deposits) chunk.add(path, deposit);
+    }
+
+    bool splits() const { return settings_.path.interaction == Interaction::split; }
+
+    const Scene& scene_;
+    const AimedEmission& emission_;
+    Settings settings_;
+};
+
+/// Paths to trace: their number, and how they are emitted.
+struct Plan {
+    std::uint64_t emitted = 0;
+    std::optional<StratifiedSquare> strata;  ///< of the first paths
+};
+
+/// What the pilot's parts, alike and independent, stored.
+struct Pilot {
+    std::uint64_t part_paths = 0;
+    std::array<LightPathCounts, pilot_parts> parts;
+
+    LightPathCounts total() const {
+        LightPathCounts sum;
+        for (const LightPathCounts& part : parts) sum.add(part);
+        return sum;
+    }
+    /// The number of paths that very likely store `wanted` photons: the pilot's own error and the
+    /// scatter of the photons to come are allowed for.
+    double paths_for(double wanted) const;
+};
+
+double Pilot::paths_for(double wanted) const {
+    const double mean = static_cast<double>(total().stored) / pilot_parts;
+    double variance = 0;  // of a part
+    for (const LightPathCounts& part : parts)
+        variance += std::pow(static_cast<double>(part.stored) - mean, 2) / (pilot_parts - 1);
+    const auto part = static_cast<double>(part_paths);
+    double paths = wanted * part / mean;
+    for (int i = 0; i < 4; ++i) {
+        const double by_pilot = variance / pilot_parts * std::pow(paths / part, 2);
+        const double by_chance = variance * paths / part;
+        paths = (wanted + safety * std::sqrt(by_pilot + by_chance)) * part / mean;
+    }
+    return paths;
+}
+
+/// Plans, traces and trims the photons of one scene.
+class ScenePhotons {
+public:
+    ScenePhotons(const Scene& scene, const PhotonMapParams& params, const RunOptions& options,
+                 std::vector<Ray>* traced)
+        : scene_(scene),
+          params_(params),
+          options_(options),
+          emission_(scene, options.isa),
+          traced_(traced) {}
+
+    TracedPhotons trace() const {
+        if (emission_.empty()) return none();
+        if (params_.emitted > 0) {
+            Plan plan{params_.emitted, {}};
+            if (stratified()) plan.strata = StratifiedSquare::at_most(plan.emitted);
+            return trace_planned(plan);
+        }
+        if (stratified() || splits()) return trace_exactly();
+        const PhotonTarget target{
+            .stored = params_.photons, .capacity = params_.photons, .certain = params_.photons};
+        return trace_photons(ScenePaths(scene_, emission_, settings({})), emission_.total_power(),
+                             target, options_);
+    }
+
+private:
+    bool stratified() const { return params_.emission == PhotonMapParams::Emission::stratified; }
+    bool splits() const { return params_.interaction == Interaction::split; }
+
+    ScenePaths::Settings settings(const std::optional<StratifiedSquare>& strata) const {
+        return {.path = {params_.max_bounces, params_.interaction, traced_},
+                .strata = strata,
+                .seed = options_.seed};
+    }
+
+    TracedPhotons none() const {
+        if (params_.photons > 0)
+            throw UnsupportedScene(
+                "photonmap: no photon can be stored: " + why_nothing_is_aimed(scene_).value() +
+                " (give `emitted` instead of `photons` to accept an empty map)");
+        LightPathCounts counts;
+        counts.emitted = params_.emitted;
+        return {PhotonStore(0), counts, Spectrum::Ones()};
+    }
+
+    TracedPhotons trace_planned(const Plan& plan) const {
+        // A split path stores few photons: each takes its share of the weight.
+        const std::uint64_t per_path =
+            splits() ? static_cast<std::uint64_t>(1 / lightest_branch) : 1;
+        const PhotonTarget target{
+            .emitted = plan.emitted,
+            .capacity = per_path * std::min(plan.emitted, most_photons / per_path),
+            .certain = params_.photons};
+        return trace_photons(ScenePaths(scene_, emission_, settings(plan.strata)),
+                             emission_.total_power(), target, options_);
+    }
+
+    TracedPhotons trace_exactly() const {
+        double paths = run_pilot().paths_for(static_cast<double>(params_.photons));
+        for (;; paths *= 1.1) {
+            TracedPhotons photons = trace_planned(plan_of(paths));
+            if (photons.store.size() < params_.photons) continue;
+            drop_photons(photons, params_.photons, options_.seed);
+            return photons;
+        }
+    }
+
+    Plan plan_of(double paths) const {
+        const auto least = static_cast<std::uint64_t>(std::ceil(paths));
+        if (!stratified()) return {least, {}};
+        const StratifiedSquare strata = StratifiedSquare::at_least(least);
+        return {strata.size(), strata};
+    }
+
+    Pilot run_pilot() const {
+        constexpr PhotonTarget defaults;
+        const std::uint64_t part =
+            std::clamp<std::uint64_t>(params_.photons / (32 * pilot_parts), 64, 16'384);
+        for (Plan plan = plan_of(static_cast<double>(part));;
+             plan = plan_of(4 * static_cast<double>(plan.emitted))) {
+            const Pilot pilot = run_pilot(plan);
+            const LightPathCounts counts = pilot.total();
+            const std::uint64_t patience =
+                counts.stored == 0 ? defaults.patience_for_first : defaults.patience;
+            if (counts.stored < pilot_photons && counts.emitted < patience) continue;
+            // What would be given up while tracing is given up before.
+            const auto wanted = static_cast<double>(params_.photons);
+            if (counts.stored == 0 || (counts.stored < counts.emitted / 2000 &&
+                                       pilot.paths_for(wanted) >= static_cast<double>(patience)))
+                give_up(counts, params_.photons);
+            return pilot;
+        }
+    }
+
+    Pilot run_pilot(const Plan& plan) const {
+        ScenePaths::Settings pilot_settings = settings(plan.strata);
+        pilot_settings.path.traced = nullptr;
+        pilot_settings.repeated = true;
+        pilot_settings.stage = Stage::photon_pilot;
+        const ScenePaths tracer(scene_, emission_, pilot_settings);
+        Pilot pilot{plan.emitted, {}};
+        parallel_for(options_.threads, pilot_parts, [&](std::size_t part, std::size_t) {
+            PhotonChunk chunk(Spectrum::Ones() / emission_.total_power().maxCoeff(), options_.seed);
+            tracer.trace(part * plan.emitted, (part + 1) * plan.emitted, chunk);
+            pilot.parts[part] = chunk.counts;
+        });
+        return pilot;
+    }
+
+    const Scene& scene_;
+    const PhotonMapParams& params_;
+    const RunOptions& options_;
+    AimedEmission emission_;
+    std::vector<Ray>* traced_;
+};
+
+}  // namespace
+
+TracedPhotons trace_scene(const Scene& scene, const PhotonMapParams& params,
+                          const RunOptions& options, std::vector<Ray>* traced) {
+    return ScenePhotons(scene, params, options, traced).trace();
+}
+
+}  // namespace caustics

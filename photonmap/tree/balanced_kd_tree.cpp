@@ -1,0 +1,86 @@
+#include "photonmap/tree/balanced_kd_tree.h"
+
+#include <memory>
+
+#include "photonmap/tree/kd_search.h"
+#include "photonmap/tree/select_photons.h"
+
+namespace caustics {
+
+namespace {
+
+constexpr std::uint16_t placed_flag = 0x8000U;
+
+/// Orders the photons as an in-order walk of their tree meets them.
+void order_subtree(std::span<Photon> photons, const TreeKernels& kernels, OrderScratch& scratch) {
+    while (photons.size() > small_range) {
+        const unsigned axis = widest_axis(photons, kernels);
+        const std::size_t middle = left_size(photons.size());
+        select_photon(photons, middle, axis);
+        set_axis(photons[middle], axis);
+        order_subtree(photons.first(middle), kernels, scratch);
+        photons = photons.subspan(middle + 1);
+    }
+    kernels.order_small(bytes_of(photons), photons.size(), scratch);
+}
+
+/// Moves every photon from its place in order to its place in the heap, cycle by cycle of the
+/// permutation; a bit of the flags marks the places that are done.
+void move_to_heap(std::span<Photon> photons) {
+    for (std::size_t start = 0; start < photons.size(); ++start) {
+        if ((photons[start].flags & placed_flag) != 0) continue;
+        const Photon first = photons[start];
+        std::size_t place = start;
+        for (;;) {
+            const std::size_t source = in_order_rank(place + 1, photons.size());
+            photons[place] = source == start ? first : photons[source];
+            photons[place].flags |= placed_flag;
+            if (source == start) break;
+            place = source;
+        }
+    }
+    for (Photon& photon : photons) photon.flags &= static_cast<std::uint16_t>(~placed_flag);
+}
+
+/// The heap's nodes are numbered from 1.
+struct Heap {
+    std::span<const Photon> photons;
+
+    static std::uint64_t root() { return 1; }
+    bool exists(std::uint64_t node) const { return node <= photons.size(); }
+    const Photon& photon(std::uint64_t node) const { return photons[node - 1]; }
+    static std::uint32_t index(std::uint64_t node) { return static_cast<std::uint32_t>(node - 1); }
+    static std::uint64_t child(std::uint64_t node, bool right) {
+        return 2 * node + (right ? 1 : 0);
+    }
+};
+
+}  // namespace
+
+void balance(std::span<Photon> photons, Isa isa) {
+    if (photons.empty()) return;
+    const auto scratch = std::make_unique<OrderScratch>();
+    order_subtree(photons, tree_kernels(isa), *scratch);
+    move_to_heap(photons);
+}
+
+BalancedKdTree::BalancedKdTree(PhotonStore photons, Isa isa)
+    : SearchTree(tree_kernels(isa), ArrivalDirections(photons.photons())),
+      photons_(std::move(photons)) {
+    balance(photons_.photons(), isa);
+}
+
+void BalancedKdTree::find(const NearestQuery& query, GatherScratch& scratch) const {
+    find_nearest(Heap{photons_.photons()}, kernels_, query, scratch);
+}
+
+void BalancedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) const {
+    const std::span<const Photon> photons = photons_.photons();
+    for (std::size_t i = 0; i < found.count; ++i) copy_photon(photons[found.index[i]], i, to);
+}
+
+std::uint64_t BalancedKdTree::code_of(std::uint32_t photon) const {
+    return code(photons_.photons()[photon]);
+}
+
+}  // namespace caustics

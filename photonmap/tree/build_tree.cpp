@@ -1,0 +1,19 @@
+#include "photonmap/tree/build_tree.h"
+
+#include "photonmap/tree/balanced_kd_tree.h"
+#include "photonmap/tree/packed_kd_tree.h"
+#include "photonmap/tree/unbalanced_kd_tree.h"
+
+namespace caustics {
+
+std::unique_ptr<const PhotonTree> build_tree(TreeKind kind, PhotonStore photons, Isa isa) {
+    switch (kind) {
+        case TreeKind::packed: return std::make_unique<PackedKdTree>(std::move(photons), isa);
+        case TreeKind::unbalanced:
+            return std::make_unique<UnbalancedKdTree>(std::move(photons), isa);
+        case TreeKind::balanced: break;
+    }
+    return std::make_unique<BalancedKdTree>(std::move(photons), isa);
+}
+
+}  // namespace caustics

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+
+#include "photonmap/kernels/aligned_array.h"
+#include "photonmap/tree/kd_tree_base.h"
+
+namespace caustics {
+
+/// A kd-tree over buckets of photons, built in the photons' own memory. A bucket holds x, y, z, energy,
+/// directions and flags of its photons one array after the other, so that a register takes many photons
+/// at once. The tree above is a heap of splitting planes, four bytes a bucket (heap_shape.h): inner
+/// node i's plane is planes[i], its axis in the lowest two bits. The last bucket, when it is not
+/// full, is filled up with positions at infinity.
+class PackedKdTree final : public SearchTree {
+public:
+    PackedKdTree(PhotonStore photons, Isa isa);
+
+    /// A batch is split into groups as long as these are wide against the distance of the N-th
+    /// photon; a group's photons are collected by one walk.
+    void gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
+                GatherScratch& scratch, const Consumer& consume) const override;
+    std::size_t size() const override { return photons_.size(); }
+    std::uint64_t bytes() const override;
+
+private:
+    friend class PackedGather;
+
+    void find(const NearestQuery& query, GatherScratch& scratch) const override;
+    void copy_out(const Candidates& found, const CopiedPhotons& to) const override;
+    std::uint64_t code_of(std::uint32_t photon) const override;
+
+    std::size_t bucket_count() const {
+        return (photons_.size() + bucket_photons - 1) / bucket_photons;
+    }
+    void order();
+
+    PhotonStore photons_;
+    std::unique_ptr<std::uint32_t[]> planes_;
+    PackedView view_{};
+};
+
+}  // namespace caustics

@@ -1,0 +1,155 @@
+#include "core/material/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/math/frame.h"
+#include "core/math/rng.h"
+#include "core/math/sampling.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/statistics.h"
+
+namespace caustics {
+namespace {
+
+Vec3 polar(double cosine, double azimuth) {
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    return Vec3d(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine).cast<float>();
+}
+
+// Integral over a cell of (cos, azimuth) by a fine midpoint rule.
+template <typename Function>
+double integrate(double c0, double c1, double a0, double a1, int steps, const Function& f) {
+    double sum = 0;
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j)
+            sum += static_cast<double>(
+                f(polar(c0 + (c1 - c0) * (i + 0.5) / steps, a0 + (a1 - a0) * (j + 0.5) / steps)));
+    return sum * (c1 - c0) * (a1 - a0) / (steps * steps);
+}
+
+// Counts of sampled directions by cell against the integrals of direction_pdf. Directions are
+// sorted by a frame about the mirror direction, where narrow lobes are resolved.
+double sampling_p_value(const Bsdf& bsdf, const Vec3& n, const Vec3& wo, std::uint64_t seed) {
+    constexpr int rows = 16, columns = 12, draws = 100'000;
+    const Frame about(Vec3(2 * n.dot(wo) * n - wo).normalized());
+    // Rows are even in sqrt(1 - cos), so that they crowd at the lobe's centre.
+    const auto edge = [](int row) { return 1 - 2 * std::pow(double(row) / rows, 4.0); };
+    std::vector<double> counts(rows * columns + 1), expected(rows * columns + 1);
+    Rng rng(seed, Stage::test, 0);
+    for (int i = 0; i < draws; ++i) {
+        const float u0 = rng.next(), u1 = rng.next(), u2 = rng.next();
+        const auto wi = sample_direction(bsdf, n, wo, u0, u1, u2);
+        if (!wi) {
+            counts.back() += 1;
+            continue;
+        }
+        EXPECT_NEAR(wi->norm(), 1, 1e-5F);
+        const Vec3 local = about.to_local(*wi);
+        const double share = std::pow((1 - static_cast<double>(local.z())) / 2, 0.25);
+        const int row = std::clamp(static_cast<int>(share * rows), 0, rows - 1);
+        const double turn =
+            std::atan2(static_cast<double>(local.y()), static_cast<double>(local.x()));
+        const int column =
+            std::clamp(static_cast<int>((turn / (2 * pi_d) + 0.5) * columns), 0, columns - 1);
+        counts[static_cast<std::size_t>(row * columns + column)] += 1;
+    }
+    double inside = 0;
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const auto azimuth = [](int at) { return (double(at) / columns - 0.5) * 2 * pi_d; };
+            const double share =
+                integrate(edge(row + 1), edge(row), azimuth(column), azimuth(column + 1), 40,
+                          [&](const Vec3& local) {
+                              return direction_pdf(bsdf, n, wo, about.to_world(local).normalized());
+                          });
+            expected[static_cast<std::size_t>(row * columns + column)] = draws * share;
+            inside += share;
+        }
+    EXPECT_LT(inside, 1.003);
+    expected.back() = std::max(0.0, draws * (1 - inside));
+    return support::chi_square_p_value(counts, expected);
+}
+
+TEST(Bsdf, SamplesFollowTheirDensity) {
+    const Vec3 n = Vec3(0.3F, -0.2F, 0.9F).normalized();
+    const Frame frame(n);
+    std::uint64_t seed = 1;
+    for (const double cosine : {1.0, 0.7, 0.2}) {
+        const Vec3 wo = frame.to_world(polar(cosine, 0.6)).normalized();
+        EXPECT_GT(sampling_p_value(support::diffuse(0.5F), n, wo, seed++), 1e-4) << cosine;
+        for (const float alpha : {1.0F, 0.5F, 0.1F, 0.01F})
+            EXPECT_GT(sampling_p_value(support::schlick(0.5F, alpha), n, wo, seed++), 1e-4)
+                << cosine << " alpha " << alpha;
+    }
+}
+
+// f_r cos / pdf averaged over samples is the albedo, for which alpha = 1 has a closed form.
+TEST(Bsdf, SampledAlbedoOfSchlickAtAlphaOneIsTheClosedForm) {
+    const Bsdf bsdf = support::schlick(1, 1);
+    for (const double v : {1.0, 0.6, 0.2}) {
+        const Vec3 wo = polar(v, 0.3);
+        support::Moments moments;
+        Rng rng(5, Stage::test, 0);
+        for (int i = 0; i < 100'000; ++i) {
+            const float u0 = rng.next(), u1 = rng.next(), u2 = rng.next();
+            const auto wi = sample_direction(bsdf, Vec3::UnitZ(), wo, u0, u1, u2);
+            moments.add(
+                wi ? static_cast<double>(evaluate(bsdf, Vec2::Zero(), Vec3::UnitZ(), wo, *wi)[0] *
+                                         wi->z() / direction_pdf(bsdf, Vec3::UnitZ(), wo, *wi))
+                   : 0.0);
+        }
+        EXPECT_NEAR(moments.mean(), 1.25 - 2 * v / 3, 4 * moments.standard_error() + 1e-6) << v;
+    }
+}
+
+TEST(Bsdf, IsReciprocalAndBlackBelow) {
+    Rng rng(7, Stage::test, 0);
+    const Vec3 n = Vec3::UnitZ();
+    for (const float alpha : {1.0F, 0.3F, 0.01F}) {
+        const Bsdf bsdf = support::schlick(0.8F, alpha);
+        for (int i = 0; i < 1000; ++i) {
+            const float u0 = rng.next(), u1 = rng.next(), u2 = rng.next(), u3 = rng.next();
+            const Vec3 a = cosine_hemisphere(u0, u1), b = cosine_hemisphere(u2, u3);
+            const float ab = evaluate(bsdf, Vec2::Zero(), n, a, b)[0];
+            EXPECT_NEAR(ab, evaluate(bsdf, Vec2::Zero(), n, b, a)[0], 1e-5F * (1 + ab));
+            EXPECT_GE(ab, 0);
+            EXPECT_TRUE(is_black(evaluate(bsdf, Vec2::Zero(), n, a, -b)));
+            EXPECT_TRUE(is_black(evaluate(bsdf, Vec2::Zero(), n, -a, b)));
+            EXPECT_EQ(direction_pdf(bsdf, n, a, -b), 0);
+        }
+    }
+}
+
+TEST(Bsdf, GrazingOppositeDirectionsStayFinite) {
+    for (const float alpha : {1.0F, 0.1F, 0.01F}) {
+        const Bsdf bsdf = support::schlick(0.8F, alpha);
+        for (float z = 1e-1F; z > 1e-9F; z *= 0.7F)
+            for (int i = 0; i < 200; ++i) {
+                const Vec3 across = polar(0, i * 0.1);
+                // Not normalised on purpose: unit to rounding only, as rays are.
+                const Vec3 wo = across + z * Vec3::UnitZ();
+                const Vec3 wi =
+                    -across * (1 + static_cast<float>(i % 3 - 1) * 1e-7F) + z * Vec3::UnitZ();
+                EXPECT_TRUE(is_finite(evaluate(bsdf, Vec2::Zero(), Vec3::UnitZ(), wo, wi)));
+                const float pdf = direction_pdf(bsdf, Vec3::UnitZ(), wo, wi);
+                EXPECT_TRUE(std::isfinite(pdf) && pdf >= 0) << z << " " << pdf;
+            }
+    }
+}
+
+TEST(Bsdf, CastersReceiversAndSides) {
+    EXPECT_TRUE(is_caster(support::glass(1.5F)) && is_caster(support::mirror()));
+    EXPECT_TRUE(is_receiver(support::diffuse(1)) && is_receiver(support::schlick(1, 0.5F)));
+    EXPECT_TRUE(scatters_from(support::glass(1.5F), false));
+    EXPECT_FALSE(scatters_from(support::diffuse(1), false));
+    EXPECT_TRUE(scatters_from(support::diffuse(1, true), false));
+    EXPECT_FLOAT_EQ(albedo(support::diffuse(0.25F), Vec2::Zero())[2], 0.25F);
+    EXPECT_EQ(albedo(support::mirror(0.5F), Vec2::Zero())[0], 1);
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,103 @@
+#include "core/math/polygon.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace caustics {
+namespace {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+Vec3d area_vector(const std::vector<Vec3>& corners) {
+    Vec3d sum = Vec3d::Zero();
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        sum += corners[i].cast<double>().cross(corners[(i + 1) % corners.size()].cast<double>());
+    return sum / 2;
+}
+
+/// As many triangles as there must be; each on the polygon's side, and their areas add up to the
+/// polygon's: then they neither overlap nor leave a gap.
+void expect_partition(const std::vector<Vec3>& corners) {
+    const Triangles triangles = triangulate_polygon(corners);
+    ASSERT_EQ(triangles.size(), corners.size() - 2);
+    const Vec3d whole = area_vector(corners);
+    const Vec3d normal = whole.normalized();
+    double sum = 0;
+    for (const auto& [a, b, c] : triangles) {
+        const double area = area_vector({corners[a], corners[b], corners[c]}).dot(normal);
+        EXPECT_GE(area, -1e-6 * whole.norm());
+        sum += std::abs(area);
+    }
+    EXPECT_NEAR(sum, whole.norm(), 1e-5 * whole.norm());
+}
+
+std::vector<Vec3> star(int corners, double inner) {
+    std::vector<Vec3> polygon;
+    for (int i = 0; i < corners; ++i) {
+        const double radius = i % 2 == 0 ? 1 : inner, angle = 2 * pi_d * i / corners;
+        polygon.push_back(
+            Vec3d(radius * std::cos(angle), radius * std::sin(angle), 0).cast<float>());
+    }
+    return polygon;
+}
+
+TEST(Polygon, AConvexOneIsAFanAboutItsFirstCorner) {
+    EXPECT_EQ(triangulate_polygon(star(3, 1)), (Triangles{{0, 1, 2}}));
+    EXPECT_EQ(triangulate_polygon(star(5, 1)), (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
+}
+
+TEST(Polygon, ManyCornersConvexAndConcaveInAnyPlane) {
+    for (const int corners : {4, 6, 10, 100, 1000})
+        for (const double inner : {1.0, 0.9, 0.4}) {
+            std::vector<Vec3> polygon = star(corners, inner);
+            expect_partition(polygon);
+            const Eigen::Matrix3f turned =
+                Eigen::AngleAxisf(2.1F, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+            for (Vec3& corner : polygon) corner = turned * corner + Vec3(5, -2, 1);
+            expect_partition(polygon);
+            std::ranges::reverse(polygon);
+            expect_partition(polygon);
+        }
+}
+
+TEST(Polygon, AComb) {
+    std::vector<Vec3> comb;
+    for (int tooth = 0; tooth < 40; ++tooth) {
+        comb.emplace_back(static_cast<float>(tooth), 0.1F, 0);
+        comb.emplace_back(static_cast<float>(tooth) + 0.5F, 5, 0);
+    }
+    comb.emplace_back(40, -1, 0);
+    comb.emplace_back(0, -1, 0);
+    expect_partition(comb);
+    std::ranges::reverse(comb);
+    expect_partition(comb);
+}
+
+TEST(Polygon, CornersOnALineAndTwiceInOnePlace) {
+    expect_partition(
+        {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
+    expect_partition({{0, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 2, 0}});
+    // A keyhole: the outline goes in to a square hole and back along the same line.
+    expect_partition({{0, 0, 0},
+                      {4, 0, 0},
+                      {4, 4, 0},
+                      {0, 4, 0},
+                      {0, 0, 0},
+                      {1, 1, 0},
+                      {1, 3, 0},
+                      {3, 3, 0},
+                      {3, 1, 0},
+                      {1, 1, 0}});
+}
+
+TEST(Polygon, WhatHasNoAreaStillGivesItsTriangles) {
+    EXPECT_EQ(triangulate_polygon(std::vector<Vec3>(7, Vec3(1, 2, 3))).size(), 5U);
+    EXPECT_EQ(triangulate_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).size(), 2U);
+    EXPECT_EQ(triangulate_polygon({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2U)
+        << "crosses itself";
+}
+
+}  // namespace
+}  // namespace caustics

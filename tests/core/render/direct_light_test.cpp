@@ -1,0 +1,107 @@
+#include "core/render/direct_light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/build_scene.h"
+#include "tests/support/statistics.h"
+
+namespace caustics {
+namespace {
+
+constexpr float reflectance = 0.5F;
+
+SceneDesc floor_scene(const Bsdf& bsdf = support::diffuse(reflectance)) {
+    SceneDesc desc;
+    desc.shapes.push_back(support::horizontal("floor", 0, 5, true, bsdf));
+    return desc;
+}
+
+support::Moments direct(const Scene& scene, const Vec3d& at, const Vec3& wo = Vec3::UnitZ()) {
+    ReceiverPoint point = support::probe(scene, 0, at, Vec3d::UnitZ(), 0);
+    point.wo = wo;
+    support::Moments moments;
+    for (std::uint64_t i = 0; i < 20'000; ++i) {
+        Rng rng(1, Stage::test, i);
+        const Spectrum value = direct_radiance(scene, point, rng);
+        EXPECT_TRUE(is_finite(value));
+        moments.add(static_cast<double>(value[1]));
+    }
+    return moments;
+}
+
+TEST(DirectLight, OfAPointFallsWithTheSquareAndTheCosine) {
+    SceneDesc desc = floor_scene();
+    desc.point_lights.push_back(support::point_light({0, 0, 2}, 7));
+    const Scene scene(std::move(desc));
+    const double expected = 7.0 / (1 + 4) * (2 / std::sqrt(5.0)) * 0.5 / pi_d;
+    EXPECT_NEAR(direct(scene, {1, 0, 0}).mean(), expected, 1e-5);
+}
+
+TEST(DirectLight, OfADirectionIsItsIrradianceTimesTheCosine) {
+    SceneDesc desc = floor_scene();
+    desc.directional_lights.push_back(support::directional_light({1, 0, -1}, 3));
+    const Scene scene(std::move(desc));
+    EXPECT_NEAR(direct(scene, {1, 0, 0}).mean(), 3 * std::sqrt(0.5) * 0.5 / pi_d, 1e-5);
+}
+
+// On the axis of a parallel disc E = pi L R^2 / (R^2 + d^2).
+TEST(DirectLight, OfADiscIsTheClosedForm) {
+    for (const double radius : {0.1, 1.0, 10.0}) {
+        SceneDesc desc = floor_scene();
+        Shape lamp = support::horizontal("lamp", 2, radius, false, support::diffuse(0));
+        lamp.primitive = Primitive::disk;
+        lamp.radiance = Spectrum(Spectrum::Constant(4));
+        desc.shapes.push_back(lamp);
+        const Scene scene(std::move(desc));
+        const support::Moments value = direct(scene, {0, 0, 0});
+        const double expected = 4 * 0.5 * radius * radius / (radius * radius + 4);
+        EXPECT_NEAR(value.mean(), expected, 4 * value.standard_error() + 1e-5 * expected) << radius;
+    }
+}
+
+// E = pi L (R/d)^2 cos of a whole sphere above the horizon.
+TEST(DirectLight, OfASphereIsTheClosedForm) {
+    SceneDesc desc = floor_scene();
+    desc.shapes.push_back(support::sphere("lamp", {1, 0, 3}, 0.8, support::diffuse(0)));
+    desc.shapes.back().radiance = Spectrum(Spectrum::Constant(4));
+    const Scene scene(std::move(desc));
+    const support::Moments value = direct(scene, {0, 0, 0});
+    EXPECT_NEAR(value.mean(), 4 * 0.5 * 0.64 / 10 * 3 / std::sqrt(10.0),
+                4 * value.standard_error());
+}
+
+// All directions lit: the albedo, here the closed form of Schlick at alpha = 1.
+TEST(DirectLight, OfASkyIsTheAlbedo) {
+    for (const double v : {1.0, 0.4}) {
+        SceneDesc desc = floor_scene(support::schlick(1, 1));
+        Shape sky = support::enclosure(20, support::diffuse(0));
+        sky.radiance = Spectrum(Spectrum::Ones());
+        desc.shapes.push_back(sky);
+        const Scene scene(std::move(desc));
+        const Vec3 wo = Vec3d(std::sqrt(1 - v * v), 0, v).cast<float>();
+        const support::Moments value = direct(scene, {0, 0, 0}, wo);
+        EXPECT_NEAR(value.mean(), 1.25 - 2 * v / 3, 4 * value.standard_error()) << v;
+    }
+}
+
+TEST(DirectLight, IsBlackInShadowBehindLampsAndBelow) {
+    SceneDesc shadow = floor_scene();
+    shadow.point_lights.push_back(support::point_light({0, 0, 2}, 7));
+    shadow.directional_lights.push_back(support::directional_light({0, 0, -1}, 7));
+    shadow.shapes.push_back(support::sphere("glass", {0, 0, 1}, 0.2, support::glass(1.5F)));
+    EXPECT_EQ(direct(Scene(std::move(shadow)), {0, 0, 0}).mean(), 0);
+
+    SceneDesc behind = floor_scene();
+    behind.shapes.push_back(support::horizontal("lamp", 2, 1, true, support::diffuse(0)));
+    behind.shapes.back().radiance = Spectrum(Spectrum::Ones());
+    EXPECT_EQ(direct(Scene(std::move(behind)), {0, 0, 0}).mean(), 0);
+
+    SceneDesc below = floor_scene();
+    below.point_lights.push_back(support::point_light({0, 0, -2}, 7));
+    EXPECT_EQ(direct(Scene(std::move(below)), {0, 0, 0}).mean(), 0);
+}
+
+}  // namespace
+}  // namespace caustics

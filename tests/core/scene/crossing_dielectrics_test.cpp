@@ -1,0 +1,70 @@
+#include "core/scene/crossing_dielectrics.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/tessellate.h"
+#include "tests/support/build_scene.h"
+
+namespace caustics {
+namespace {
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Pairs crossing(std::vector<Shape> shapes) {
+    SceneDesc desc;
+    desc.shapes = std::move(shapes);
+    return crossing_dielectrics(Scene(std::move(desc)));
+}
+
+Shape ball(const Vec3d& centre, double radius, const Bsdf& bsdf = support::glass(1.5F)) {
+    return support::sphere("ball", centre, radius, bsdf);
+}
+
+TEST(CrossingDielectrics, NamesBallsThatIntersect) {
+    const Shape floor = support::horizontal("floor", -0.5, 3, true, support::diffuse(0.5F));
+    for (const double apart : {0.05, 0.5, 1.0, 1.9})
+        EXPECT_EQ(crossing({floor, ball({0, 0, 0}, 1), ball({apart, 0, 0.1}, 1)}), (Pairs{{1, 2}}))
+            << apart;
+    // A ball half in water.
+    EXPECT_EQ(crossing({ball({0, 0, 0}, 0.5),
+                        support::horizontal("water", 0, 3, true, support::glass(1.33F))}),
+              (Pairs{{0, 1}}));
+    const Shape as_mesh =
+        support::mesh("mesh", tessellate_sphere(32), Transform(Eigen::Translation3d(0.7, 0.2, 0)),
+                      support::glass(1.5F));
+    EXPECT_EQ(crossing({as_mesh, ball({0, 0, 0}, 1)}), (Pairs{{0, 1}}));
+}
+
+TEST(CrossingDielectrics, LeavesShapesThatDoNotAlone) {
+    EXPECT_EQ(crossing({ball({0, 0, 0}, 1), ball({2.01, 0, 0}, 1)}), Pairs{});
+    // A bubble in glass; off its middle; two balls that touch.
+    EXPECT_EQ(crossing({ball({0, 0, 0}, 1), ball({0, 0, 0}, 0.7, support::glass(1, 1.5F))}),
+              Pairs{});
+    EXPECT_EQ(crossing({ball({0, 0, 0}, 1), ball({0.2, 0, 0}, 0.7, support::glass(1, 1.5F))}),
+              Pairs{});
+    EXPECT_EQ(crossing({ball({0, 0, 0}, 1), ball({2, 0, 0}, 1)}), Pairs{});
+    // A mirror or a floor may stand in glass.
+    EXPECT_EQ(crossing({ball({0, 0, 0}, 1), ball({1, 0, 0}, 1, support::mirror()),
+                        support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))}),
+              Pairs{});
+}
+
+// Water in a glass: its side stands on the glass's inner wall, and its top meets it there.
+TEST(CrossingDielectrics, WaterMayTouchItsGlass) {
+    const auto wall = [](const char* name, double radius, double height, const Bsdf& bsdf) {
+        return support::mesh(name, tessellate_cylinder(16),
+                             Transform(Eigen::Scaling(radius, radius, height)), bsdf);
+    };
+    Shape top;
+    top.name = "top";
+    top.primitive = Primitive::disk;
+    top.to_world = Eigen::Translation3d(0, 0, 0.6) * Eigen::Scaling(0.9, 0.9, 1.0);
+    top.bsdf = support::glass(1.33F);
+    EXPECT_EQ(crossing({wall("outside", 1, 1, support::glass(1.5F)),
+                        wall("inside", 0.9, 1, support::glass(1, 1.5F)),
+                        wall("water", 0.9, 0.6, support::glass(1.33F, 1.5F)), top}),
+              Pairs{});
+}
+
+}  // namespace
+}  // namespace caustics

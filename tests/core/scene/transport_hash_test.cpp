@@ -1,0 +1,48 @@
+#include "core/scene/transport_hash.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/build_scene.h"
+
+namespace caustics {
+namespace {
+
+SceneDesc still_life() {
+    SceneDesc desc;
+    desc.shapes.push_back(support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)));
+    desc.shapes.push_back(support::sphere("ball", {0, 0, 1}, 0.5, support::glass(1.5F)));
+    desc.shapes.push_back(support::horizontal("lamp", 4, 0.5, false, support::diffuse(0)));
+    desc.shapes.back().radiance = Spectrum(3, 2, 1);
+    desc.point_lights.push_back(support::point_light({-2, -2, 3}, 5));
+    return desc;
+}
+
+std::uint64_t digest(SceneDesc desc) { return transport_digest(Scene(std::move(desc))); }
+
+TEST(TransportDigest, DoesNotSeeTheCameraNorWhatReceiversReflect) {
+    SceneDesc other = still_life();
+    other.camera.width = 10;
+    other.camera.fov_degrees = 20;
+    other.sampling.sample_count = 9;
+    other.shapes[0].bsdf = support::schlick(0.8F, 0.1F);
+    other.shapes[0].name = "ground";
+    EXPECT_EQ(digest(still_life()), digest(other));
+}
+
+TEST(TransportDigest, SeesEverythingThatALightPathMeets) {
+    std::vector<SceneDesc> others(9, still_life());
+    others[0].shapes[0].bsdf.twosided = true;
+    others[1].shapes[0].to_world.translation().z() = 0.25;
+    others[2].shapes[1].bsdf = support::glass(1.6F);
+    others[3].shapes[1].bsdf = support::mirror();
+    others[4].shapes[1] = support::sphere("ball", {0, 0, 1}, 0.6, support::glass(1.5F));
+    others[5].shapes[2].radiance = Spectrum(3, 2, 2);
+    others[6].point_lights[0].intensity[0] = 6;
+    others[7].shapes.pop_back();
+    others[8].directional_lights.push_back(support::directional_light({0, 0, -1}, 1));
+    for (std::size_t i = 0; i < others.size(); ++i)
+        EXPECT_NE(digest(still_life()), digest(others[i])) << i;
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,357 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/render/film.h"
+#include "core/scene_file/scene_reader.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path& folder() {
+    static const support::TemporaryFolder temporary("broken_scenes_test");
+    return temporary.path();
+}
+
+void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder() / name) << text;
+}
+
+struct Broken {
+    const char* name;
+    std::string text;
+    std::vector<std::string> expected;  ///< the pointer first, then reasons and alternatives
+};
+
+void PrintTo(const Broken& broken, std::ostream* out) { *out << broken.name; }
+
+/// A good scene with one more child, "it".
+std::string with(const std::string& child) {
+    return R"({"sensor": {"type": "perspective"}, "floor": {"type": "rectangle"}, "it": )" + child +
+           "}";
+}
+std::string with_bsdf(const std::string& bsdf) {
+    return with(R"({"type": "disk", "b": )" + bsdf + "}");
+}
+std::string with_sensor(const std::string& keys) {
+    return R"({"sensor": {"type": "perspective", )" + keys + R"(}, "floor": {"type": "disk"}})";
+}
+std::string with_to_world(const std::string& to_world) {
+    return with(R"({"type": "disk", "to_world": )" + to_world + "}");
+}
+
+std::vector<Broken> broken_scenes() {
+    return {
+        // The scene.
+        {"no_sensor", R"({"floor": {"type": "disk"}})", {"/: ", "no sensor", "perspective"}},
+        {"two_sensors", with(R"({"type": "perspective"})"), {"/sensor", "one sensor"}},
+        {"no_shape", R"({"sensor": {"type": "perspective"}})", {"/: ", "no shape"}},
+        {"version_2", R"({"version": 2})", {"/version", "from 1 to 1"}},
+        {"other_root", R"({"type": "bsdf"})", {"/type", "scene"}},
+        {"stray_value", with("3"), {"/: ", "unknown key \"it\"", "type, version"}},
+        {"array_root", "[]", {"/: ", "expected an object"}},
+        {"truncated", R"({"sensor": )", {"line 1, column"}},
+        {"twice", R"({"a": {}, "a": {}})", {"/a", "twice"}},
+        {"no_type", with(R"({"radius": 1})"), {"/it", "\"type\" is missing", "radius"}},
+        {"unknown_type", with(R"({"type": "shpere"})"), {"/it", "shpere", "sphere, cylinder"}},
+        {"integrator", with(R"({"type": "path"})"), {"/it", "integrators are not supported"}},
+        {"root_bsdf", with(R"({"type": "diffuse"})"), {"/it", "nested in the shape"}},
+        {"root_area", with(R"({"type": "area"})"), {"/it", "nested in the shape"}},
+        // What later versions or other programs have.
+        {"constant", with(R"({"type": "constant"})"), {"/it", "not supported (yet)", "point"}},
+        {"spot", with(R"({"type": "spot"})"), {"/it", "not supported (yet)", "directional"}},
+        {"lathe", with(R"({"type": "lathe"})"), {"/it", "not supported (yet)", "heightfield"}},
+        {"instance", with(R"({"type": "instance"})"), {"/it", "not supported (yet)"}},
+        {"shapegroup", with(R"({"type": "shapegroup"})"), {"/it", "not supported (yet)"}},
+        {"ref", with(R"({"type": "ref", "id": "x"})"), {"/it", "not supported (yet)"}},
+        {"medium", with(R"({"type": "homogeneous"})"), {"/it", "not supported (yet)"}},
+        {"phong", with_bsdf(R"({"type": "phong"})"), {"/it/b", "not supported (yet)", "schlick"}},
+        {"blend", with_bsdf(R"({"type": "blendbsdf"})"), {"/it/b", "not supported (yet)"}},
+        {"fractal",
+         with(R"({"type": "heightfield", "fractal": {}})"),
+         {"/it/fractal", "not supported (yet)", "waves"}},
+        {"grid",
+         with(R"({"type": "heightfield", "filename": "g.exr"})"),
+         {"/it/filename", "not supported (yet)", "waves"}},
+        {"dispersion",
+         with_bsdf(R"({"type": "dielectric", "int_ior": {"type": "cauchy"}})"),
+         {"/it/b/int_ior", "dispersion is not supported (yet)", "number"}},
+        {"gaussian",
+         with_sensor(R"("f": {"type": "hdrfilm", "r": {"type": "gaussian"}})"),
+         {"/sensor/f/r", "gaussian", "not supported (yet)", "box"}},
+        // Sensors.
+        {"fov_0", with_sensor(R"("fov": 0)"), {"/sensor/fov", "between 0 and 180"}},
+        {"fov_axis", with_sensor(R"("fov_axis": "z")"), {"/sensor/fov_axis", "x, y, diagonal"}},
+        {"focal",
+         with_sensor(R"("focal_length": "50mm")"),
+         {"/sensor: ", "unknown key \"focal_length\"", "fov, fov_axis, to_world"}},
+        {"sheared",
+         with_sensor(R"("to_world": [{"scale": [1, 2, 1]}])"),
+         {"/sensor/to_world", "one positive scale"}},
+        {"mirrored",
+         with_sensor(R"("to_world": [{"scale": [-1, 1, 1]}])"),
+         {"/sensor/to_world", "one positive scale"}},
+        {"width_0",
+         with_sensor(R"("f": {"type": "hdrfilm", "width": 0})"),
+         {"/sensor/f/width", "from 1 to 65536"}},
+        {"half_pixel",
+         with_sensor(R"("f": {"type": "hdrfilm", "width": 1.5})"),
+         {"/sensor/f/width", "whole number"}},
+        {"too_large",
+         with_sensor(R"("f": {"type": "hdrfilm", "width": 60000, "height": 60000})"),
+         {"/sensor/f", "pixels"}},
+        {"half_float",
+         with_sensor(R"("f": {"type": "hdrfilm", "component_format": "float16"})"),
+         {"/sensor/f", "component_format", "width, height"}},
+        {"two_films",
+         with_sensor(R"("f": {"type": "hdrfilm"}, "g": {"type": "hdrfilm"})"),
+         {"/sensor/g", "one film"}},
+        {"not_square",
+         with_sensor(R"("s": {"type": "stratified", "sample_count": 10})"),
+         {"/sensor/s/sample_count", "9 or 16"}},
+        {"jitter",
+         with_sensor(R"("s": {"type": "independent", "jitter": true})"),
+         {"/sensor/s", "unknown key \"jitter\"", "sample_count"}},
+        {"sampler",
+         with_sensor(R"("s": {"type": "multijitter"})"),
+         {"/sensor/s", "not supported (yet)", "stratified"}},
+        // Lights.
+        {"two_positions",
+         with(R"({"type": "point", "position": [0, 0, 0], "to_world": []})"),
+         {"/it/to_world", "either position or to_world"}},
+        {"position_2",
+         with(R"({"type": "point", "position": [0, 0]})"),
+         {"/it/position", "3 numbers"}},
+        {"no_direction",
+         with(R"({"type": "directional", "direction": [0, 0, 0]})"),
+         {"/it/direction", "zero"}},
+        {"negative",
+         with(R"({"type": "point", "intensity": [1, -1, 1]})"),
+         {"/it/intensity/1", "from 0"}},
+        {"spectrum",
+         with(R"({"type": "point", "intensity": {"type": "spectrum"}})"),
+         {"/it/intensity", "not supported (yet)", "rgb"}},
+        {"colour_4",
+         with(R"({"type": "point", "intensity": [1, 1, 1, 1]})"),
+         {"/it/intensity", "[r, g, b]"}},
+        // Shapes.
+        {"typo",
+         with(R"({"type": "sphere", "raduis": 2})"),
+         {"/it: ", "unknown key \"raduis\"", "radius"}},
+        {"radius_0", with(R"({"type": "sphere", "radius": 0})"), {"/it/radius", "above 0"}},
+        {"no_axis", with(R"({"type": "cylinder", "p0": [0, 0, 1]})"), {"/it", "p0 and p1"}},
+        {"stretched",
+         with(R"({"type": "sphere", "to_world": [{"scale": [1, 1, 2]}]})"),
+         {"/it/to_world", "resolution"}},
+        {"resolution_0",
+         with(R"({"type": "disk", "resolution": 0})"),
+         {"/it/resolution", "from 1"}},
+        {"sphere_1", with(R"({"type": "sphere", "resolution": 1})"), {"/it/resolution", "from 2"}},
+        {"faces",
+         with(R"({"type": "disk", "face_normals": true})"),
+         {"/it/face_normals", "resolution"}},
+        {"no_waves", with(R"({"type": "heightfield"})"), {"/it", "\"waves\" is missing"}},
+        {"wave_typo",
+         with(R"({"type": "heightfield",
+                  "waves": [{"amplitude": 1, "wave_vector": [1, 0], "phaes": 0}]})"),
+         {"/it/waves/0", "phaes", "phase"}},
+        {"shining_field",
+         with(R"({"type": "heightfield", "waves": [], "e": {"type": "area"}})"),
+         {"/it/e", "resolution"}},
+        {"two_bsdfs",
+         with(R"({"type": "disk", "a": {"type": "diffuse"}, "b": {"type": "diffuse"}})"),
+         {"/it/b", "one bsdf"}},
+        {"two_emitters",
+         with(R"({"type": "disk", "a": {"type": "area"}, "b": {"type": "area"}})"),
+         {"/it/b", "one emitter"}},
+        {"nested_point", with(R"({"type": "disk", "a": {"type": "point"}})"), {"/it/a", "area"}},
+        {"no_mesh",
+         with(R"({"type": "ply", "filename": "absent.ply"})"),
+         {"/it/filename", "no such file", "absent.ply"}},
+        {"broken_mesh",
+         with(R"({"type": "ply", "filename": "broken.ply"})"),
+         {"/it/filename", "broken.ply"}},
+        {"wrong_mesh",
+         with(R"({"type": "obj", "filename": "broken.ply"})"),
+         {"/it/filename", "takes a .obj file", "ply"}},
+        {"mesh_resolution",
+         with(R"({"type": "ply", "filename": "broken.ply", "resolution": 3})"),
+         {"/it/resolution", "analytic"}},
+        // Scattering.
+        {"metal",
+         with_bsdf(R"({"type": "conductor", "material": "Au"})"),
+         {"/it/b/material", "Au", "none"}},
+        {"liquid",
+         with_bsdf(R"({"type": "dielectric", "int_ior": "wather"})"),
+         {"/it/b/int_ior", "wather", "water, "}},
+        {"ior_0",
+         with_bsdf(R"({"type": "dielectric", "int_ior": 0})"),
+         {"/it/b/int_ior", "out of range"}},
+        {"iro",
+         with_bsdf(R"({"type": "dielectric", "int_iro": 1.5})"),
+         {"/it/b: ", "int_iro", "int_ior"}},
+        {"too_white",
+         with_bsdf(R"({"type": "diffuse", "reflectance": 1.1})"),
+         {"/it/b/reflectance", "from 0 to 1"}},
+        {"alpha_0", with_bsdf(R"({"type": "schlick", "alpha": 0})"), {"/it/b/alpha", "above 0"}},
+        {"alpha_2",
+         with_bsdf(R"({"type": "schlick", "alpha": 2})"),
+         {"/it/b/alpha", "from 0 to 1"}},
+        {"glass_twice",
+         with_bsdf(R"({"type": "twosided", "g": {"type": "dielectric"}})"),
+         {"/it/b/g", "diffuse, schlick, conductor"}},
+        {"empty_sides", with_bsdf(R"({"type": "twosided"})"), {"/it/b", "one nested bsdf"}},
+        {"no_picture",
+         with_bsdf(
+             R"({"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "no.png"}})"),
+         {"/it/b/reflectance/filename", "no.png"}},
+        {"bad_picture",
+         with_bsdf(
+             R"({"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "broken.ply"}})"),
+         {"/it/b/reflectance/filename", "broken.ply"}},
+        {"bright_picture",
+         with_bsdf(
+             R"({"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "bright.exr"}})"),
+         {"/it/b/reflectance/filename", "above 1"}},
+        {"wrap",
+         with_bsdf(R"({"type": "diffuse", "reflectance":
+                       {"type": "bitmap", "filename": "grey.exr", "wrap_mode": "tile"}})"),
+         {"/it/b/reflectance/wrap_mode", "repeat, mirror, clamp"}},
+        // Transforms.
+        {"singular", with_to_world(R"([{"scale": [1, 1, 0]}])"), {"/it/to_world", "singular"}},
+        {"short_matrix",
+         with_to_world("[1, 0, 0, 0]"),
+         {"/it/to_world", "16 numbers", "operations"}},
+        {"projective",
+         with_to_world("[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,1,1]"),
+         {"/it/to_world", "last row"}},
+        {"operation",
+         with_to_world(R"([{"rotate_x": 3}])"),
+         {"/it/to_world/0", "rotate_x", "translate, rotate, scale, look_at"}},
+        {"two_operations",
+         with_to_world(R"([{"scale": 2, "translate": [0, 0, 1]}])"),
+         {"/it/to_world/0", "one operation"}},
+        {"no_rotation_axis",
+         with_to_world(R"([{"rotate": {"axis": [0, 0, 0], "angle": 1}}])"),
+         {"/it/to_world/0/rotate/axis", "zero"}},
+        {"up_along_view",
+         with_to_world(
+             R"([{"look_at": {"origin": [0, 0, 0], "target": [0, 0, 1], "up": [0, 0, 1]}}])"),
+         {"/it/to_world/0/look_at", "up"}},
+        {"beyond_float",
+         with_to_world(R"([{"translate": [1e40, 0, 0]}])"),
+         {"/it/to_world/0/translate/0", "out of range"}},
+        {"beyond_float_together",
+         with_to_world(R"([{"scale": 1e20}, {"scale": 1e20}])"),
+         {"/it/to_world", "beyond 1e30"}},
+        {"beyond_float_shape",
+         with(R"({"type": "sphere", "radius": 1e20, "to_world": [{"scale": 1e20}]})"),
+         {"/it: ", "beyond 5e+17 m"}},
+        {"far_mesh",
+         with(R"({"type": "cube", "to_world": [{"translate": [0, 2e18, 0]}]})"),
+         {"/it: ", "beyond 5e+17 m"}},
+        {"far_wave",
+         with(R"({"type": "heightfield", "waves": [{"amplitude": 2e18, "wave_vector": [1, 0]}]})"),
+         {"/it: ", "beyond 5e+17 m"}},
+        {"far_lamp",
+         with(R"({"type": "point", "position": [0, 0, -2e18]})"),
+         {"/it: ", "beyond 5e+17 m"}},
+        {"far_camera",
+         with_sensor(R"("to_world": [{"translate": [2e18, 0, 0]}])"),
+         {"/sensor/to_world: ", "beyond 5e+17 m"}},
+        {"nul_in_a_name",
+         with(R"({"type": "ply", "filename": "broken.ply\u0000"})"),
+         {"/it/filename: ", "control character", "broken.ply\\u0000"}},
+        {"escape_in_a_key", with(R"({"type": "disk", "\u001b[2J": 1})"), {"/it", "control"}},
+        {"device_as_mesh",
+         with(R"({"type": "ply", "filename": "/dev/zero"})"),
+         {"/it/filename: ", "/dev/zero", "not a regular file"}},
+        {"huge_picture",
+         with_bsdf(
+             R"({"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "huge.tga"}})"),
+         {"/it/b/reflectance/filename: ", "huge.tga", "12000 x 12000 pixels, more than"}},
+        {"too_fine",
+         with(R"({"type": "disk", "resolution": 5000})"),
+         {"/it/resolution", "from 1 to 4096"}},
+        {"null_colour",
+         with(R"({"type": "point", "intensity": null})"),
+         {"/it/intensity", "number, [r, g, b]"}},
+        {"text_number",
+         with_to_world(R"([{"translate": ["1", 0, 0]}])"),
+         {"/it/to_world/0/translate/0", "expected a number"}},
+    };
+}
+
+class BrokenScene : public testing::TestWithParam<Broken> {
+protected:
+    static void SetUpTestSuite() {
+        // The header of a TGA picture of 12,000 x 12,000 pixels.
+        const unsigned char huge[100] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
+                                         0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
+        write("huge.tga", {reinterpret_cast<const char*>(huge), sizeof huge});
+        write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+        Film bright(1, 1);
+        bright.set_rgb("", 0, Spectrum::Constant(1.5F));
+        write_exr(bright, folder() / "bright.exr");
+        bright.set_rgb("", 0, Spectrum::Constant(0.5F));
+        write_exr(bright, folder() / "grey.exr");
+    }
+};
+
+TEST_P(BrokenScene, IsOneErrorLineWithFilePlaceAndAlternatives) {
+    const Broken& broken = GetParam();
+    const std::string name = std::string(broken.name) + ".json";
+    write(name, broken.text);
+    try {
+        static_cast<void>(load_scene(folder() / name));
+        FAIL() << "was accepted";
+    } catch (const InputError& e) {
+        const std::string message = e.what();
+        EXPECT_TRUE(message.starts_with((folder() / name).string() + ": ")) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        for (const std::string& part : broken.expected)
+            EXPECT_NE(message.find(part), std::string::npos) << part << " in: " << message;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BrokenScene, testing::ValuesIn(broken_scenes()),
+                         [](const auto& scene) { return std::string(scene.param.name); });
+
+TEST(BrokenOverride, NamesThePlaceAndWhatIsThere) {
+    write("good.json", with(R"({"type": "disk"})"));
+    const auto error = [](const Overrides& overrides) -> std::string {
+        try {
+            static_cast<void>(load_scene(folder() / "good.json", overrides));
+        } catch (const InputError& e) {
+            return e.what();
+        }
+        return "no error";
+    };
+    EXPECT_NE(error({{"/lamp/radius", "1"}}).find("keys: floor, it, sensor"), std::string::npos);
+    EXPECT_NE(error({{"/it/resolutoin", "4"}}).find("/it: unknown key \"resolutoin\""),
+              std::string::npos);
+    EXPECT_NE(error({{"/it/resolution", "many"}}).find("/it/resolution: expected a whole number"),
+              std::string::npos);
+    EXPECT_EQ(error({{"/it/resolution", "4"}}), "no error");
+}
+
+TEST(BrokenInclude, NamesTheIncludedFileAndTheWholePointer) {
+    write("ball.json", R"({"type": "sphere", "raduis": 1})");
+    write("including.json", with(R"({"$include": "ball.json"})"));
+    try {
+        static_cast<void>(load_scene(folder() / "including.json"));
+        FAIL();
+    } catch (const InputError& e) {
+        const std::string message = e.what();
+        EXPECT_TRUE(message.starts_with((folder() / "ball.json").string() + ": / (included as /it"))
+            << message;
+        EXPECT_NE(message.find("raduis"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace caustics

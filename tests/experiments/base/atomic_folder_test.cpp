@@ -1,0 +1,81 @@
+#include "experiments/base/atomic_folder.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <set>
+#include <string>
+
+#include "core/base/error.h"
+#include "experiments/base/file_io.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WholeFolders : public testing::Test {
+protected:
+    void write(bool commit = true) const {
+        WholeFolder whole(target_);
+        write_whole_file(whole.path() / "new", "new");
+        if (commit) whole.commit();
+    }
+    std::set<std::string> files_in(const fs::path& folder) const {
+        std::set<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder))
+            names.insert(entry.path().filename());
+        return names;
+    }
+    using Names = std::set<std::string>;
+    support::TemporaryFolder folder_;
+    fs::path target_ = folder_ / "target";
+};
+
+TEST_F(WholeFolders, AreThereOnlyWhenTheyAreWhole) {
+    write(false);
+    EXPECT_EQ(files_in(folder_.path()), Names());
+    write();
+    EXPECT_EQ(files_in(folder_.path()), Names{"target"});
+    EXPECT_EQ(files_in(target_), Names{"new"});
+}
+
+TEST_F(WholeFolders, LeaveOtherFilesWhereTheyAre) {
+    write_whole_file(folder_ / "mine", "mine");
+    fs::create_directory(target_);
+    fs::rename(folder_ / "mine", target_ / "mine");
+    write_whole_file(target_ / "new", "old");
+    write(false);
+    EXPECT_EQ(read_whole_file(target_ / "new"), "old");
+    write();
+    EXPECT_EQ(files_in(target_), (Names{"mine", "new"}));
+    EXPECT_EQ(read_whole_file(target_ / "new"), "new");
+    EXPECT_EQ(files_in(folder_.path()), Names{"target"});
+}
+
+TEST_F(WholeFolders, RemoveWhatAKilledProcessLeft) {
+    const pid_t writer = fork();
+    if (writer == 0) {
+        const WholeFolder whole(target_);
+        write_whole_file(whole.path() / "half", "");
+        std::raise(SIGKILL);
+    }
+    waitpid(writer, nullptr, 0);
+    ASSERT_EQ(files_in(folder_.path()), Names{"target.part"});
+    write();
+    EXPECT_EQ(files_in(folder_.path()), Names{"target"});
+    EXPECT_EQ(files_in(target_), Names{"new"});
+}
+
+TEST_F(WholeFolders, RemoveNothingElse) {
+    fs::create_directory(folder_ / "target.part");
+    write_whole_file(folder_ / "target.part/mine", "mine");
+    EXPECT_THROW(write(), InputError);
+    EXPECT_EQ(read_whole_file(folder_ / "target.part/mine"), "mine");
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,303 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <regex>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/geometry/mesh_io.h"
+#include "core/geometry/tessellate.h"
+#include "experiments/export/exported_scene.h"
+#include "experiments/export/mesh_bytes.h"
+#include "experiments/export/xml_writer.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+/// A glass ball and a mirror over a floor, under a lamp and the sun, seen askew.
+SceneDesc small_scene() {
+    SceneDesc desc;
+    desc.shapes = {
+        support::horizontal("floor", -0.1, 2, true, support::diffuse(0.3F)),
+        support::sphere("ball", {0.1, 0.2, 0.7}, 0.3, support::glass(1.5F)),
+        support::rectangle("mirror", {0, 1, 1}, {0.3, 0, 0}, {0, 0.1, 0.4}, support::mirror(0.9F))};
+    desc.point_lights = {support::point_light({0.3, -0.4, 2.5}, 7)};
+    desc.directional_lights = {support::directional_light({0.1, 0.2, -1}, 3)};
+    desc.camera = support::camera({0.3, -1.7, 1.3}, {0.1, 0.2, 0.1}, {0.1, 0, 1}, 43, 12, 9);
+    return desc;
+}
+
+/// All numbers that follow `key` until the first character that belongs to none.
+std::vector<double> numbers_after(const std::string& text, const std::string& key) {
+    const std::size_t at = text.find(key);
+    EXPECT_NE(at, std::string::npos) << key;
+    if (at == std::string::npos) return {};
+    const std::string rest = text.substr(at + key.size());
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < rest.size();) {
+        if (std::string(" ,<\n").find(rest[i]) != std::string::npos) {
+            ++i;
+            continue;
+        }
+        char* end = nullptr;
+        const double value = std::strtod(rest.c_str() + i, &end);
+        if (end == rest.c_str() + i) break;
+        numbers.push_back(value);
+        i = static_cast<std::size_t>(end - rest.c_str());
+    }
+    return numbers;
+}
+
+Vec3d vector_after(const std::string& text, const std::string& key) {
+    const std::vector<double> numbers = numbers_after(text, key);
+    EXPECT_GE(numbers.size(), 3U) << key;
+    return numbers.size() < 3 ? Vec3d::Zero().eval() : Vec3d(numbers[0], numbers[1], numbers[2]);
+}
+
+/// The text of the element that begins with `start`.
+std::string element(const std::string& xml, const std::string& start) {
+    const std::size_t at = xml.find(start);
+    EXPECT_NE(at, std::string::npos) << start;
+    return at == std::string::npos ? "" : xml.substr(at);
+}
+
+void expect_matrix(const std::string& xml, const Transform& expected) {
+    const std::vector<double> m = numbers_after(xml, "<matrix value=\"");
+    ASSERT_EQ(m.size(), 16U);
+    for (Eigen::Index row = 0; row < 4; ++row)
+        for (Eigen::Index column = 0; column < 4; ++column)
+            EXPECT_EQ(m[static_cast<std::size_t>(4 * row + column)],
+                      expected.matrix()(row, column));
+}
+
+const std::string& file(const ExportedScene& scene, const std::string& name) {
+    for (const ExportedScene::File& each : scene.files)
+        if (each.name == name) return each.bytes;
+    throw std::runtime_error("no file " + name);
+}
+
+TEST(MitsubaScene, SaysEveryNumberOfTheSceneExactly) {
+    SceneDesc desc = small_scene();
+    const std::string xml = file(to_mitsuba(desc, {}), "scene.xml");
+    const std::string sensor = element(xml, "<sensor");
+    expect_matrix(sensor, desc.camera.to_world);
+    EXPECT_NEAR(numbers_after(sensor, "name=\"fov\" value=\"").at(0), 43, 1e-12);
+    EXPECT_EQ(numbers_after(sensor, "name=\"width\" value=\"").at(0), 12);
+    for (std::size_t i = 0; i < desc.shapes.size(); ++i)
+        expect_matrix(element(xml, "id=\"" + plain_name(desc.shapes[i].name, i)),
+                      desc.shapes[i].to_world);
+    EXPECT_EQ(vector_after(xml, "name=\"position\" value=\"").cast<float>(),
+              desc.point_lights[0].position);
+    EXPECT_EQ(vector_after(xml, "name=\"intensity\" value=\"").cast<float>(),
+              desc.point_lights[0].intensity.matrix());
+    EXPECT_EQ(vector_after(xml, "name=\"direction\" value=\"").cast<float>(),
+              desc.directional_lights[0].direction);
+    EXPECT_EQ(vector_after(xml, "name=\"irradiance\" value=\"").cast<float>(),
+              desc.directional_lights[0].irradiance.matrix());
+    EXPECT_EQ(numbers_after(xml, "name=\"int_ior\" value=\"").at(0), 1.5);
+}
+
+TEST(MitsubaScene, BringsTheFilesItNames) {
+    SceneDesc desc = small_scene();
+    Shape water = support::horizontal("wa/ter", 0.5, 1, true, support::glass(1.333F));
+    water.primitive = Primitive::heightfield;
+    water.field.waves = {{0.02, {4, 1}, 0.3}};
+    desc.shapes.push_back(water);
+    Bitmap bitmap;
+    bitmap.width = 1;
+    bitmap.height = 1;
+    bitmap.texels = {Spectrum(0.1F, 0.2F, 0.3F)};
+    desc.shapes[0].bsdf.model = Diffuse{bitmap};
+    const ExportedScene exported = to_mitsuba(desc, {.mesh_resolution = 3});
+    ASSERT_EQ(exported.files.size(), 3U);
+    EXPECT_EQ(exported.files[0].name, "scene.xml");
+    for (const char* name : {"shape0-floor.pfm", "shape3-wa-ter.ply"}) {
+        EXPECT_FALSE(file(exported, name).empty());
+        EXPECT_NE(exported.files[0].bytes.find("value=\"" + std::string(name) + "\""),
+                  std::string::npos);
+    }
+    ASSERT_EQ(exported.notes.size(), 2U);  // baked; bent by vertex normals
+    EXPECT_NE(exported.notes[0].find("resolution 3"), std::string::npos);
+}
+
+TEST(MitsubaScene, TakesPathsWhereNoLightIsAPoint) {
+    SceneDesc desc = small_scene();
+    const std::string chosen = "name=\"integrator\" value=\"";
+    EXPECT_NE(to_mitsuba(desc, {}).files[0].bytes.find(chosen + "ptracer"), std::string::npos);
+    desc.shapes[0].radiance = Spectrum(Spectrum::Ones());
+    desc.point_lights.clear();
+    desc.directional_lights.clear();
+    EXPECT_NE(to_mitsuba(desc, {}).files[0].bytes.find(chosen + "path"), std::string::npos);
+}
+
+TEST(MitsubaScene, TakesPathsAsLongAsTheyCanBe) {
+    SceneDesc desc = small_scene();
+    const auto depth = [&] {
+        return numbers_after(to_mitsuba(desc, {}).files[0].bytes, "name=\"max_depth\" value=\"")[0];
+    };
+    EXPECT_EQ(depth(), 16 + 2);
+    desc.shapes.resize(1);
+    EXPECT_EQ(depth(), 2) << "light between receivers is no part of the picture";
+}
+
+TEST(MeshBytes, AreReadBackAsTheyWere) {
+    const support::TemporaryFolder folder;
+    TriangleMesh mesh = tessellate_sphere(4);
+    for (const bool smooth : {true, false}) {
+        if (!smooth) mesh.normals.clear();
+        const auto ply = folder / "mesh.ply";
+        write_whole_file(ply, ply_bytes(mesh));
+        const TriangleMesh read = load_mesh(ply, {.face_normals = !smooth});
+        EXPECT_EQ(read.positions, mesh.positions);
+        EXPECT_EQ(read.uvs, mesh.uvs);
+        EXPECT_EQ(read.triangles, mesh.triangles);
+        ASSERT_EQ(read.normals.size(), mesh.normals.size());
+        for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+            EXPECT_LT((read.normals[i] - mesh.normals[i]).norm(), 1e-6F);
+    }
+}
+
+TEST(MeshBytes, OfAPictureStandRightSideUp) {
+    const support::TemporaryFolder folder;
+    Bitmap bitmap;
+    bitmap.width = 2;
+    bitmap.height = 3;
+    for (int i = 0; i < 6; ++i)
+        bitmap.texels.emplace_back(Spectrum(0.125F * static_cast<float>(i), 0.5F, 0.25F));
+    const auto pfm = folder / "a.pfm";
+    write_whole_file(pfm, pfm_bytes(bitmap));
+    const Bitmap read = load_bitmap(pfm, true);
+    ASSERT_EQ(read.width, 2);
+    ASSERT_EQ(read.height, 3);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_TRUE((read.texels[i] == bitmap.texels[i]).all());
+}
+
+TEST(XmlWriter, EscapesValues) {
+    XmlWriter xml;
+    xml.open("a");
+    xml.leaf("b", {{"c", "<&\">"}});
+    xml.close();
+    EXPECT_NE(xml.text().find("<a>\n  <b c=\"&lt;&amp;&quot;&gt;\"/>\n</a>\n"), std::string::npos);
+}
+
+// A pixel's ray is direction + x right + y up, x and y in [-1/2, 1/2].
+TEST(PovrayScene, HasTheCamerasRays) {
+    const SceneDesc desc = small_scene();
+    const std::string pov = file(to_povray(desc, {}), "scene.pov");
+    EXPECT_EQ(vector_after(pov, "location ").cast<float>(), desc.camera.position());
+    for (const Vec2d& at : {Vec2d(0, 0), Vec2d(12, 9), Vec2d(3.5, 7.5)}) {
+        const Vec3d ray = vector_after(pov, "direction ") +
+                          (at.x() / 12 - 0.5) * vector_after(pov, "right ") +
+                          (0.5 - at.y() / 9) * vector_after(pov, "up ");
+        EXPECT_LT((ray.normalized().cast<float>() - desc.camera.direction(at.x(), at.y())).norm(),
+                  1e-6F);
+    }
+}
+
+// White paint is c 2 / (1 + (d / fade)^2) bright under the light, and in truth I / (pi d^2).
+TEST(PovrayScene, MakesPixelsRadiances) {
+    const SceneDesc desc = small_scene();
+    const std::string pov = file(to_povray(desc, {}), "scene.pov");
+    const std::vector<double> point = numbers_after(pov, "light_source {");
+    ASSERT_EQ(point.size(), 3U);
+    const std::string light = element(pov, "light_source {");
+    const double fade = numbers_after(light, "fade_distance ").at(0);
+    const double d = 0.2;
+    const double bright = numbers_after(light, "rgb ").at(0) * 2 / (1 + std::pow(d / fade, 2));
+    EXPECT_NEAR(bright / (7 / (pi_d * d * d)), 1, 1e-7);
+    const std::string sun = pov.substr(pov.rfind("light_source {"));
+    EXPECT_NE(sun.find("parallel"), std::string::npos);
+    EXPECT_NEAR(numbers_after(sun, "rgb ").at(0), 3 / pi_d, 1e-6);
+}
+
+TEST(PovrayScene, AbsorbsByBeersLaw) {
+    SceneDesc desc = small_scene();
+    const Spectrum absorption(0.5F, 0.2F, 0);
+    desc.shapes[1].bsdf = support::glass(1.5F, 1, absorption);
+    const std::string pov = file(to_povray(desc, {}), "scene.pov");
+    const double fade = numbers_after(element(pov, "interior"), "fade_distance ").at(0);
+    const Vec3d colour = vector_after(pov, "fade_color rgb ");
+    EXPECT_LT(((1 - colour.array()) / fade - absorption.cast<double>()).abs().maxCoeff(), 1e-6);
+}
+
+/// A change that no renderer of that name can follow.
+struct Refused {
+    const char* name;
+    ExportedScene (*to)(const SceneDesc&, const ExportSettings&);
+    std::function<void(SceneDesc&)> change;
+    std::vector<std::string> words;
+
+    friend std::ostream& operator<<(std::ostream& out, const Refused& refused) {
+        return out << refused.name;
+    }
+};
+
+class Refuses : public testing::TestWithParam<Refused> {};
+
+TEST_P(Refuses, NamingPlaceAndReason) {
+    SceneDesc desc = small_scene();
+    EXPECT_NO_THROW(GetParam().to(desc, {}));
+    GetParam().change(desc);
+    try {
+        GetParam().to(desc, {.scene_file = "a.json"});
+        FAIL() << "exported";
+    } catch (const UnsupportedScene& error) {
+        const std::string message = error.what();
+        EXPECT_EQ(message.rfind("a.json: /", 0), 0U) << message;
+        for (const std::string& word : GetParam().words)
+            EXPECT_NE(message.find(word), std::string::npos) << message;
+    }
+}
+
+const auto schlick_floor = [](SceneDesc& d) { d.shapes[0].bsdf = support::schlick(0.5F, 0.1F); };
+const auto shining = [](SceneDesc& d) { d.shapes[0].radiance = Spectrum(Spectrum::Ones()); };
+
+INSTANTIATE_TEST_SUITE_P(
+    Export, Refuses,
+    testing::Values(
+        Refused{"MitsubaSchlick", to_mitsuba, schlick_floor, {"/floor", "schlick", "--set"}},
+        Refused{"MitsubaAbsorption",
+                to_mitsuba,
+                [](SceneDesc& d) {
+                    d.shapes[1].bsdf = support::glass(1.5F, 1, Spectrum(Spectrum::Constant(0.1F)));
+                },
+                {"/ball", "absorb"}},
+        Refused{"MitsubaMirroredBall",
+                to_mitsuba,
+                [](SceneDesc& d) { d.shapes[1].to_world.linear().col(0) *= -1; },
+                {"/ball", "inside out", "resolution"}},
+        Refused{"PovraySchlick", to_povray, schlick_floor, {"/floor", "schlick"}},
+        Refused{"PovrayAreaLight", to_povray, shining, {"/floor", "area light"}},
+        Refused{"PovrayBitmap",
+                to_povray,
+                [](SceneDesc& d) { d.shapes[0].bsdf.model = Diffuse{Bitmap{}}; },
+                {"/floor", "bitmap"}},
+        Refused{"PovrayColouredGlass",
+                to_povray,
+                [](SceneDesc& d) {
+                    std::get<Dielectric>(d.shapes[1].bsdf.model).specular_transmittance[1] = 0.5F;
+                },
+                {"/ball", "specular_transmittance"}},
+        Refused{"PovrayAbsorbingWater",
+                to_povray,
+                [](SceneDesc& d) {
+                    d.shapes[2].bsdf = support::glass(1.3F, 1, Spectrum(Spectrum::Ones()));
+                },
+                {"/mirror", "absorption"}},
+        Refused{"PovrayTwoOutsides",
+                to_povray,
+                [](SceneDesc& d) { d.shapes[0].bsdf = support::glass(1.3F, 1.1F); },
+                {"/ball", "ext_ior"}},
+        Refused{"PovrayFromInside",
+                to_povray,
+                [](SceneDesc& d) {
+                    d.shapes[0].bsdf = support::glass(1.3F);
+                    d.shapes[0].flip_normals = true;
+                },
+                {"/floor", "from inside", "the camera"}}),
+    [](const auto& each) { return std::string(each.param.name); });
+
+}  // namespace
+}  // namespace caustics

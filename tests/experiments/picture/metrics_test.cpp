@@ -1,0 +1,117 @@
+#include "experiments/picture/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+
+namespace caustics {
+namespace {
+
+Film grey_film(const std::string& layer, const std::vector<float>& values) {
+    Film film(2, 2);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        film.set_rgb(layer, i, Spectrum::Constant(values[i]));
+    return film;
+}
+
+const PixelMask all(4, true);
+
+TEST(Metrics, FollowTheirFormulasByHand) {
+    const Film x = grey_film("caustic", {1, 3, 2, 1});
+    const Film r = grey_film("caustic", {0, 2, 4, 2});
+    const Metrics m = measure(x, r, "caustic", all);
+    // Differences 1, 1, -2, -1; mean(r) = 2, so epsilon = 0.01 * 4.
+    EXPECT_DOUBLE_EQ(*m.rmse, std::sqrt(7.0 / 4));
+    EXPECT_DOUBLE_EQ(*m.relmse, (1 / 0.04 + 1 / 4.04 + 4 / 16.04 + 1 / 4.04) / 4);
+    EXPECT_DOUBLE_EQ(*m.bias, -0.25 / 2);
+    EXPECT_DOUBLE_EQ(*m.mean_ratio, 1.75 / 2);
+    EXPECT_DOUBLE_EQ(*m.leak_energy, 1.0 / 2);
+    EXPECT_EQ(m.pixels, 4U);
+}
+
+TEST(Metrics, CountTheChannelsApart) {
+    Film x(1, 1);
+    Film r(1, 1);
+    x.set_rgb("", 0, {1, 5, 0});
+    r.set_rgb("", 0, {1, 2, 0});
+    const Metrics m = measure(x, r, "", PixelMask(1, true));
+    EXPECT_DOUBLE_EQ(*m.rmse, std::sqrt(9.0 / 3));
+    EXPECT_DOUBLE_EQ(*m.mean_ratio, 2);
+    EXPECT_DOUBLE_EQ(*m.leak_energy, 0);
+}
+
+TEST(Metrics, LeaveUncountedPixelsOut) {
+    const Film x = grey_film("caustic", {1, 100, 2, 1});
+    const Film r = grey_film("caustic", {1, 2, 2, 1});
+    const Metrics m = measure(x, r, "caustic", {true, false, true, true});
+    EXPECT_EQ(m.pixels, 3U);
+    EXPECT_EQ(*m.rmse, 0);
+    EXPECT_EQ(*m.mean_ratio, 1);
+    EXPECT_FALSE(m.leak_energy) << "no dark pixel to leak into";
+}
+
+TEST(Metrics, AreUndefinedAgainstABlackReference) {
+    const Film x = grey_film("caustic", {1, 1, 1, 1});
+    const Film r = grey_film("caustic", {0, 0, 0, 0});
+    const Metrics m = measure(x, r, "caustic", all);
+    EXPECT_EQ(*m.rmse, 1);
+    EXPECT_FALSE(m.relmse || m.bias || m.mean_ratio || m.leak_energy);
+    EXPECT_FALSE(measure(x, r, "caustic", PixelMask(4, false)).rmse);
+}
+
+TEST(Metrics, NameThePixelThatIsNotFinite) {
+    Film x = grey_film("caustic", {1, 1, 1, 1});
+    x.set_rgb("caustic", 2, {1, std::numeric_limits<float>::quiet_NaN(), 1});
+    try {
+        measure(x, grey_film("caustic", {1, 1, 1, 1}), "caustic", all);
+        FAIL() << "a NaN went through";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "picture: layer \"caustic\" is not finite at pixel (0, 1)");
+    }
+}
+
+TEST(Metrics, RefuseOtherSizesAndMissingLayers) {
+    const Film x = grey_film("caustic", {1, 1, 1, 1});
+    EXPECT_THROW(measure(x, Film(2, 1), "caustic", all), InputError);
+    EXPECT_THROW(measure(x, grey_film("direct", {1, 1, 1, 1}), "caustic", all), InputError);
+}
+
+TEST(Masks, LeaveOutWhatEitherPictureCannotReach) {
+    Film x(2, 2);
+    Film r(2, 2);
+    x.plane("unreached.Y") = {0, 0.25F, 0, 0};
+    r.plane("unreached.Y") = {0, 0, 0, 1};
+    EXPECT_EQ(reached_pixels(x, r), (PixelMask{true, false, true, false}));
+    EXPECT_DOUBLE_EQ(fraction(reached_pixels(x, r)), 0.5);
+}
+
+TEST(Masks, KeepPixelsAtLeastAsBrightAsTheMean) {
+    const Film r = grey_film("caustic", {0, 1, 2, 100});
+    EXPECT_EQ(bright_pixels(r, "caustic", {true, true, true, false}),
+              (PixelMask{false, true, true, false}));
+    EXPECT_EQ(bright_pixels(grey_film("caustic", {0, 0, 0, 0}), "caustic", all),
+              PixelMask(4, false));
+}
+
+TEST(StandardError, IsEmptyWhereThereIsNoCaustic) {
+    Film film(1, 1);
+    film.set_rgb("", 0, Spectrum::Constant(1));
+    EXPECT_FALSE(relative_standard_error(film, {true}));
+    film.plane("stderr.Y")[0] = 1;
+    EXPECT_FALSE(relative_standard_error(film, {true}));
+    EXPECT_THROW(static_cast<void>(film.rgb("caustic", 0)), std::logic_error);
+}
+
+TEST(StandardError, IsTheRootMeanSquareOverTheMean) {
+    Film r = grey_film("caustic", {1, 1, 1, 5});
+    EXPECT_FALSE(relative_standard_error(r, all)) << "no layer stderr";
+    r.plane("stderr.Y") = {1, 2, 2, 9};
+    EXPECT_DOUBLE_EQ(*relative_standard_error(r, {true, true, true, false}), std::sqrt(3.0));
+    EXPECT_DOUBLE_EQ(mean(r, "caustic", all), 2);
+}
+
+}  // namespace
+}  // namespace caustics

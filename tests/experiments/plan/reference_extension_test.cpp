@@ -1,0 +1,99 @@
+#include "experiments/plan/reference_extension.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/scene_file/scene_reader.h"
+#include "experiments/picture/metrics.h"
+#include "experiments/plan/reference_cache.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+const std::string scene_file = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+
+ReferenceRequest request(std::uint64_t paths, std::uint64_t seed = 1) {
+    ReferenceRequest wanted;
+    wanted.request = {
+        scene_file,
+        {},
+        parse_method("lighttrace", parameters_node({"paths=" + std::to_string(paths)})),
+        seed,
+        4};
+    wanted.key = reference_key(wanted.request, load_scene(scene_file, {}));
+    return wanted;
+}
+
+Reference rendered(ReferenceCache& cache, const ReferenceRequest& wanted) {
+    EXPECT_TRUE(cache.must_render(wanted));
+    cache.render(wanted, RunOptions{});
+    return *cache.get(wanted);
+}
+
+double total(const Film& film) {
+    return mean(film, "caustic", PixelMask(film.pixel_count(), true));
+}
+
+TEST(ReferenceExtension, BeginsWithTheSamplesThatAreThere) {
+    const support::TemporaryFolder folder;
+    ReferenceCache cache(std::string(folder / "references"), ReferencePolicy::extend);
+    const Reference small = rendered(cache, request(20'000));
+    EXPECT_EQ(small.film.metadata.count("extends"), 0U);
+    const Reference large = rendered(cache, request(80'000));
+    EXPECT_EQ(large.film.metadata.at("extends"), small.key + ".exr");
+    // A quarter of what is in it is the first one, pixel by pixel.
+    const RunRequest rest = remainder(request(80'000).request, {"", small.film, 20'000});
+    EXPECT_EQ(samples_of(rest.method), 60'000U);
+    EXPECT_NE(rest.seed, 1U);
+    const support::TemporaryFolder other("alone");
+    ReferenceCache alone(std::string(other / "references"), ReferencePolicy::extend);
+    ReferenceRequest three_quarters = request(60'000, rest.seed);
+    const Reference added = rendered(alone, three_quarters);
+    for (std::size_t i = 0; i < large.film.pixel_count(); ++i)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(
+                large.film.rgb("caustic", i)[c],
+                0.25F * small.film.rgb("caustic", i)[c] + 0.75F * added.film.rgb("caustic", i)[c],
+                1e-6F);
+    // The error falls as one over the root of the samples, and tells how far both are apart.
+    EXPECT_NEAR(*small.standard_error / *large.standard_error, 2, 0.3);
+    const double apart = std::abs(total(small.film) / total(large.film) - 1);
+    EXPECT_LT(apart, 4 * *small.standard_error);
+}
+
+TEST(ReferenceExtension, TakesTheLargestOfTheSameKindOnly) {
+    const support::TemporaryFolder folder;
+    ReferenceCache cache(std::string(folder / "references"), ReferencePolicy::extend);
+    const Reference first = rendered(cache, request(1'000));
+    const Reference second = rendered(cache, request(3'000));
+    rendered(cache, request(50'000));
+    rendered(cache, request(2'000, 7));  // another seed
+    const SceneFile scene = load_scene(scene_file, {});
+    const std::vector<std::filesystem::path> folders = {std::string(folder / "references"),
+                                                        std::string(folder / "nowhere")};
+    const auto found = find_smaller(folders, request(10'000).request, scene);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->samples, 3'000U);
+    EXPECT_EQ(found->film.metadata.at("extends"), first.key + ".exr");
+    EXPECT_FALSE(find_smaller(folders, request(1'000).request, scene));
+    EXPECT_FALSE(find_smaller(folders, request(10'000, 8).request, scene));
+    const SceneFile changed = load_scene(scene_file, {{"/light/intensity", "3"}});
+    EXPECT_FALSE(find_smaller(folders, request(10'000).request, changed));
+}
+
+TEST(ReferenceExtension, IsOnlyDoneWhenAskedFor) {
+    const support::TemporaryFolder folder;
+    const std::string references = folder / "references";
+    ReferenceCache cache(references, ReferencePolicy::extend);
+    rendered(cache, request(1'000));
+    for (const ReferencePolicy policy : {ReferencePolicy::keep, ReferencePolicy::rebuild}) {
+        ReferenceCache anew(references, policy);
+        const std::uint64_t paths = policy == ReferencePolicy::keep ? 4'000 : 5'000;
+        EXPECT_EQ(rendered(anew, request(paths)).film.metadata.count("extends"), 0U);
+    }
+}
+
+}  // namespace
+}  // namespace caustics

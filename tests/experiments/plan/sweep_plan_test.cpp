@@ -1,0 +1,219 @@
+#include "experiments/plan/sweep_plan.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
+
+#include "core/base/error.h"
+#include "experiments/base/file_io.h"
+#include "photonmap/photons/photon_map_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+
+class SweepPlans : public testing::Test {
+protected:
+    /// A sweep file over the test scene with these members.
+    std::filesystem::path sweep(const std::string& members) {
+        const std::filesystem::path file = folder_ / "sweep.json";
+        write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, {}}})",
+                                           scene, members));
+        return file;
+    }
+    SweepPlan plan(const std::string& members) { return read_plan({sweep(members)}); }
+    std::string error(const std::string& members) {
+        try {
+            plan(members);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no error";
+    }
+    support::TemporaryFolder folder_;
+};
+
+std::set<std::string> ids(const SweepPlan& plan) {
+    std::set<std::string> all;
+    for (const Trial& trial : plan.trials) all.insert(trial.id);
+    return all;
+}
+
+const std::string none = R"("methods": [{"method": "none"}])";
+
+TEST_F(SweepPlans, AreTheProductOfAllLists) {
+    const SweepPlan all = plan(
+        R"("set": {"glass": {"pointer": "/ball/bsdf/int_ior", "values": [1.3, 1.5]}},
+           "methods": [{"method": "photonmap",
+                        "param": {"photons": [10, 20, 30], "nearest": [5, 6], "estimator": "raw"}},
+                       {"method": "none"}],
+           "seeds": [1, 2, 3], "repeats": 2)");
+    EXPECT_EQ(all.trials.size(), 2U * (3 * 2 + 1) * 3 * 2);
+    EXPECT_EQ(ids(all).size(), all.trials.size());
+    EXPECT_EQ(all.swept, (std::vector<std::string>{"glass", "estimator", "nearest", "photons"}));
+    std::set<std::string> cells;
+    for (const Trial& trial : all.trials) cells.insert(trial.cell);
+    EXPECT_EQ(cells.size(), 2U * 7) << "a cell is what differs in more than seed and repeat";
+}
+
+TEST_F(SweepPlans, NameTrialsByWordsAndHash) {
+    const SweepPlan all = plan(R"("methods": [{"method": "photonmap", "param": {"photons": 10}}])");
+    ASSERT_EQ(all.trials.size(), 1U);
+    EXPECT_TRUE(
+        std::regex_match(all.trials[0].id, std::regex("ball-photonmap-photons10-s1-[0-9a-f]{16}")))
+        << all.trials[0].id;
+    EXPECT_EQ(ids(all), ids(plan(R"("methods": [{"method": "photonmap",
+                                                "param": {"photons": [10]}}], "seeds": [1])")))
+        << "the same trial however it is written";
+}
+
+TEST_F(SweepPlans, NeverGiveTwoTrialsOneName) {
+    const SweepPlan all = plan(
+        R"("set": {"floor": {"pointer": "/floor/bsdf/reflectance",
+                             "values": [0.1, 0.15, [0.1, 0.1, 0.5], 0.01, 1]},
+                   "light": {"pointer": "/light/position",
+                             "values": [[1, 0, 3], [-1, 0, 3], [1, 0, 3.5]]}}, )" +
+        none);
+    EXPECT_EQ(all.trials.size(), 15U);
+    EXPECT_EQ(ids(all).size(), 15U);
+}
+
+TEST_F(SweepPlans, JoinFilesAndDropWhatIsNamedTwice) {
+    const std::filesystem::path first =
+        sweep(R"("methods": [{"method": "none"}], "seeds": [1, 2])");
+    const std::filesystem::path second = folder_ / "second.json";
+    write_whole_file(
+        second,
+        fmt::format(
+            R"({{"version": 1, "scenes": ["{}"], "spp": 4, "methods": [{{"method": "none"}}],
+            "seeds": [2, 3]}})",
+            scene));
+    const SweepPlan all = read_plan({first, second});
+    EXPECT_EQ(all.trials.size(), 3U);
+    EXPECT_EQ(all.duplicates, 1U);
+}
+
+TEST_F(SweepPlans, KeyReferencesByAllTheyDependOn) {
+    const auto key = [&](const std::string& reference) {
+        return plan(none + R"(, "reference": )" + reference).trials[0].reference->key;
+    };
+    const std::string first = key(R"({"method": "lighttrace", "param": {"paths": 1000}})");
+    EXPECT_EQ(first, key(R"({"method": "lighttrace", "param": {"paths": 1e3}, "spp": 64})"));
+    for (const char* other : {R"({"method": "lighttrace", "param": {"paths": 1001}})",
+                              R"({"method": "lighttrace", "param": {"paths": 1000}, "seed": 2})",
+                              R"({"method": "lighttrace", "param": {"paths": 1000}, "spp": 16})"})
+        EXPECT_NE(first, key(other)) << other;
+}
+
+/// A photon map of no photons; the seed makes it another one.
+void write_map(const std::filesystem::path& file, std::uint64_t seed) {
+    save_photon_map({PhotonStore(0), {}, Spectrum::Ones()}, {.seed = seed}, file);
+}
+
+TEST_F(SweepPlans, TellTrialsThatLoadAFileByItsContent) {
+    const std::string load =
+        R"("methods": [{"method": "photonmap", "param": {"load": "a.photons"}}])";
+    write_map(folder_ / "a.photons", 1);
+    const SweepPlan first = plan(load);
+    EXPECT_EQ(first.trials[0].method_files.size(), 1U);
+    write_map(folder_ / "a.photons", 2);
+    EXPECT_NE(plan(load).trials[0].config_hash, first.trials[0].config_hash);
+    write_map(folder_ / "b.photons", 1);
+    EXPECT_EQ(plan(R"("methods": [{"method": "photonmap", "param": {"load": "b.photons"}}])")
+                  .trials[0]
+                  .config_hash,
+              first.trials[0].config_hash)
+        << "the name of the file does not matter";
+    EXPECT_NE(error(R"("methods": [{"method": "photonmap", "param": {"load": "c.photons"}}])")
+                  .find("c.photons: cannot be read"),
+              std::string::npos);
+}
+
+TEST_F(SweepPlans, RefuseToSaveTheFilesOfTrialsOverEachOther) {
+    const std::string reason =
+        error(R"("methods": [{"method": "photonmap", "param": {"save": "a.photons"}}])");
+    EXPECT_NE(reason.find("/methods/0/param: /save: not in a sweep"), std::string::npos) << reason;
+}
+
+TEST_F(SweepPlans, SetAWholeObjectBeforeAValueInIt) {
+    const SweepPlan all = plan(none + R"(, "set": {
+        "a_glass": {"pointer": "/ball/bsdf/int_ior", "values": [1.3, 1.5]},
+        "kind": {"pointer": "/ball/bsdf", "values": [{"type": "dielectric"}]}})");
+    ASSERT_EQ(all.trials.size(), 2U) << "whatever their names, both count";
+    const Overrides expected = {{"/ball/bsdf", R"({"type":"dielectric"})"},
+                                {"/ball/bsdf/int_ior", "1.3"}};
+    EXPECT_EQ(all.trials[0].request.overrides, expected);
+}
+
+TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {R"("methods": [])", "/methods"},
+        {none + R"(, "seeds": [])", "/seeds"},
+        {none + R"(, "set": {"a": {"pointer": "/ball/radius", "values": []}})", "/set/a/values"},
+        {none + R"(, "threads": 0)", "/threads"},
+        {none + R"(, "seeds": [-1])", "/seeds/0"},
+        {none + R"(, "version": 2)", "version"},
+        {none + R"(, "repeats": 0)", "/repeats"},
+        {none + R"(, "spq": 4)", "spq"},
+        {none + R"(, "repeats": 1000000000)", "makes 1000000000 trials, more than 1000000"},
+        {R"("methods": [{"method": "photonmpa"}])", "/methods/0/method"},
+        {R"("methods": [{"method": "photonmap", "param": {"photons": []}}])", "photons"},
+        {R"("methods": [{"method": "photonmap", "param": {"photns": 5}}])", "photns"},
+        {R"("methods": [{"method": "photonmap", "param": {"nearest": [10, -1]}}])", "nearest"},
+        {none + R"(, "set": {"a": {"pointer": "/flor/bsdf", "values": [1]}})", "/flor"},
+        {none + R"(, "set": {"a": {"pointer": "/floor/bsdf/alhpa", "values": [1]}})", "alhpa"},
+        {none + R"(, "set": {"rmse": {"pointer": "/x", "values": [1]}})", "column of every trial"},
+        {none + R"(, "set": {"a": {"pointer": "/ball/radius", "values": [0.3]},
+                             "b": {"pointer": "/ball/radius", "values": [0.4]}})",
+         R"(/set/b/pointer: /ball/radius is what "a" sets already)"},
+        {none + R"(, "set": {"A b": {"pointer": "/x", "values": [1]}})", "small letters"},
+        {none + R"(, "spp": 5)", "spp"}};
+    for (const auto& [members, word] : cases) {
+        const std::string message = error(members);
+        EXPECT_NE(message.find(word), std::string::npos) << members << ": " << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+    EXPECT_THROW(plan(none + R"(, "reference": {"method": "pathtrace"})"), UnsupportedScene);
+}
+
+TEST_F(SweepPlans, NameThePlaceOfAMistakeInTheSweepFileToo) {
+    const std::string file = (folder_ / "sweep.json").string();
+    EXPECT_EQ(error(none + R"(, "set": {"a": {"pointer": "/ball/radius", "values": [0.4]},
+                                        "b": {"pointer": "/ball/bsdf/int_ior", "values": [1.5, -1]},
+                                        "c": {"pointer": "/floor/bsdf/reflectance", "values": [0]}})"),
+              file + ": /set/b: -1: " + scene +
+                  ": /ball/bsdf/int_ior: -1 is out of range (from 0.1 to 10)");
+    EXPECT_NE(error(none + R"(, "set": {"a": {"pointer": "/flor/x", "values": [1]}})")
+                  .find(file + ": /set/a: 1: "),
+              std::string::npos);
+    const std::string broken = folder_ / "broken.json";
+    write_whole_file(broken, "{}");
+    const std::filesystem::path sweep = folder_ / "second.json";
+    write_whole_file(sweep, fmt::format(R"({{"version": 1, "scenes": ["{}"], {}}})", broken, none));
+    try {
+        read_plan({sweep});
+        FAIL();
+    } catch (const InputError& mistake) {
+        EXPECT_EQ(std::string(mistake.what()).rfind(sweep.string() + ": /scenes: " + broken, 0), 0U)
+            << mistake.what();
+    }
+}
+
+// Those that the project brings along, README's tiny.json among them.
+TEST_F(SweepPlans, EveryShippedSweepFileCanBePlanned) {
+    std::size_t files = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(CAUSTICS_SOURCE_DIR "/experiments/sweeps")) {
+        if (entry.path().extension() != ".json") continue;
+        ++files;
+        EXPECT_NO_THROW(EXPECT_FALSE(read_plan({entry.path()}).trials.empty())) << entry.path();
+    }
+    EXPECT_GE(files, 20U);
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,54 @@
+#include "experiments/report/sweep_summary.h"
+
+#include <gtest/gtest.h>
+
+namespace caustics {
+namespace {
+
+const std::vector<std::string> columns = {
+    "scene",   "method",         "status",           "alpha",      "photons",  "width", "rmse",
+    "total_s", "peak_rss_bytes", "reference_stderr", "mean_ratio", "reference"};
+const std::vector<std::string> swept = {"alpha", "width", "photons"};
+
+/// A row of the scene ring with one film size, judged by the reference of its alpha.
+TableRow row(const std::string& alpha, const std::string& photons, const std::string& rmse) {
+    return {columns,
+            {"ring", "photonmap", "done", alpha, photons, "64", rmse, "1.5", "72740864", "0.01",
+             "1", "lighttrace:" + alpha}};
+}
+
+std::string text(const std::vector<TableRow>& rows) {
+    SweepSummary summary(swept);
+    for (const TableRow& each : rows) summary.add(each);
+    return summary.text(rows.size(), rows.size(), 3);
+}
+
+TEST(SweepSummary, ErrorsOfOneReferenceAloneAreComparedForTheBest) {
+    const std::string told = text({row("1", "1000", "0.2"), row("1", "10000", "0.1"),
+                                   row("0.1", "1000", "0.9"), row("0.1", "10000", "0.7")});
+    EXPECT_NE(told.find("ring, alpha 1: 0.1 (photonmap, photons 10000)\n"), std::string::npos)
+        << told;
+    EXPECT_NE(told.find("ring, alpha 0.1: 0.7 (photonmap, photons 10000)\n"), std::string::npos)
+        << told;
+}
+
+TEST(SweepSummary, WhatIsTheSameEverywhereIsLeftOut) {
+    const std::string told = text({row("1", "1000", "0.2"), row("1", "10000", "0.1")});
+    EXPECT_NE(told.find("best RMSE  ring: 0.1 (photonmap, photons 10000)\n"), std::string::npos)
+        << told;
+}
+
+TEST(SweepSummary, ManySettingsAreCountedAndNotListed) {
+    std::vector<TableRow> rows;
+    for (int i = 0; i < 40; ++i) rows.push_back(row(std::to_string(100 + i), "1000", "0.5"));
+    const std::string told = text(rows);
+    EXPECT_NE(told.find("and 28 more settings"), std::string::npos) << told;
+}
+
+TEST(SweepSummary, MemoryIsInMiB) {
+    const std::string told = text({row("1", "1000", "0.2")});
+    EXPECT_NE(told.find("peak memory 69.37 to 69.37 MiB"), std::string::npos) << told;
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "experiments/run/methods.h"
+#include "experiments/verify/verify_gallery.h"
+#include "tests/experiments/named_scene.h"
+
+// Every parameter of every method moves something, and the way that theory says.
+
+namespace caustics {
+namespace {
+
+/// What a method answers at the points of a scene with a known answer.
+struct Answer {
+    std::vector<double> values;  ///< over the truth
+    double stderr_share = 0;     ///< the method's own standard error, of the mean
+    Counters counters;           ///< of build and queries
+    std::uint64_t bytes = 0;
+
+    double mean() const {
+        double sum = 0;
+        for (const double value : values) sum += value;
+        return sum / static_cast<double>(values.size());
+    }
+    double error() const {
+        double squares = 0;
+        for (const double value : values) squares += (value - 1) * (value - 1);
+        return std::sqrt(squares / static_cast<double>(values.size()));
+    }
+    double largest_difference(const Answer& other) const {
+        double largest = 0;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            largest = std::max(largest, std::abs(values[i] - other.values[i]));
+        return largest;
+    }
+};
+
+Answer ask(const std::string& scene_name, const std::string& method,
+           const std::vector<std::string>& parameters, double radius = 0) {
+    const GalleryScene gallery = scene_named(scene_name);
+    const Scene scene(gallery.make(32));
+    const auto built =
+        build(scene, parse_method(method, parameters_node(parameters)), RunOptions{});
+    const std::vector<ReceiverPoint> points = receiver_points(scene, gallery, radius);
+    const auto context = built->make_context();
+    const std::vector<Estimate> found = answers(*built, gallery, points, *context);
+    Answer answer;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        answer.values.push_back(static_cast<double>(found[i].value.mean()) /
+                                gallery.points[i].truth);
+        answer.stderr_share += static_cast<double>(found[i].standard_error.mean()) /
+                               gallery.points[i].truth / static_cast<double>(found.size());
+    }
+    const BuildReport report = built->build_report();
+    answer.counters = report.counters;
+    answer.bytes = report.bytes;
+    context->add_to(answer.counters);
+    return answer;
+}
+
+std::uint64_t count(const Answer& answer, const std::string& name) {
+    const auto found = answer.counters.find(name);
+    return found == answer.counters.end() ? 0 : found->second;
+}
+
+Answer map(const std::vector<std::string>& more, const std::string& scene = "plane_mirror") {
+    std::vector<std::string> parameters = {"photons=40000", "nearest=50"};
+    for (const std::string& each : more) {
+        const std::string key = each.substr(0, each.find('=') + 1);
+        std::erase_if(parameters, [&](const std::string& old) { return old.starts_with(key); });
+        if (key == "emitted=") std::erase(parameters, "photons=40000");
+        if (key == "radius=") std::erase(parameters, "nearest=50");
+        parameters.push_back(each);
+    }
+    return ask(scene, "photonmap", parameters);
+}
+
+TEST(Knobs, OfThePhotonMap) {
+    const Answer usual = map({});
+    // Scatter 1 / sqrt(N - 2), bias by the disc's size.
+    EXPECT_NEAR(map({"nearest=200"}).error() / usual.error(), 0.5, 0.15);
+    EXPECT_EQ(count(map({"photons=80000"}), "photons_stored"), 80'000U);
+    EXPECT_EQ(count(map({"emitted=10000"}), "photons_emitted"), 10'000U);
+    // eq. 4 as printed reads high by N / (N - 1).
+    EXPECT_NEAR(map({"estimator=raw"}).mean() / usual.mean(), 50.0 / 49.0, 1e-3);
+    EXPECT_LT(count(map({"max_radius=0.02"}), "gathered_photons"),
+              count(usual, "gathered_photons") / 2);
+    const Answer narrow = map({"radius=0.05"}), wide = map({"radius=0.2"});
+    EXPECT_NEAR(wide.error() / narrow.error(), 0.25, 0.1);
+    // A kernel that trusts near photons more has fewer of them in effect.
+    for (const std::string filter : {"cone", "gaussian", "epanechnikov"}) {
+        const Answer filtered = map({"filter=" + filter});
+        EXPECT_GT(filtered.error(), usual.error()) << filter;
+        EXPECT_NEAR(filtered.mean(), 1, 0.05) << filter;
+    }
+    // Discs that reach over the edges of the light hold photons that points do not use.
+    const Answer adaptive = map({"nearest=4000", "adaptive=true"}, "parabolic_mirror");
+    EXPECT_LT(count(adaptive, "used_photons"), count(adaptive, "gathered_photons"));
+    EXPECT_LT(map({"emission=stratified"}).error(), usual.error());
+    // Glass splits its light, or decides for one way.
+    EXPECT_GT(count(map({"interaction=split"}, "flat_water"), "photons_branched"), 0U);
+    EXPECT_EQ(count(map({}, "flat_water"), "photons_branched"), 0U);
+    // One event does not bring light through a slab.
+    EXPECT_GT(map({"max_bounces=2"}, "slab").mean(), 0.9);
+    EXPECT_LT(map({"emitted=10000", "max_bounces=1"}, "slab").mean(), 0.05);
+}
+
+TEST(Knobs, OfThePhotonMapThatChangeNoAnswer) {
+    const Answer usual = map({}, "schlick");
+    for (const std::string tree : {"tree=unbalanced", "tree=packed"}) {
+        const Answer other = map({tree}, "schlick");
+        EXPECT_NE(other.bytes, usual.bytes) << tree;
+        EXPECT_LT(other.largest_difference(usual), 1e-5) << tree;
+    }
+    const Answer tables = map({"tables=true"}, "schlick");
+    EXPECT_GT(tables.largest_difference(usual), 0);
+    EXPECT_LT(tables.largest_difference(usual), 1e-4);
+}
+
+Answer beams(const std::vector<std::string>& more, const std::string& scene = "sine_water") {
+    std::vector<std::string> parameters = more;
+    if (std::ranges::none_of(
+            more, [](const std::string& each) { return each.starts_with("mesh_resolution="); }))
+        parameters.emplace_back("mesh_resolution=32");
+    return ask(scene, "beamtree", parameters);
+}
+
+TEST(Knobs, OfTheBeamTree) {
+    const Answer usual = beams({});
+    EXPECT_NEAR(beams({"mesh_resolution=64"}).error() / usual.error(), 0.5, 0.15);
+    EXPECT_LT(beams({"intensity=refined"}).error(), 0.2 * usual.error());
+    // Which bound, hierarchy or merging finds a beam changes no answer, but the work.
+    std::set<std::uint64_t> tests = {count(usual, "cone_point_tests")};
+    for (const std::vector<std::string>& other :
+         std::vector<std::vector<std::string>>{{"bound=single"},
+                                               {"bound=double"},
+                                               {"bound=sphere_swept"},
+                                               {"bound=hybrid", "spread_threshold=0.5"},
+                                               {"bound=hybrid", "merging=cones"},
+                                               {"hierarchy=binned"},
+                                               {"bound=two_slice"}}) {
+        const Answer answer = beams(other);
+        EXPECT_LT(answer.largest_difference(usual), 1e-5) << other.back();
+        tests.insert(count(answer, "cone_point_tests"));
+    }
+    EXPECT_GE(tests.size(), 6U);  // a threshold may come to the same tests as another bound
+    // A floor across the fixed plane's normal is tested on the same plane either way.
+    EXPECT_LT(beams({"leaf=k"}).largest_difference(beams({"leaf=n"})), 1e-5);
+    EXPECT_EQ(2 * count(beams({"polygons=quads"}), "beams"), count(usual, "beams"));
+}
+
+TEST(Knobs, OfTheBeamTreeUnderALargeLight) {
+    const Answer few =
+        ask("furnace", "beamtree", {"mesh_resolution=4", "light_samples=1", "max_bounces=1"});
+    const Answer many =
+        ask("furnace", "beamtree", {"mesh_resolution=4", "light_samples=4", "max_bounces=1"});
+    EXPECT_GT(count(many, "beams"), 3 * count(few, "beams"));
+}
+
+TEST(Knobs, OfCausticPolygons) {
+    const auto ask_watt = [](const std::string& more) {
+        return ask("sine_water", "causticpolygons", {"mesh_resolution=16", more});
+    };
+    const Answer coarse = ask_watt("receiver_resolution=4"),
+                 fine = ask_watt("receiver_resolution=16");
+    EXPECT_EQ(count(fine, "receiver_polygons"), 16 * count(coarse, "receiver_polygons"));
+    EXPECT_LT(fine.largest_difference(coarse), 1e-5);
+    EXPECT_EQ(2 * count(ask_watt("polygons=quads"), "beams"), count(coarse, "beams"));
+}
+
+TEST(Knobs, OfTheIlluminationMap) {
+    const auto ask_arvo = [](const std::string& emitted, const std::string& resolution) {
+        return ask("plane_mirror", "illuminationmap", {emitted, resolution});
+    };
+    const Answer usual = ask_arvo("emitted=100000", "resolution=32");
+    EXPECT_NEAR(ask_arvo("emitted=1600000", "resolution=32").error() / usual.error(), 0.25, 0.15);
+    EXPECT_NEAR(ask_arvo("emitted=100000", "resolution=64").error() / usual.error(), 2, 0.5);
+}
+
+TEST(Knobs, OfTheReferences) {
+    const auto light = [](const std::vector<std::string>& parameters) {
+        return ask("slab", "lighttrace", parameters, 0);
+    };
+    const Answer usual = light({"paths=50000", "radius=0.1", "max_bounces=2"});
+    EXPECT_NEAR(
+        light({"paths=200000", "radius=0.1", "max_bounces=2"}).stderr_share / usual.stderr_share,
+        0.5, 0.05);
+    EXPECT_NEAR(
+        light({"paths=50000", "radius=0.2", "max_bounces=2"}).stderr_share / usual.stderr_share,
+        0.5, 0.05);
+    EXPECT_LT(light({"paths=50000", "radius=0.1", "max_bounces=1"}).mean(), 0.01);
+    const auto path = [](const std::vector<std::string>& parameters) {
+        return ask("furnace", "pathtrace", parameters);
+    };
+    const Answer few = path({"spp=100", "max_bounces=100"});
+    EXPECT_NEAR(path({"spp=400", "max_bounces=100"}).stderr_share / few.stderr_share, 0.5, 0.1);
+    // With one event nothing leaves the ball but what its outside reflects.
+    EXPECT_LT(path({"spp=100", "max_bounces=1"}).mean(), 0.3);
+}
+
+// A parameter that is added and forgotten above is noticed here.
+TEST(Knobs, AreAllTurnedAbove) {
+    const std::map<std::string, std::set<std::string>> turned = {
+        {"photonmap",
+         {"photons", "emitted", "estimator", "adaptive", "nearest", "max_radius", "radius",
+          "filter", "max_bounces", "emission", "interaction", "tree", "tables", "passes", "save",
+          "load"}},  // these three: photonmap/progressive_test, kept_photons_test
+        {"beamtree",
+         {"bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity", "footprint",
+          "polygons", "light_samples", "mesh_resolution", "max_bounces"}},
+        {"causticpolygons",
+         {"polygons", "light_samples", "mesh_resolution", "max_bounces", "receiver_resolution"}},
+        {"illuminationmap", {"emitted", "resolution", "max_bounces"}},
+        {"lighttrace", {"paths", "radius", "max_bounces"}},
+        {"pathtrace", {"spp", "max_bounces"}}};
+    for (const auto& [method, names] : turned) {
+        const nlohmann::json all = describe(parse_method(method, parameters_node({})));
+        for (const auto& [name, value] : all.items())
+            EXPECT_TRUE(names.contains(name)) << method << " " << name;
+    }
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,51 @@
+#include "experiments/run/light_differences.h"
+
+#include <gtest/gtest.h>
+
+namespace caustics {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+Film film_with(const std::string& parameters, const std::string& scene = "{}") {
+    Film film(1, 1);
+    film.metadata = {{"parameters", parameters}, {"scene", scene}};
+    return film;
+}
+
+TEST(LightDifferences, AreWhatChangesTheLight) {
+    const Film a = film_with(R"({"max_bounces": 3, "photons": 10})",
+                             R"({"floor": {"bsdf": {"alpha": 0.1}},
+                                 "sensor": {"fov": 40, "sampler": {"sample_count": 1}}})");
+    const Film b = film_with(R"({"max_bounces": 16, "paths": 10})",
+                             R"({"floor": {"bsdf": {"alpha": 0.5}}, "lamp": {"watt": 1},
+                                 "sensor": {"fov": 40, "sampler": {"sample_count": 4}}})");
+    EXPECT_EQ(light_differences(a, b),
+              (Lines{"max_bounces: 3 against 16", "/floor/bsdf/alpha: 0.1 against 0.5",
+                     "/lamp/watt: absent against 1"}));
+    EXPECT_EQ(light_differences(a, a), Lines());
+}
+
+TEST(LightDifferences, NameFilesThatChanged) {
+    Film a = film_with("{}");
+    Film b = a;
+    a.metadata["scene_assets"] = R"({"a.ply": "1"})";
+    b.metadata["scene_assets"] = R"({"a.ply": "2"})";
+    EXPECT_EQ(light_differences(a, b), Lines{R"(a.ply: "1" against "2")"});
+}
+
+TEST(LightDifferences, AreNotGuessed) {
+    const Film a = film_with(R"({"max_bounces": 3})", R"({"a": 1})");
+    EXPECT_EQ(light_differences(a, Film(1, 1)), Lines()) << "another program's picture";
+    EXPECT_EQ(light_differences(a, film_with("no JSON", "[1]")), Lines{"/a: 1 against absent"});
+    EXPECT_EQ(light_differences(a, film_with("{}", R"({"a": 1})")), Lines())
+        << "a method without that parameter";
+}
+
+TEST(LightDifferences, AreOneLineWhateverTheKeys) {
+    EXPECT_EQ(light_differences(film_with("{}", R"({"a\nb": 1})"), film_with("{}")),
+              Lines{"/a\\nb: 1 against absent"});
+}
+
+}  // namespace
+}  // namespace caustics

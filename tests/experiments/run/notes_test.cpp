@@ -1,0 +1,164 @@
+#include "experiments/run/notes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/geometry/tessellate.h"
+#include "core/geometry/vertex_normals.h"
+#include "core/math/rng.h"
+#include "experiments/run/methods.h"
+#include "tests/support/build_scene.h"
+
+namespace caustics {
+namespace {
+
+SceneDesc ring() {
+    SceneDesc desc;
+    desc.shapes = {support::mesh("ring", tessellate_cylinder(8),
+                                 Transform(Eigen::Scaling(0.5, 0.5, 0.25)), support::mirror()),
+                   support::horizontal("floor", 0, 1.2, true, support::diffuse(0.5F))};
+    desc.point_lights = {support::point_light({0, 0.49, 0.4}, 1)};
+    return desc;
+}
+
+SceneDesc flat_mirror() {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("mirror", 1, 1, false, support::mirror()),
+                   support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
+    desc.point_lights = {support::point_light({0, 0, 0.5}, 1)};
+    return desc;
+}
+
+std::vector<std::string> notes_of(const SceneDesc& desc, const std::string& name,
+                                  const std::vector<std::string>& parameters) {
+    const Scene scene(desc);
+    const Method method = parse_method(name, parameters_node(parameters));
+    return notes(scene, method, build(scene, method, RunOptions{})->build_report());
+}
+
+TEST(Notes, NameACasterThatIsTooFarAway) {
+    SceneDesc desc = flat_mirror();
+    desc.shapes.push_back(support::sphere("bead", {500, 0, 0}, 0.0035, support::glass(1.5F)));
+    const auto all = notes_of(desc, "photonmap", {"photons=100"});
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_TRUE(all[0].starts_with("bead lies 4.1e+04 times its size from the other casters"))
+        << all[0];
+    EXPECT_TRUE(notes_of(flat_mirror(), "photonmap", {"photons=100"}).empty());
+}
+
+// Panes of glass thrown about: what one polygon's corners meet is seldom one pane.
+SceneDesc panes() {
+    SceneDesc desc = flat_mirror();
+    desc.shapes.erase(desc.shapes.begin());
+    Rng rng(5, Stage::test, 0);
+    const auto random = [&rng] {
+        return Vec3d(2 * Vec3(rng.next(), rng.next(), rng.next()).cast<double>() - Vec3d::Ones());
+    };
+    for (int i = 0; i < 24; ++i) {
+        const Vec3d u = random().normalized();
+        const Vec3d v = u.cross(random()).normalized();
+        const Vec3d middle = Vec3d(0, 0, 0.9) + 0.4 * random();
+        desc.shapes.push_back(support::rectangle("pane" + std::to_string(i), middle, 0.15 * u,
+                                                 0.15 * v, support::glass(2.4F)));
+    }
+    desc.point_lights = {support::point_light({0, 0, 3}, 1)};
+    return desc;
+}
+
+bool any_holds(const std::vector<std::string>& notes, const std::vector<std::string>& words) {
+    return std::ranges::any_of(notes, [&](const std::string& note) {
+        return std::ranges::all_of(
+            words, [&](const std::string& word) { return note.find(word) != std::string::npos; });
+    });
+}
+
+TEST(Notes, NameTheShapeWhoseSmoothNormalsLoseLight) {
+    TriangleMesh cube = tessellate_cube(2);
+    cube.normals.clear();
+    SceneDesc desc = flat_mirror();
+    desc.point_lights = {support::point_light({0, 0.3, 4}, 1)};
+    desc.shapes[0] = support::mesh("crystal", cube, Transform(Eigen::Translation3d(0, 0, 2)),
+                                   support::glass(1.5F));
+    const std::vector<std::string> photons = {"photons=2000"};
+    EXPECT_EQ(notes_of(desc, "photonmap", photons), std::vector<std::string>{});
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    complete_normals(cube);
+    desc.shapes[0] = support::mesh("crystal", cube, Transform(Eigen::Translation3d(0, 0, 2)),
+                                   support::glass(1.5F));
+    EXPECT_TRUE(
+        any_holds(notes_of(desc, "photonmap", photons),
+                  {"% of the light paths", "crystal, by up to 55 degrees", "face_normals"}));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"crystal, by up to 55", "face_normals: true"}));
+}
+
+TEST(Notes, NameAChannelThatIsTooWeakToBeStoredWhole) {
+    SceneDesc desc = flat_mirror();
+    desc.shapes[0].bsdf = support::mirror();
+    auto& mirror = std::get<Conductor>(desc.shapes[0].bsdf.model);
+    const std::vector<std::string> photons = {"photons=2000"};
+    mirror.specular_reflectance = Spectrum(1, 0.1F, 0);
+    EXPECT_EQ(notes_of(desc, "photonmap", photons), std::vector<std::string>{});
+    mirror.specular_reflectance = Spectrum(1, 0.1F, 0.002F);
+    EXPECT_TRUE(any_holds(notes_of(desc, "photonmap", photons), {"100 %", "weakest channel"}));
+}
+
+TEST(Notes, SayWhereTheEyesMediumCannotBeTold) {
+    SceneDesc desc = flat_mirror();
+    const Spectrum ink = Spectrum::Constant(0.5F);
+    desc.shapes[0] = support::horizontal("water", 1, 1, true, support::glass(1.33F, 1, ink));
+    desc.camera = support::camera({0, 0, 0.5}, {0, 0.1, 0}, {0, 0, 1}, 60, 4, 4);
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    desc.shapes.push_back(support::sphere("ball", {0.5, 0, 0.3}, 0.2, support::glass(1.5F)));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"eye", "ext_absorption"}));
+}
+
+TEST(Notes, NameDielectricsThatCross) {
+    SceneDesc desc = flat_mirror();
+    desc.shapes.push_back(support::sphere("left", {0, 0, 3}, 0.2, support::glass(1.5F)));
+    desc.shapes.push_back(support::sphere("right", {0.5, 0, 3}, 0.2, support::glass(1.5F)));
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    desc.shapes.push_back(support::sphere("middle", {0.25, 0, 3}, 0.2, support::glass(1.5F)));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"left and middle", "1 pair more", "cross"}));
+}
+
+TEST(Notes, NameTheLightThatBeamsLose) {
+    for (const std::string method : {"beamtree", "causticpolygons"}) {
+        const std::vector<std::string> coarse = {"mesh_resolution=2", "max_bounces=4"};
+        const std::vector<std::string> all = notes_of(panes(), method, coarse);
+        ASSERT_EQ(all.size(), 1U);
+        for (const std::string part :
+             {method.c_str(), " % of the light", "photonmap", "max_bounces=1"})
+            EXPECT_NE(all[0].find(part), std::string::npos) << all[0];
+        // One event alone loses nothing, and smooth casters little.
+        EXPECT_TRUE(notes_of(panes(), method, {"mesh_resolution=2", "max_bounces=1"}).empty());
+        EXPECT_TRUE(notes_of(ring(), method, {}).empty());
+    }
+}
+
+TEST(Notes, NameParametersThatMakeNoDifference) {
+    const std::vector<std::string> given = {"polygons=quads", "light_samples=3",
+                                            "mesh_resolution=9"};
+    // The ring is a grid, and a mesh.
+    std::vector<std::string> with_one_event = given;
+    with_one_event.emplace_back("max_bounces=1");
+    const std::vector<std::string> of_ring = notes_of(ring(), "beamtree", with_one_event);
+    ASSERT_EQ(of_ring.size(), 2U);
+    EXPECT_EQ(of_ring[0].rfind("light_samples=3 makes no difference", 0), 0U) << of_ring[0];
+    EXPECT_EQ(of_ring[1].rfind("mesh_resolution=9 makes no difference", 0), 0U) << of_ring[1];
+
+    SceneDesc soup = ring();
+    soup.shapes[0].mesh.patches.clear();
+    EXPECT_EQ(notes_of(soup, "beamtree", {"polygons=quads", "max_bounces=1"}).size(), 1U);
+
+    SceneDesc all_used = flat_mirror();
+    all_used.shapes.push_back(support::sphere("lamp", {0, 0, 0.5}, 0.1, support::diffuse(0)));
+    all_used.shapes.back().radiance = Spectrum::Ones();
+    EXPECT_TRUE(notes_of(all_used, "beamtree", given).empty());
+    EXPECT_TRUE(notes_of(all_used, "causticpolygons", {"receiver_resolution=3"}).empty());
+    EXPECT_TRUE(notes_of(all_used, "photonmap", {"photons=1"}).empty());
+}
+
+}  // namespace
+}  // namespace caustics

@@ -1,0 +1,191 @@
+#include "experiments/sweep/merge.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "experiments/base/child_process.h"
+#include "experiments/base/file_io.h"
+#include "experiments/base/folder_lock.h"
+#include "experiments/plan/plan_file.h"
+#include "experiments/plan/trial_store.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Four trials, a to d, in two shards of two.
+class Merges : public testing::Test {
+protected:
+    void SetUp() override {
+        for (const char* id : {"a", "b", "c", "d"}) plan_.trials.push_back({id, id, 1, true});
+        add(one_, "a");
+        add(one_, "c");
+        add(two_, "b");
+        add(two_, "d");
+    }
+    void add(const fs::path& folder, const std::string& id, const std::string& code = "1",
+             const std::string& isa = "avx2", const std::string& cpu = "fast") {
+        const JobStore store(folder);
+        store.prepare();
+        write_plan(plan_, folder);
+        write_whole_file(store.begin(id) / "log.txt", "log of " + id);
+        store.commit(id, {{"trial", id},
+                          {"status", "unsupported"},
+                          {"scene", {{"name", "pool"}}},
+                          {"method", {{"name", "none"}}},
+                          {"swept", {{"key", id}}},
+                          {"code_version", code},
+                          {"isa", isa},
+                          {"machine", {{"cpu", cpu}}}});
+    }
+    std::vector<std::string> merge() { return merge_results({one_, two_}, whole_); }
+    std::string error() {
+        try {
+            merge();
+        } catch (const InputError& error) {
+            EXPECT_FALSE(fs::exists(whole_)) << "whole or absent";
+            return error.what();
+        }
+        return "no error";
+    }
+    support::TemporaryFolder folder_;
+    PlanFile plan_{{}, {"key"}, {"sweep.json"}, {}, "/"};
+    fs::path one_ = folder_ / "1";
+    fs::path two_ = folder_ / "2";
+    fs::path whole_ = folder_ / "whole";
+};
+
+TEST_F(Merges, PutShardsTogether) {
+    fs::create_directories(one_ / "references");
+    write_whole_file(one_ / "references/key.exr", "picture");
+    EXPECT_TRUE(merge().empty());
+    EXPECT_EQ(read_plan_of(whole_).trials, plan_.trials);
+    for (const char* id : {"a", "b", "c", "d"})
+        EXPECT_EQ(read_whole_file(JobStore(whole_).folder_of(id) / "log.txt"),
+                  std::string("log of ") + id);
+    EXPECT_EQ(read_whole_file(whole_ / "references/key.exr"), "picture");
+    const std::string table = read_whole_file(whole_ / "records.csv");
+    EXPECT_EQ(std::ranges::count(table, '\n'), 5);
+    EXPECT_LT(table.find("\na,"), table.find("\nb,")) << "in the plan's order";
+}
+
+TEST_F(Merges, RefuseGaps) {
+    JobStore(two_).remove("b");
+    EXPECT_NE(error().find("1 of the plan's trials are in none of the folders: b"),
+              std::string::npos)
+        << error();
+}
+
+TEST_F(Merges, LeaveOutWhatNoFilterChose) {
+    plan_.trials[1].chosen = false;
+    for (const fs::path& folder : {one_, two_}) write_plan(plan_, folder);
+    JobStore(two_).remove("b");
+    EXPECT_TRUE(merge().empty());
+}
+
+TEST_F(Merges, RefuseDuplicates) {
+    add(two_, "c");
+    EXPECT_NE(error().find("c: is in " + one_.string() + " and in " + two_.string()),
+              std::string::npos)
+        << error();
+}
+
+TEST_F(Merges, RefuseOtherCodeAndInstructionSets) {
+    add(two_, "b", "2");
+    EXPECT_NE(error().find("different code: \"1\" in"), std::string::npos) << error();
+    add(two_, "b", "1", "plain");
+    EXPECT_NE(error().find("instruction sets: \"avx2\" in"), std::string::npos) << error();
+}
+
+TEST_F(Merges, WarnOfMixedProcessors) {
+    add(two_, "b", "1", "avx2", "slow");
+    const std::vector<std::string> warnings = merge();
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("\"slow\" in " + two_.string()), std::string::npos) << warnings[0];
+}
+
+TEST_F(Merges, WriteNowhereElse) {
+    for (const std::string id :
+         {"../../out", "/tmp/out", "..", ".", "", "a/b", ".tmp-a", "-a", "a\n"}) {
+        plan_.trials[1].id = id;
+        for (const fs::path& folder : {one_, two_}) write_plan(plan_, folder);
+        EXPECT_NE(error().find("a plain name of a folder, not \"" + id.substr(0, 1)),
+                  std::string::npos)
+            << error();
+    }
+}
+
+TEST_F(Merges, FollowNoLinks) {
+    const fs::path log = JobStore(two_).folder_of("b") / "log.txt";
+    write_whole_file(folder_ / "secret", "secret");
+    fs::remove(log);
+    fs::create_symlink(folder_ / "secret", log);
+    EXPECT_NE(error().find(log.string() + ": is a symbolic link"), std::string::npos) << error();
+    fs::remove_all(log.parent_path());
+    fs::create_directory_symlink(JobStore(one_).folder_of("a"), log.parent_path());
+    EXPECT_NE(error().find("trials/b"), std::string::npos) << error();
+}
+
+TEST_F(Merges, NameABrokenFile) {
+    for (const char* text : {"{", "[]", ""}) {
+        write_whole_file(two_ / "environment.json", text);
+        EXPECT_NE(error().find((two_ / "environment.json").string() + ": broken"),
+                  std::string::npos)
+            << error();
+    }
+    fs::remove(two_ / "environment.json");
+    const fs::path record = JobStore(two_).record_of("b");
+    write_whole_file(record, R"({"trial": 16, "status": "done"})");
+    EXPECT_NE(error().find(record.string() + ": broken record (/trial: expected text)"),
+              std::string::npos)
+        << error();
+}
+
+TEST_F(Merges, TakeAnyNameOfTheTarget) {
+    for (const char* name : {"whole/", "whole//", "./x/../whole"}) {
+        merge_results({one_, two_}, folder_ / name);
+        EXPECT_TRUE(fs::exists(whole_ / "records.csv")) << name;
+        fs::remove_all(whole_);
+    }
+    fs::create_directory(whole_);
+    merge();
+    EXPECT_TRUE(fs::exists(whole_ / "records.csv"));
+}
+
+TEST_F(Merges, RefuseFoldersThatDoNotBelongTogether) {
+    plan_.trials.pop_back();
+    write_plan(plan_, two_);
+    EXPECT_NE(error().find("not the plan of"), std::string::npos) << error();
+    fs::remove(two_ / "plan.json");
+    EXPECT_NE(error().find("no results of a sweep"), std::string::npos) << error();
+}
+
+TEST_F(Merges, WaitForRunnersToEnd) {
+    const fs::path sign = folder_ / "locked";
+    const ChildProcess runner([&](const ChildProcess::Tell&) -> std::string {
+        const FolderLock lock(two_);
+        write_whole_file(sign, "");
+        while (true) pause();
+    });
+    while (!fs::exists(sign)) usleep(1000);
+    EXPECT_NE(error().find(fmt::format("{}: a runner still works on it (process {} on ",
+                                       two_.string(), runner.id())),
+              std::string::npos)
+        << error();
+}
+
+TEST_F(Merges, OverwriteNothing) {
+    write_whole_file(folder_ / "whole", "mine");
+    EXPECT_THROW(merge(), InputError);
+    EXPECT_EQ(read_whole_file(whole_), "mine");
+}
+
+}  // namespace
+}  // namespace caustics
