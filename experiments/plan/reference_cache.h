@@ -13,12 +13,13 @@
 
 namespace caustics {
 
-/// Of the files; part of every key.
-inline constexpr int reference_version = 1;
+/// Of the scene's reference pictures; part of their keys. 2 where the eye is in a medium that absorbs:
+/// pictures of version 1 leave out what it takes from the first leg of what the eye sees.
+int reference_version(const Scene& scene);
 
 /// Hash of everything a reference picture depends on: scene (film and sampler included), method,
-/// parameters in force, samples a pixel, seed, format.
-std::string reference_key(const RunRequest& request, const SceneFile& scene);
+/// parameters in force, samples a pixel, seed, version. `scene` is that of the file.
+std::string reference_key(const RunRequest& request, const SceneFile& file, const Scene& scene);
 
 /// A picture that trials are judged by: layers caustic, R G B (beauty), stderr.Y (root mean square
 /// over the channels) and, where it applies, unreached.

@@ -48,9 +48,10 @@ std::string said(const Film& film, const char* name) {
     return found == film.metadata.end() ? "" : found->second;
 }
 
-bool belongs_to(const Film& film, const RunRequest& wanted, const SceneFile& scene) {
+bool belongs_to(const Film& film, const RunRequest& wanted, const SceneFile& scene, int version) {
     const json theirs = json::parse(said(film, "parameters"), nullptr, false);
     return theirs.is_object() && theirs.contains(samples_name(wanted.method.name)) &&
+           said(film, "reference_version") == (version > 1 ? fmt::format("{}", version) : "") &&
            said(film, "scene_hash") == scene.hash && said(film, "method") == wanted.method.name &&
            said(film, "seed") == fmt::format("{}", wanted.seed) &&
            said(film, "spp") == fmt::format("{}", wanted.samples_per_pixel) &&
@@ -78,7 +79,8 @@ std::optional<std::uint64_t> samples_of(const Method& method) {
 }
 
 std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::path>& folders,
-                                             const RunRequest& wanted, const SceneFile& scene) {
+                                             const RunRequest& wanted, const SceneFile& scene,
+                                             int version) {
     std::optional<SmallerReference> best;
     const std::optional<std::uint64_t> most = samples_of(wanted.method);
     if (!most) return best;
@@ -90,7 +92,7 @@ std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::
         std::ranges::sort(files);  // a folder has no order
         for (const std::filesystem::path& file : files) {
             std::optional<Film> film = readable(file);
-            if (!film || !belongs_to(*film, wanted, scene)) continue;
+            if (!film || !belongs_to(*film, wanted, scene, version)) continue;
             const auto samples = json::parse(said(*film, "parameters"))
                                      .at(samples_name(wanted.method.name))
                                      .get<std::uint64_t>();

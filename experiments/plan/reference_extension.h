@@ -22,9 +22,10 @@ struct SmallerReference {
 std::optional<std::uint64_t> samples_of(const Method& method);
 
 /// The one of most samples among the EXR files of some folders, if there is any: the same scene, method,
-/// other parameters, film, camera samples and seed.
+/// other parameters, film, camera samples, seed and reference_version().
 std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::path>& folders,
-                                             const RunRequest& wanted, const SceneFile& scene);
+                                             const RunRequest& wanted, const SceneFile& scene,
+                                             int version);
 
 /// What is left to render: the same with the missing samples, and a seed of its own.
 RunRequest remainder(const RunRequest& wanted, const SmallerReference& begun);

@@ -9,10 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
-#include "experiments/run/cli_options.h"
 #include "experiments/plan/record.h"
 #include "experiments/plan/reference_cache.h"
 #include "experiments/plan/sweep_file.h"
+#include "experiments/run/cli_options.h"
 
 namespace caustics {
 
@@ -90,7 +90,7 @@ json examine(const SweepFile& sweep, const SceneVariant& variant) {
     if (const auto reason = why_unsupported(scene, request.method))
         throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),
                                            variant.file.string(), *reason));
-    facts["reference_key"] = reference_key(request, file);
+    facts["reference_key"] = reference_key(request, file, scene);
     return facts;
 }
 

@@ -22,7 +22,8 @@ ReferenceRequest request(std::uint64_t paths, std::uint64_t seed = 1) {
         parse_method("lighttrace", parameters_node({"paths=" + std::to_string(paths)})),
         seed,
         4};
-    wanted.key = reference_key(wanted.request, load_scene(scene_file, {}));
+    const SceneFile file = load_scene(scene_file, {});
+    wanted.key = reference_key(wanted.request, file, Scene(file.desc));
     return wanted;
 }
 
@@ -73,14 +74,26 @@ TEST(ReferenceExtension, TakesTheLargestOfTheSameKindOnly) {
     const SceneFile scene = load_scene(scene_file, {});
     const std::vector<std::filesystem::path> folders = {std::string(folder / "references"),
                                                         std::string(folder / "nowhere")};
-    const auto found = find_smaller(folders, request(10'000).request, scene);
+    const auto found = find_smaller(folders, request(10'000).request, scene, 1);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->samples, 3'000U);
     EXPECT_EQ(found->film.metadata.at("extends"), first.key + ".exr");
-    EXPECT_FALSE(find_smaller(folders, request(1'000).request, scene));
-    EXPECT_FALSE(find_smaller(folders, request(10'000, 8).request, scene));
+    EXPECT_FALSE(find_smaller(folders, request(1'000).request, scene, 1));
+    EXPECT_FALSE(find_smaller(folders, request(10'000, 8).request, scene, 1));
     const SceneFile changed = load_scene(scene_file, {{"/light/intensity", "3"}});
-    EXPECT_FALSE(find_smaller(folders, request(10'000).request, changed));
+    EXPECT_FALSE(find_smaller(folders, request(10'000).request, changed, 1));
+    EXPECT_FALSE(find_smaller(folders, request(10'000).request, scene, 2));
+}
+
+// Pictures of version 1 lack what water takes before it comes to an eye in it.
+TEST(ReferenceKeys, DifferWhereTheEyeIsInAMediumThatAbsorbs) {
+    const auto version = [](const char* name) {
+        const std::string scenes = CAUSTICS_SOURCE_DIR "/experiments/scenes/";
+        return reference_version(Scene(load_scene(scenes + name, {}).desc));
+    };
+    EXPECT_EQ(version("pool.json"), 2);
+    EXPECT_EQ(version("pool_overhead.json"), 1);
+    EXPECT_EQ(version("ball.json"), 1);
 }
 
 TEST(ReferenceExtension, IsOnlyDoneWhenAskedFor) {
