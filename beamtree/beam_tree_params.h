@@ -3,7 +3,6 @@
 #include "beamtree/beams/beam_params.h"
 #include "beamtree/cones/cone_tree.h"
 #include "beamtree/tracing/beam_tracing.h"
-#include "core/scene_file/json_reader.h"
 
 namespace caustics {
 
@@ -30,8 +29,5 @@ struct BeamTreeParams : BeamParams {
     /// a fixed plane, and polygons that the plane cuts, are asked at the point.
     float footprint = 0;
 };
-
-/// Throws InputError for what cannot be used or is not built yet.
-void read(const JsonNode& node, BeamTreeParams& params);
 
 }  // namespace caustics

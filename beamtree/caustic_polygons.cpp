@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "beamtree/beam_estimator.h"
+#include "beamtree/beam_parameters.h"
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/receiver_polygons.h"
 #include "core/base/parallel.h"
@@ -127,11 +128,30 @@ private:
 
 }  // namespace
 
-void read(const JsonNode& node, CausticPolygonsParams& params) {
-    read_beam_params(node, params);
-    if (const auto resolution = node.find("receiver_resolution"))
-        params.receiver_resolution = static_cast<int>(resolution->as_integer_in(2, 4096));
-    node.finish();
+const DescribedMethod<CausticPolygonsParams>& causticpolygons_method() {
+    using P = CausticPolygonsParams;
+    static const DescribedMethod<P> method([] {
+        MethodTable<P> table{
+            .facts = {.name = "causticpolygons",
+                      .summary = "Watt 1990: the same beams, kept by the polygons of the receivers",
+                      .serves = "as `beamtree`",
+                      .effort = {"mesh_resolution=32"},
+                      .more_effort = {"mesh_resolution=64"}},
+            .parameters = beam_parameters<P>(),
+            .take_least_work = [](P& params) {
+                params.light_samples = 1;
+                params.receiver_resolution = 2;
+            }};
+        table.parameters.push_back(parameter::whole_number<P>(
+            &P::receiver_resolution, 2, 4096,
+            {.key = "receiver_resolution",
+             .meaning =
+                 "Polygons along each parameter of exact receivers; meshes are taken as they are.",
+             .unit = "polygons",
+             .source = "[Watt 1990]"}));
+        return table;
+    }());
+    return method;
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene,

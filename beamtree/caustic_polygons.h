@@ -4,7 +4,7 @@
 
 #include "beamtree/beams/beam_params.h"
 #include "core/caustic_estimator.h"
-#include "core/scene_file/json_reader.h"
+#include "core/method/described_method.h"
 
 namespace caustics {
 
@@ -16,8 +16,7 @@ struct CausticPolygonsParams : BeamParams {
     int receiver_resolution = 16;  ///< of exact receivers; meshes are taken as they are
 };
 
-/// Throws InputError for what cannot be used.
-void read(const JsonNode& node, CausticPolygonsParams& params);
+const DescribedMethod<CausticPolygonsParams>& causticpolygons_method();
 
 /// Phases "beams" and "polygons". Counters: polygons, receiver_polygons, beams, beam_polygon_tests
 /// (one a beam and diffuse polygon), caustic_polygons (pairs that meet), beam_point_tests,

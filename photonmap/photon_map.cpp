@@ -147,7 +147,7 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     check(params);
     RunOptions own = options;
     own.seed = pass_seed(options.seed, pass);
-    SavedPhotons kept = kept_photons(scene, params, own);
+    SavedPhotons kept = photon_source(scene, params, own);
     TracedPhotons& photons = kept.photons;
     RadianceEstimate::Settings settings;
     settings.estimator = params.estimator;

@@ -48,7 +48,7 @@ std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t triangle) {
 
 }  // namespace
 
-LampSampler::LampSampler(const Scene& scene, const AreaLight& light)
+AreaLightSampler::AreaLightSampler(const Scene& scene, const AreaLight& light)
     : shape_(scene.shapes()[light.shape]), even_(light.sampler) {
     for (const std::uint32_t caster : scene.casters())
         casters_.push_back(bounds(scene.shapes()[caster]));
@@ -60,7 +60,7 @@ LampSampler::LampSampler(const Scene& scene, const AreaLight& light)
 
 // The sum over 27 places of a box of cosine / distance^2 at the lamp, in any unit. The distance is
 // rounded off below an eighth of the box: places stand for their surroundings.
-double LampSampler::light_sent(const Vec3& position, const Vec3& normal) const {
+double AreaLightSampler::light_sent(const Vec3& position, const Vec3& normal) const {
     double sum = 0;
     for (const Box& box : casters_) {
         const float rounding = box.sizes().squaredNorm() / 64;
@@ -76,7 +76,7 @@ double LampSampler::light_sent(const Vec3& position, const Vec3& normal) const {
     return sum;
 }
 
-void LampSampler::weigh_triangles() {
+void AreaLightSampler::weigh_triangles() {
     std::vector<double> areas;
     std::vector<Vec3> normals;
     for (std::size_t i = 0; i < shape_.mesh.triangles.size(); ++i) {
@@ -95,7 +95,7 @@ void LampSampler::weigh_triangles() {
 }
 
 // By cells of the square: from nine points of each, and what may lie above them between.
-void LampSampler::weigh_square() {
+void AreaLightSampler::weigh_square() {
     constexpr std::size_t side = 2 * cells + 1;
     std::vector<double> sent;
     std::vector<Vec3> normals;
@@ -129,7 +129,7 @@ void LampSampler::weigh_square() {
     cumulative_ = cumulative(rows);
 }
 
-LampSampler::Sample LampSampler::sample(float u0, float u1) const {
+AreaLightSampler::Sample AreaLightSampler::sample(float u0, float u1) const {
     if (cumulative_.empty()) {
         const auto point = even_.sample(shape_, u0, u1);
         return {point.position, point.normal, point.offset, 1};
@@ -137,7 +137,7 @@ LampSampler::Sample LampSampler::sample(float u0, float u1) const {
     return shape_.primitive == Primitive::mesh ? sample_triangles(u0, u1) : sample_square(u0, u1);
 }
 
-LampSampler::Sample LampSampler::sample_triangles(float u0, float u1) const {
+AreaLightSampler::Sample AreaLightSampler::sample_triangles(float u0, float u1) const {
     auto rest = static_cast<double>(u0);
     const std::size_t index = pick_and_stretch(cumulative_, rest);
     const auto [a, b, c] = corners(shape_.mesh, index);
@@ -150,7 +150,7 @@ LampSampler::Sample LampSampler::sample_triangles(float u0, float u1) const {
     return sample;
 }
 
-LampSampler::Sample LampSampler::sample_square(float u0, float u1) const {
+AreaLightSampler::Sample AreaLightSampler::sample_square(float u0, float u1) const {
     std::array<double, 2> u = {static_cast<double>(u0), static_cast<double>(u1)};
     const std::size_t row = pick_and_stretch(cumulative_, u[0]);
     const std::size_t column = pick_and_stretch(row_cumulative_[row], u[1]);

@@ -10,9 +10,9 @@ namespace caustics {
 /// away from them, and beams that start there bring nothing. The density follows the light that a
 /// point sends to places all over the boxes round the casters, corners among them; so it is above 0
 /// wherever light can leave towards the boxes. A flat lamp's is even.
-class LampSampler {
+class AreaLightSampler {
 public:
-    LampSampler(const Scene& scene, const AreaLight& light);
+    AreaLightSampler(const Scene& scene, const AreaLight& light);
 
     struct Sample {
         Vec3 position;

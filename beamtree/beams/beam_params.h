@@ -1,7 +1,6 @@
 #pragma once
 
 #include "beamtree/beams/caster_mesh.h"
-#include "core/scene_file/json_reader.h"
 
 namespace caustics {
 
@@ -12,8 +11,5 @@ struct BeamParams {
     int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
     int max_bounces = 16;      ///< specular events between light and receiver
 };
-
-/// Those that are given: `polygons`, `light_samples`, `mesh_resolution`, `max_bounces`.
-void read_beam_params(const JsonNode& node, BeamParams& params);
 
 }  // namespace caustics

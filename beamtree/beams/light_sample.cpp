@@ -14,7 +14,7 @@ float fraction(float x) { return std::min(x - std::floor(x), 0x1.fffffep-1F); }
 
 void sample_area_light(const Scene& scene, const AreaLight& light, LightSample sample, int count,
                        Rng rng, std::vector<LightSample>& samples) {
-    const LampSampler lamp(scene, light);
+    const AreaLightSampler lamp(scene, light);
     const float shift_u = rng.next();
     const float shift_v = rng.next();
     constexpr float golden = 0.618033988F;
@@ -23,7 +23,7 @@ void sample_area_light(const Scene& scene, const AreaLight& light, LightSample s
         light.radiance * static_cast<float>(light.sampler.area() / static_cast<double>(count));
     for (int i = 0; i < count; ++i) {
         const auto at = static_cast<float>(i);
-        const LampSampler::Sample point = lamp.sample(
+        const AreaLightSampler::Sample point = lamp.sample(
             fraction((at + shift_u) / static_cast<float>(count)), fraction(at * golden + shift_v));
         sample.strength = even * point.weight;
         sample.position = point.position;
@@ -44,6 +44,7 @@ std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, s
         if (const auto* point = std::get_if<PointLight>(&light)) {
             sample.position = point->position;
             sample.strength = point->intensity;
+            sample.spot = point->spot;
             samples.push_back(sample);
         } else if (const auto* far = std::get_if<DirectionalLight>(&light)) {
             sample.kind = LightSample::Kind::directional;
@@ -73,6 +74,7 @@ float distance_from(const LightSample& light, const Vec3& point) {
 }
 
 Spectrum strength_along(const LightSample& light, const Vec3& w) {
+    if (light.spot) return light.strength * light.spot->falloff(-w);
     if (light.kind != LightSample::Kind::area) return light.strength;
     return light.strength * std::max(0.0F, -light.normal.dot(w));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -18,11 +19,12 @@ struct LightSample {
     Box bounds;                    ///< directional: of the scene, outside of which its rays begin
     Spectrum strength = black();   ///< point [W/sr]; area [W/sr] along the normal;
                                    ///< directional [W/m^2] across the direction
+    std::optional<SpotCone> spot;  ///< of a point light that is one
     std::uint32_t light = 0;       ///< index into Scene::lights
 };
 
 /// One sample a point or directional light, `per_area_light` samples an area light: a rank-1 lattice
-/// over the part of it that can shine on casters (LampSampler), shifted at random by the seed.
+/// over the part of it that can shine on casters (AreaLightSampler), shifted at random by the seed.
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
 
 /// Unit direction from a point to the light.
@@ -30,7 +32,7 @@ Vec3 to_light(const LightSample& light, const Vec3& point);
 /// Distance that the light has gone to a point [m]: what absorption on the way acts on.
 float distance_from(const LightSample& light, const Vec3& point);
 /// Strength towards a point that sees the light along the unit direction `w` (cosine of an area
-/// light included; 0 behind it).
+/// light and falloff of a spot light included).
 Spectrum strength_along(const LightSample& light, const Vec3& w);
 /// What the strength is multiplied by for the flux onto a triangle: its solid angle [sr] (Van
 /// Oosterom and Strackee 1983), or for a directional light its area across the direction [m^2].

@@ -7,13 +7,13 @@
 namespace caustics {
 
 bool sends_on(const MeshPoint& point, const Facing& facing, Event event) {
-    const BentLight& bent = point.bent;
+    const SpecularVertex& bent = point.bent;
     const bool leaves_front = facing.normal.dot(bent.direction[event]) > 0;
     return bent.front == facing.front && leaves_front == (facing.front == (event == reflection)) &&
            !is_black(bent.weight[event]);
 }
 
-FirstSurface::FirstSurface(const Scene& scene, const CasterMesh& caster, const LightSample& light)
+LitCaster::LitCaster(const Scene& scene, const CasterMesh& caster, const LightSample& light)
     : scene_(scene),
       caster_(caster),
       light_(light),
@@ -21,7 +21,7 @@ FirstSurface::FirstSurface(const Scene& scene, const CasterMesh& caster, const L
       bender_(scene, caster.shape, light),
       hidden_(caster.closed.hidden_from(caster.mesh, light)) {}
 
-Facing FirstSurface::facing(std::uint32_t triangle) const {
+Facing LitCaster::facing(std::uint32_t triangle) const {
     const TriangleMesh& mesh = caster_.mesh;
     const auto& [i, j, k] = mesh.triangles[triangle];
     const Vec3& a = mesh.positions[i];
@@ -37,7 +37,7 @@ Facing FirstSurface::facing(std::uint32_t triangle) const {
 }
 
 // Twice the rounding, as places between corners are found in float.
-float FirstSurface::corner_offset(std::uint32_t triangle) const {
+float LitCaster::corner_offset(std::uint32_t triangle) const {
     const TriangleMesh& mesh = caster_.mesh;
     const auto& [i, j, k] = mesh.triangles[triangle];
     const Vec3& a = mesh.positions[i];
@@ -52,7 +52,7 @@ float FirstSurface::corner_offset(std::uint32_t triangle) const {
 
 // Bound of how far the exact shape bulges from its triangle: |edge| |turn of the normal| / 8 for
 // a circular arc, twice that for others and for what adds up inside the triangle.
-float FirstSurface::offset(std::uint32_t triangle) const {
+float LitCaster::offset(std::uint32_t triangle) const {
     if (!caster_.tessellated) return corner_offset(triangle);
     const TriangleMesh& mesh = caster_.mesh;
     const auto& corners = mesh.triangles[triangle];

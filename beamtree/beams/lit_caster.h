@@ -20,9 +20,9 @@ struct Facing {
 bool sends_on(const MeshPoint& point, const Facing& facing, Event event);
 
 /// A caster's mesh in the light of one sample.
-class FirstSurface {
+class LitCaster {
 public:
-    FirstSurface(const Scene& scene, const CasterMesh& caster, const LightSample& light);
+    LitCaster(const Scene& scene, const CasterMesh& caster, const LightSample& light);
 
     const CasterMesh& caster() const { return caster_; }
     const LightSample& light() const { return light_; }

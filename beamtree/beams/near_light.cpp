@@ -12,6 +12,8 @@ namespace {
 constexpr double widest = pi_d / 6;
 constexpr double widest_in_flat_glass = pi_d / 24;
 constexpr float flat = 1e-3F;  // between unit normals
+// How many edges span half of a spot light's cone.
+constexpr double spot_parts = 8;
 // How much longer than those of an even mesh edges may be.
 constexpr double slack = 4;
 
@@ -24,7 +26,7 @@ bool touch(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 // Two edges of the angle u, at an angle of incidence i, enclose u^2 cos i / 2 of the 4 pi.
-NearLight::NearLight(const FirstSurface& surface)
+NearLight::NearLight(const LitCaster& surface)
     : bender_(surface.bender()),
       light_(surface.light()),
       most_(slack * slack * 8 * pi_d /
@@ -40,6 +42,12 @@ bool NearLight::is_wide(const MeshPoint& a, const MeshPoint& b) const {
     const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
     const bool is_flat_glass = is_glass_mesh_ && (a.normal - b.normal).norm() < flat;
     if (angle > (is_flat_glass ? widest_in_flat_glass : widest)) return true;
+    if (light_.spot && angle > static_cast<double>(light_.spot->cutoff) / spot_parts) {
+        const Vec3d middle = u.normalized() + v.normalized();
+        if (static_cast<double>(light_.spot->angle_to(middle.cast<float>())) <
+            static_cast<double>(light_.spot->cutoff) + angle)
+            return true;
+    }
     const double cosine = std::max(std::abs(a.normal.cast<double>().dot(u)) / u.norm(),
                                    std::abs(b.normal.cast<double>().dot(v)) / v.norm());
     return angle * angle * cosine > most_;

@@ -11,12 +11,14 @@ namespace caustics {
 /// angle, and nearly all light enters in its middle.
 ///
 /// An edge is halved where the light sees it under more than 30 degrees (7.5 in flat glass that is a mesh
-/// in the scene, as a pane of two triangles), or where it is four times as long as it would be if the
-/// mesh's triangles were spread evenly over all directions round the light. So the mesh bounds the number of pieces, however near the light is. Whether an edge is halved
-/// depends on the edge alone: triangles that share it meet in the same points.
+/// in the scene, as a pane of two triangles); where it is four times as long as it would be if the
+/// mesh's triangles were spread evenly over all directions round the light; and where it is long
+/// against the cone of a spot light and may lie in it. So the mesh bounds the number of pieces, however
+/// near the light is. Whether an edge is halved depends on the edge alone: triangles that share it meet
+/// in the same points.
 class NearLight {
 public:
-    explicit NearLight(const FirstSurface& surface);
+    explicit NearLight(const LitCaster& surface);
 
     /// Whether the triangle has to be divided.
     bool is_near(const PieceCorners& corners) const;

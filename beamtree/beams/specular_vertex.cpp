@@ -11,7 +11,7 @@ MeshPoint LightBender::at(const Vec3& position, const Vec3& normal) const {
     const Vec3& n = point.normal;
     const Vec3 w = to_light(light_, position);
     if (w.isZero(0) || n.isZero(0)) return point;
-    BentLight& bent = point.bent;
+    SpecularVertex& bent = point.bent;
     bent.front = n.dot(w) > 0;
     const SpecularSplit split = split_specular(bsdf_, n, n, w);
     const Spectrum* const medium = medium_absorption(bsdf_, n, w);

@@ -13,7 +13,7 @@ enum Event : std::size_t { reflection, refraction };
 inline constexpr std::array<Event, 2> events = {reflection, refraction};
 
 /// What the surface does with the light at one point.
-struct BentLight {
+struct SpecularVertex {
     bool front = false;  ///< the light comes to the normal's side
     std::array<Vec3, 2> direction;
     std::array<Spectrum, 2> weight = {black(), black()};  ///< strength after each event
@@ -24,7 +24,7 @@ struct MeshPoint {
     static constexpr std::uint32_t no_vertex = ~0U;
     Vec3 position;
     Vec3 normal;  ///< unit, or zero
-    BentLight bent;
+    SpecularVertex bent;
     std::uint32_t vertex = no_vertex;  ///< of the mesh, where it is one
 };
 

@@ -22,7 +22,7 @@ struct Cap {
 /// angle is the largest to any of them. Two to five per cent wider than need be.
 Cap box_cap(std::span<const Vec3d> directions);
 
-/// The smallest cap [CC95 eq. 1], by Welzl's incremental method on the sphere. Directions that
+/// The smallest cap [CC95 (1)], by Welzl's incremental method on the sphere. Directions that
 /// hardly fit into a hemisphere get that of their box.
 Cap smallest_cap(std::span<const Vec3d> directions);
 

@@ -8,7 +8,7 @@
 namespace caustics {
 namespace {
 
-// Eq. 4, with the axis by the box of the children's axes.
+// [CC95 (4)], with the axis by the box of the children's axes.
 Cap merged_cap(std::span<const MergedCone> children) {
     std::vector<Vec3d> axes;
     for (const MergedCone& child : children) {
@@ -35,7 +35,7 @@ struct SectionPlane {
         const double back = static_cast<double>(child.radius) / slope;
         const Vec3d child_axis = child.axis.cast<double>().normalized();
         for (const double side : {-1.0, 1.0}) {
-            const Vec3d apex = child.neck.cast<double>() + side * back * child_axis;
+            const Vec3d apex = child.neck.cast<double>() + side * back * child_axis;  // [CC95 (3)]
             const double height = depth - (apex - origin).dot(axis);
             // Forward of the rear apex, backward of the front one: the rays are in one of them.
             if (side * height > 0) continue;
@@ -47,7 +47,7 @@ struct SectionPlane {
 
     bool add(const std::optional<ConeSection>& section, Eigen::AlignedBox2d& box) const {
         if (!section) return false;
-        const Vec3d minor_axis = section->major_axis.cross(axis);
+        const Vec3d minor_axis = section->major_axis.cross(axis);  // [CC95 (8)]
         for (const double a : {-1.0, 1.0})
             for (const double b : {-1.0, 1.0}) {
                 const Vec3d corner = section->centre - origin +
@@ -69,11 +69,15 @@ std::optional<ConeSection> cone_section(const Vec3d& apex, const Vec3d& cone_axi
     const double k = std::pow(std::cos(spread), 2) - sin_between * sin_between;
     if (!(k > 0) || !(cos_between > 0)) return {};
     ConeSection section;
+    // [CC95 (7)], made a unit vector.
     section.major_axis =
         sin_between > 1e-12 ? Vec3d(sideways / sin_between) : plane_axis.unitOrthogonal();
     const double h = std::abs(height);
+    // [CC95 (5)] and [CC95 (6)]: the semi-axes.
     section.major = h * std::sin(spread) * std::cos(spread) / k;
     section.minor = h * std::sin(spread) / std::sqrt(k);
+    // [CC95 (9)] with the parent's axis in place of the child's (README.md: the printed one loses rays),
+    // moved along the major axis by [CC95 (10)].
     section.centre =
         apex + height * plane_axis + height * sin_between * cos_between / k * section.major_axis;
     return section;

@@ -15,7 +15,7 @@ namespace caustics {
 struct ConeTreeSettings {
     enum class Merging {
         rays,  ///< every node from its own vertex rays: tighter, and simpler
-        cones  ///< inner nodes from their children's cones [CC95 eqs. 4-10]
+        cones  ///< inner nodes from their children's cones [CC95 (4)] to [CC95 (10)]
     };
     Bound bound = Bound::hybrid;
     double spread_threshold = 10;  ///< of `hybrid` [degrees]

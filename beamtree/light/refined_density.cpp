@@ -120,7 +120,7 @@ std::optional<double> density_on(const TestPlane& plane, const BeamSet& set, con
         flux += flux_of(*partner.beam, partner.triangle);
         found += other->flux();
     } else if (beam.triangle_count() == 2 && hit.flux_share == 1) {
-        return {};  // the other half shares eq. 11's flux of the whole quad with this one
+        return {};  // the other half shares [CC95 (11)]'s flux of the whole quad with this one
     }
     const double irradiance = own->irradiance(hit.weights.cast<double>()) * flux / found;
     return irradiance / static_cast<double>(beam.flux.mean());

@@ -13,7 +13,7 @@ namespace caustics {
 /// triangles how large it is: the two halves of a parallelogram err by opposite first orders. Where
 /// the light goes down unevenly the plane is the one across the light that arrives.
 ///
-/// Empty where [CC95 eq. 11] has to do: without spreads, within a fold, where the corners' spreads
+/// Empty where [CC95 (11)] has to do: without spreads, within a fold, where the corners' spreads
 /// differ by a factor of four, and where the plane clips the polygon.
 std::optional<double> refined_density(const BeamSet& set, const BeamHit& hit, const Vec3& point);
 

@@ -47,7 +47,7 @@ void keep_only(BeamSet& set, const std::vector<bool>& kept) {
 /// Follows one level after the other, as far as it is worth it.
 class Follower {
 public:
-    Follower(const Scene& scene, const FirstSurface& surface, const MeshNeighbours* neighbours,
+    Follower(const Scene& scene, const LitCaster& surface, const MeshNeighbours* neighbours,
              const std::vector<Box>& receivers, std::size_t max_bounces, TracedBeams& traced)
         : scene_(scene),
           surface_(surface),
@@ -92,7 +92,7 @@ private:
         for (const std::uint32_t corner : beam.corners) {
             if (corner == Beam::none) continue;
             box.extend(level.traced.set.rays[corner].position);
-            box.extend(level.landings[corner].position);
+            box.extend(level.arrivals[corner].position);
         }
         // Surfaces bulge from the beam's triangles by about its own width.
         const Vec3 margin = Vec3::Constant(0.05F * box.diagonal().norm() + beam.offset);
@@ -102,7 +102,7 @@ private:
     }
 
     const Scene& scene_;
-    const FirstSurface& surface_;
+    const LitCaster& surface_;
     const MeshNeighbours* neighbours_;
     const std::vector<Box>& receivers_;
     std::size_t max_bounces_;
@@ -111,14 +111,14 @@ private:
 
 }  // namespace
 
-BeamFollower::BeamFollower(const Scene& scene, const FirstSurface& surface,
-                           const MeshNeighbours* neighbours, int max_bounces)
+BeamBounces::BeamBounces(const Scene& scene, const LitCaster& surface,
+                         const MeshNeighbours* neighbours, int max_bounces)
     : scene_(scene), surface_(surface), neighbours_(neighbours), max_bounces_(max_bounces) {
     for (const Shape& shape : scene.shapes())
         if (is_receiver(shape.bsdf)) receivers_.push_back(bounds(shape));
 }
 
-void BeamFollower::follow(std::array<TracedSet, 2> first, const ProgressPart& part) {
+void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& part) {
     double flux = 0;
     std::size_t beams = 0;
     for (const TracedSet& one : first) {
@@ -139,7 +139,7 @@ void BeamFollower::follow(std::array<TracedSet, 2> first, const ProgressPart& pa
     }
 }
 
-std::vector<Departure> BeamFollower::first_departures(const TracedSet& first) const {
+std::vector<Departure> BeamBounces::first_departures(const TracedSet& first) const {
     const std::uint32_t shape = surface_.caster().shape;
     std::vector<Departure> departures;
     for (const RayOrigin& origin : first.origins) departures.push_back({shape, origin.normal, 0});

@@ -34,11 +34,11 @@ struct TracedBeams {
 /// Sets with less than 1e-4 of the first events' flux, and beams with less than 1e-3 of those of the
 /// first events on average, are not kept; `balance` counts them. What media absorb counts for neither:
 /// light that comes through dark glass is weak, and all there is.
-class BeamFollower {
+class BeamBounces {
 public:
     /// With `neighbours` the sets are refined by them.
-    BeamFollower(const Scene& scene, const FirstSurface& surface, const MeshNeighbours* neighbours,
-                 int max_bounces);
+    BeamBounces(const Scene& scene, const LitCaster& surface, const MeshNeighbours* neighbours,
+                int max_bounces);
 
     /// Keeps the sets of the first events and those of all events after them.
     void follow(std::array<TracedSet, 2> first, const ProgressPart& part);
@@ -49,7 +49,7 @@ private:
     std::vector<Departure> first_departures(const TracedSet& first) const;
 
     const Scene& scene_;
-    const FirstSurface& surface_;
+    const LitCaster& surface_;
     const MeshNeighbours* neighbours_;
     int max_bounces_;
     std::vector<Box> receivers_;

@@ -4,7 +4,7 @@
 
 namespace caustics {
 
-Path::Path(const Scene& scene, const FirstSurface& surface, const Level& level, std::uint32_t beam)
+Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam)
     : scene_(scene),
       surface_(surface),
       triangle_(level.traced.set.beams[beam].triangle),
@@ -51,13 +51,13 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
         return point;
     point.ray = {position, first.bent.direction[first_event_]};
     for (const Step& step : steps_) {
-        const Landing landing = land(scene_, point.ray, point.from);
-        if (!same_piece(landing, *step.where)) return point;
-        point.origin.weight *= landing.weight[step.event];
-        point.origin.left *= landing.left;
+        const RayArrival arrival = land(scene_, point.ray, point.from);
+        if (!same_piece(arrival, *step.where)) return point;
+        point.origin.weight *= arrival.weight[step.event];
+        point.origin.left *= arrival.left;
         if (is_black(point.origin.weight)) return point;
-        point.ray = {landing.position, landing.direction[step.event]};
-        point.from = {landing.shape, landing.geometric_normal, landing.offset};
+        point.ray = {arrival.position, arrival.direction[step.event]};
+        point.from = {arrival.shape, arrival.geometric_normal, arrival.offset};
     }
     point.alive = true;
     point.next = land(scene_, point.ray, point.from);

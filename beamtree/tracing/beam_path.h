@@ -12,7 +12,7 @@ namespace caustics {
 
 /// One more event on a beam's way, after the first.
 struct Step {
-    const Landing* where;  ///< of one of the beam's corners
+    const RayArrival* where;  ///< of one of the beam's corners
     Event event;
 };
 
@@ -22,10 +22,10 @@ struct Level {
     Event event = reflection;  ///< its last
     TracedSet traced;
     std::vector<Departure> departures;  ///< one a ray
-    std::vector<Landing> landings;      ///< one a ray, once it is followed
+    std::vector<RayArrival> arrivals;   ///< one a ray, once it is followed
     /// One a beam, but for the first level: the beam it comes from, and a place where its light was bent.
     std::vector<std::uint32_t> parents;
-    std::vector<Landing> places;
+    std::vector<RayArrival> places;
     std::vector<std::uint32_t>
         ray_of_parent;  ///< for rays of the parent: the one that goes on here
 
@@ -43,7 +43,7 @@ struct PathPoint {
     Departure from;
     VertexRay ray;
     bool alive = false;  ///< it has gone that path
-    Landing next;
+    RayArrival next;
 };
 
 using Piece = std::array<PathPoint, 3>;
@@ -51,7 +51,7 @@ using Piece = std::array<PathPoint, 3>;
 /// The way of a beam, to be gone again from other points of its triangle.
 class Path {
 public:
-    Path(const Scene& scene, const FirstSurface& surface, const Level& level, std::uint32_t beam);
+    Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam);
 
     /// (1 - t) a + t b on the first surface.
     PathPoint between(const PathPoint& a, const PathPoint& b, float t) const;
@@ -63,7 +63,7 @@ private:
     PathPoint go(const Vec3& position, const Vec3& normal) const;
 
     const Scene& scene_;
-    const FirstSurface& surface_;
+    const LitCaster& surface_;
     std::uint32_t triangle_;
     Facing facing_;
     Event first_event_;

@@ -44,7 +44,7 @@ bool part_widely(Corners corners, Event event, bool whole) {
 
 class BeamTracer {
 public:
-    explicit BeamTracer(const FirstSurface& surface)
+    explicit BeamTracer(const LitCaster& surface)
         : surface_(surface),
           bender_(surface.bender()),
           caster_(surface.caster()),
@@ -207,7 +207,7 @@ private:
         return ray;
     }
 
-    const FirstSurface& surface_;
+    const LitCaster& surface_;
     const LightBender& bender_;
     const CasterMesh& caster_;
     const TriangleMesh& mesh_;
@@ -220,12 +220,12 @@ private:
 TracedBeams trace_one(const Scene& scene, const CasterMesh& caster,
                       const MeshNeighbours* neighbours, const LightSample& light, int max_bounces,
                       const ProgressPart& part) {
-    const FirstSurface surface(scene, caster, light);
+    const LitCaster surface(scene, caster, light);
     const bool follows = max_bounces > 1;
     std::array<TracedSet, 2> first = BeamTracer(surface).run(part.of(follows ? 0.1 : 0.9));
     TracedBeams traced;
     if (follows) {
-        BeamFollower follower(scene, surface, neighbours, max_bounces);
+        BeamBounces follower(scene, surface, neighbours, max_bounces);
         follower.follow(std::move(first), part.of(0.9));
         traced = follower.take();
     } else {
@@ -244,7 +244,7 @@ std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
     const RunOptions options;
     TraceProgress progress(options);
     std::array<TracedSet, 2> traced =
-        BeamTracer(FirstSurface(scene, caster, light)).run({progress, 1});
+        BeamTracer(LitCaster(scene, caster, light)).run({progress, 1});
     return {std::move(traced[0].set), std::move(traced[1].set)};
 }
 

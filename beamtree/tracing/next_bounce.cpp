@@ -20,17 +20,17 @@ constexpr int parts = 5;
 /// A corner of a beam to be.
 struct Corner {
     const RayOrigin* origin;
-    const Landing* landing;
+    const RayArrival* arrival;
     std::uint32_t parent_ray;  ///< or Beam::none
 };
 
 using Corners = std::array<Corner, 3>;
 
 /// What one set's light does next: the sets of all casters it meets, after each event.
-class NextEvent {
+class NextBounce {
 public:
-    NextEvent(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
-              FluxBalance& balance, const ProgressPart& part)
+    NextBounce(const Scene& scene, const LitCaster& surface, Level& level, double least_flux,
+               FluxBalance& balance, const ProgressPart& part)
         : scene_(scene),
           surface_(surface),
           level_(level),
@@ -63,7 +63,7 @@ private:
             const Departure& from = level_.departures[i];
             const bool blocked = is_first && !sees(scene_, {ray.position, from.normal, from.offset},
                                                    surface_.light());
-            level_.landings.push_back(blocked ? Landing{} : land(scene_, ray, from));
+            level_.arrivals.push_back(blocked ? RayArrival{} : land(scene_, ray, from));
         }
     }
 
@@ -71,9 +71,9 @@ private:
         const Beam& parent = set_.beams[beam];
         const std::array<std::uint32_t, 3> rays = {parent.corners[0], parent.corners[1 + which],
                                                    parent.corners[2 + which]};
-        const Landing& a = level_.landings[rays[0]];
-        const Landing& b = level_.landings[rays[1]];
-        const Landing& c = level_.landings[rays[2]];
+        const RayArrival& a = level_.arrivals[rays[0]];
+        const RayArrival& b = level_.arrivals[rays[1]];
+        const RayArrival& c = level_.arrivals[rays[2]];
         const bool alike = same_piece(a, b) && same_piece(b, c) && same_piece(c, a);
         if (alike && !a.goes_on()) {
             end(beam, rays);
@@ -85,7 +85,7 @@ private:
                 if (!is_black(a.weight[event])) {
                     Corners corners;
                     for (std::size_t i = 0; i < 3; ++i)
-                        corners[i] = {&level_.traced.origins[rays[i]], &level_.landings[rays[i]],
+                        corners[i] = {&level_.traced.origins[rays[i]], &level_.arrivals[rays[i]],
                                       rays[i]};
                     add_beam(beam, corners, event, share_of(beam));
                 }
@@ -99,8 +99,8 @@ private:
 
     bool is_coarse(const std::array<std::uint32_t, 3>& rays) const {
         const auto coarse = [this](std::uint32_t i, std::uint32_t j) {
-            return PieceDetail::is_coarse(level_.traced.origins[i], level_.landings[i],
-                                          level_.traced.origins[j], level_.landings[j]);
+            return PieceDetail::is_coarse(level_.traced.origins[i], level_.arrivals[i],
+                                          level_.traced.origins[j], level_.arrivals[j]);
         };
         return coarse(rays[0], rays[1]) || coarse(rays[1], rays[2]) || coarse(rays[2], rays[0]);
     }
@@ -122,18 +122,19 @@ private:
     }
 
     // Whether the rays after an event part too far for one beam.
-    static bool part_widely(const Landing& a, const Landing& b, const Landing& c, Event event) {
-        const auto far = [event](const Landing& p, const Landing& q) {
+    static bool part_widely(const RayArrival& a, const RayArrival& b, const RayArrival& c,
+                            Event event) {
+        const auto far = [event](const RayArrival& p, const RayArrival& q) {
             return p.direction[event].dot(q.direction[event]) < widest_cosine;
         };
         return !is_black(a.weight[event]) && !is_black(b.weight[event]) &&
                !is_black(c.weight[event]) && (far(a, b) || far(b, c) || far(c, a));
     }
-    static bool part_widely(const Landing& a, const Landing& b, const Landing& c) {
+    static bool part_widely(const RayArrival& a, const RayArrival& b, const RayArrival& c) {
         return part_widely(a, b, c, reflection) || part_widely(a, b, c, refraction);
     }
     // Whether all corners do the same at the piece they meet, and go on side by side.
-    static bool goes_plainly(const Landing& a, const Landing& b, const Landing& c) {
+    static bool goes_plainly(const RayArrival& a, const RayArrival& b, const RayArrival& c) {
         for (const Event event : events) {
             const bool black = is_black(a.weight[event]);
             if (is_black(b.weight[event]) != black || is_black(c.weight[event]) != black)
@@ -178,7 +179,7 @@ private:
         point.from = level_.departures[ray];
         point.ray = set_.rays[ray];
         point.alive = true;
-        point.next = level_.landings[ray];
+        point.next = level_.arrivals[ray];
         return point;
     }
 
@@ -295,7 +296,7 @@ private:
     Spectrum flux(std::uint32_t parent, const Corners& corners, Event event) const {
         std::array<Spectrum, 3> weights;
         for (std::size_t i = 0; i < 3; ++i)
-            weights[i] = corners[i].origin->weight * corners[i].landing->weight[event];
+            weights[i] = corners[i].origin->weight * corners[i].arrival->weight[event];
         const std::array<const RayOrigin*, 3> at = {corners[0].origin, corners[1].origin,
                                                     corners[2].origin};
         const float whole = static_cast<float>(
@@ -308,7 +309,7 @@ private:
             const float u = (static_cast<float>(i) + to_middle) / parts;
             const float v = (static_cast<float>(j) + to_middle) / parts;
             const PathPoint point = path.inside(at, {1 - u - v, u, v});
-            if (goes_on(point) && same_piece(point.next, *corners[0].landing))
+            if (goes_on(point) && same_piece(point.next, *corners[0].arrival))
                 sum += point.origin.weight * point.next.weight[event];
         };
         for (int i = 0; i < parts; ++i)
@@ -320,7 +321,7 @@ private:
     }
 
     void add_beam(std::uint32_t parent, const Corners& corners, Event event, float share) {
-        const Landing& first = *corners[0].landing;
+        const RayArrival& first = *corners[0].arrival;
         Beam beam;
         beam.flux = flux(parent, corners, event);
         const auto mean = static_cast<double>(beam.flux.mean());
@@ -335,7 +336,7 @@ private:
         beam.triangle = set_.beams[parent].triangle;
         beam.inside = first.front == (event == refraction);
         for (const Corner& corner : corners)
-            beam.offset = std::max(beam.offset, 2 * corner.landing->offset);
+            beam.offset = std::max(beam.offset, 2 * corner.arrival->offset);
         beam.offset += bulge(corners);
         beam.corners.fill(Beam::none);
         for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
@@ -351,17 +352,17 @@ private:
         double left = 0;
         for (const Corner& corner : corners)
             left = std::max(left, static_cast<double>(corner.origin->left) *
-                                      static_cast<double>(corner.landing->left));
+                                      static_cast<double>(corner.arrival->left));
         return left;
     }
 
-    // How far the surface may lie off the triangle of the corners, as FirstSurface::offset. Facets of a
+    // How far the surface may lie off the triangle of the corners, as LitCaster::offset. Facets of a
     // mesh turn by steps.
     static float bulge(const Corners& corners) {
         float largest = 0;
         for (std::size_t i = 0; i < 3; ++i) {
-            const Landing& a = *corners[i].landing;
-            const Landing& b = *corners[(i + 1) % 3].landing;
+            const RayArrival& a = *corners[i].arrival;
+            const RayArrival& b = *corners[(i + 1) % 3].arrival;
             const float turn = std::max((a.shading_normal - b.shading_normal).norm(),
                                         (a.geometric_normal - b.geometric_normal).norm());
             largest = std::max(largest, (a.position - b.position).norm() * turn);
@@ -392,21 +393,21 @@ private:
         const bool shared = corner.parent_ray != Beam::none;
         if (shared && level.ray_of_parent[corner.parent_ray] != Beam::none)
             return level.ray_of_parent[corner.parent_ray];
-        const Landing& landing = *corner.landing;
+        const RayArrival& arrival = *corner.arrival;
         const auto ray = static_cast<std::uint32_t>(level.traced.set.rays.size());
-        level.traced.set.rays.push_back({landing.position, landing.direction[event]});
+        level.traced.set.rays.push_back({arrival.position, arrival.direction[event]});
         RayOrigin origin = *corner.origin;
-        origin.weight *= landing.weight[event];
-        origin.left *= landing.left;
+        origin.weight *= arrival.weight[event];
+        origin.left *= arrival.left;
         if (!shared) origin.vertex = RayOrigin::no_vertex;
         level.traced.origins.push_back(origin);
-        level.departures.push_back({landing.shape, landing.geometric_normal, landing.offset});
+        level.departures.push_back({arrival.shape, arrival.geometric_normal, arrival.offset});
         if (shared) level.ray_of_parent[corner.parent_ray] = ray;
         return ray;
     }
 
     const Scene& scene_;
-    const FirstSurface& surface_;
+    const LitCaster& surface_;
     Level& level_;
     BeamSet& set_;
     double least_flux_;
@@ -419,9 +420,9 @@ private:
 
 }  // namespace
 
-NextSets next_sets(const Scene& scene, const FirstSurface& surface, Level& level, double least_flux,
+NextSets next_sets(const Scene& scene, const LitCaster& surface, Level& level, double least_flux,
                    FluxBalance& balance, const ProgressPart& part) {
-    return NextEvent(scene, surface, level, least_flux, balance, part).run();
+    return NextBounce(scene, surface, level, least_flux, balance, part).run();
 }
 
 }  // namespace caustics

@@ -22,8 +22,8 @@ bool PieceDetail::is_flat(const RayOrigin& a, const RayOrigin& b) {
     return (a.normal - b.normal).norm() < flat;
 }
 
-bool PieceDetail::is_coarse(const RayOrigin& from, const Landing& a, const RayOrigin& other,
-                            const Landing& b) {
+bool PieceDetail::is_coarse(const RayOrigin& from, const RayArrival& a, const RayOrigin& other,
+                            const RayArrival& b) {
     return is_flat(from, other) && (a.shading_normal - b.shading_normal).norm() > most_turn;
 }
 

@@ -16,8 +16,8 @@ public:
     static bool is_flat(const RayOrigin& a, const RayOrigin& b);
     /// Whether two rays from a flat surface meet one that turns so much from one to the other that a
     /// beam between them is coarse.
-    static bool is_coarse(const RayOrigin& from, const Landing& a, const RayOrigin& other,
-                          const Landing& b);
+    static bool is_coarse(const RayOrigin& from, const RayArrival& a, const RayOrigin& other,
+                          const RayArrival& b);
     /// Whether there is a caster that the three rays may go round: it is small against the way from
     /// one to the other, and about where their light goes.
     bool may_pass_round_caster(const std::array<const VertexRay*, 3>& rays) const;

@@ -15,32 +15,32 @@ constexpr float most_step = 0.3F;       // sine of the way from one ray to the o
 
 }  // namespace
 
-Landing land(const Scene& scene, const VertexRay& ray, const Departure& from) {
-    Landing landing;
+RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from) {
+    RayArrival arrival;
     const SegmentEnd start{ray.position, from.normal, from.offset};
     const std::optional<SurfacePoint> hit = scene.intersect(spawn_ray(start, ray.direction));
-    if (!hit || !is_caster(scene.shape_at(*hit).bsdf)) return landing;
+    if (!hit || !is_caster(scene.shape_at(*hit).bsdf)) return arrival;
     const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
     const Vec3 w = -ray.direction;
-    landing.shape = hit->shape;
-    landing.front = hit->geometric_normal.dot(w) > 0;
-    landing.position = hit->position;
-    landing.geometric_normal = hit->geometric_normal;
-    landing.shading_normal = hit->shading_normal;
-    landing.offset = hit->offset;
-    landing.flat = scene.shape_at(*hit).primitive == Primitive::mesh &&
+    arrival.shape = hit->shape;
+    arrival.front = hit->geometric_normal.dot(w) > 0;
+    arrival.position = hit->position;
+    arrival.geometric_normal = hit->geometric_normal;
+    arrival.shading_normal = hit->shading_normal;
+    arrival.offset = hit->offset;
+    arrival.flat = scene.shape_at(*hit).primitive == Primitive::mesh &&
                    (hit->geometric_normal - hit->shading_normal).norm() < flat_turn;
     const SpecularSplit split = split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w);
     const Spectrum left = segment_transmittance(
         medium_absorption(scene.shapes()[from.shape].bsdf, from.normal, ray.direction),
         medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
-    landing.direction = {split.reflected, split.refracted};
-    landing.weight = {split.reflected_weight * left, split.refracted_weight * left};
-    landing.left = left.mean();
-    return landing;
+    arrival.direction = {split.reflected, split.refracted};
+    arrival.weight = {split.reflected_weight * left, split.refracted_weight * left};
+    arrival.left = left.mean();
+    return arrival;
 }
 
-bool same_piece(const Landing& a, const Landing& b) {
+bool same_piece(const RayArrival& a, const RayArrival& b) {
     if (a.shape != b.shape) return false;
     if (!a.goes_on()) return true;
     if (a.front != b.front) return false;

@@ -17,7 +17,7 @@ struct Departure {
 };
 
 /// Where a ray next meets a surface, and what becomes of its light there if that is a caster.
-struct Landing {
+struct RayArrival {
     static constexpr std::uint32_t nothing = ~0U;
     std::uint32_t shape = nothing;  ///< of a caster; a ray that ends elsewhere has none
     bool front = false;             ///< it comes to the front side
@@ -35,12 +35,12 @@ struct Landing {
 };
 
 /// Sends a ray on.
-Landing land(const Scene& scene, const VertexRay& ray, const Departure& from);
+RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from);
 
 /// Whether two rays have met one side of one piece of a surface, without a crease or a step between:
 /// facets that are shaded flat are one piece if they lie in one plane, and elsewhere normals of one
 /// piece turn by less than 40 degrees from one ray to the other and are across the way between the
 /// two. Two rays that meet no caster are alike too.
-bool same_piece(const Landing& a, const Landing& b);
+bool same_piece(const RayArrival& a, const RayArrival& b);
 
 }  // namespace caustics

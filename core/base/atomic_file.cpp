@@ -34,7 +34,7 @@ int open_nameless(const std::filesystem::path& folder) {
 
 }  // namespace
 
-WholeFile::WholeFile(const std::filesystem::path& file) : file_(file), temporary_(file) {
+AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(file), temporary_(file) {
     std::error_code unknown;
     if (std::filesystem::is_other(file, unknown)) fail(EEXIST);
     temporary_ += ".tmp-" + std::to_string(getpid());
@@ -44,23 +44,23 @@ WholeFile::WholeFile(const std::filesystem::path& file) : file_(file), temporary
     if (out_ == nullptr) fail(errno);
 }
 
-WholeFile::~WholeFile() {
+AtomicFile::~AtomicFile() {
     if (out_ != nullptr) std::fclose(out_);
     std::error_code ignored;
     if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
 }
 
-void WholeFile::fail(int error) const {
+void AtomicFile::fail(int error) const {
     throw InputError(file_.string() + ": cannot be written (" +
                      std::generic_category().message(error) + ")");
 }
 
-void WholeFile::write(std::string_view bytes) {
+void AtomicFile::write(std::string_view bytes) {
     if (std::fwrite(bytes.data(), 1, bytes.size(), out_) != bytes.size()) fail(errno);
 }
 
 /// Another process of that number may have left the name behind.
-void WholeFile::name() {
+void AtomicFile::name() {
     std::error_code none;
     std::filesystem::remove(temporary_, none);
     const std::filesystem::path entry = entry_of(fileno(out_));
@@ -68,7 +68,7 @@ void WholeFile::name() {
         fail(errno);
 }
 
-void WholeFile::commit() {
+void AtomicFile::commit() {
     if (std::fflush(out_) != 0) fail(errno);
     if (is_nameless_) name();
     if (std::fclose(std::exchange(out_, nullptr)) != 0) fail(errno);
@@ -90,8 +90,8 @@ void require_writable_place(const std::filesystem::path& file) {
     if (fs::exists(status) && !fs::is_regular_file(status)) fail("is no regular file");
 }
 
-void write_whole_file(const std::filesystem::path& file, std::string_view bytes) {
-    WholeFile out(file);
+void write_atomic_file(const std::filesystem::path& file, std::string_view bytes) {
+    AtomicFile out(file);
     out.write(bytes);
     out.commit();
 }

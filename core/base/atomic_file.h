@@ -11,12 +11,12 @@ namespace caustics {
 /// the file system has none without, and named or renamed by commit(). Without commit() nothing is
 /// left behind. Every failure throws InputError naming the file and the
 /// system's reason (a full disk, a missing folder).
-class WholeFile {
+class AtomicFile {
 public:
-    explicit WholeFile(const std::filesystem::path& file);
-    ~WholeFile();
-    WholeFile(const WholeFile&) = delete;
-    WholeFile& operator=(const WholeFile&) = delete;
+    explicit AtomicFile(const std::filesystem::path& file);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
 
     void write(std::string_view bytes);
     void commit();
@@ -36,7 +36,7 @@ private:
 void require_writable_place(const std::filesystem::path& file);
 
 /// Writes a file in one go.
-void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+void write_atomic_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// The content of a regular file. Throws InputError naming the file when it is absent, cannot be
 /// read, or does not fit into memory, and as require_regular_file() does.

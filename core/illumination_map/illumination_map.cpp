@@ -145,14 +145,32 @@ private:
 
 }  // namespace
 
-void read(const JsonNode& node, IlluminationMapParams& params) {
-    if (const auto emitted = node.find("emitted"))
-        params.emitted = static_cast<std::uint64_t>(emitted->as_integer_in(1, 1'000'000'000'000));
-    if (const auto resolution = node.find("resolution"))
-        params.resolution = static_cast<int>(resolution->as_integer_in(1, 4096));
-    if (const auto bounces = node.find("max_bounces"))
-        params.max_bounces = static_cast<int>(bounces->as_integer_in(1, 1000));
-    node.finish();
+const DescribedMethod<IlluminationMapParams>& illuminationmap_method() {
+    using P = IlluminationMapParams;
+    static const DescribedMethod<P> method(
+        {.facts = {.name = "illuminationmap",
+                   .summary = "Arvo 1986: light gathered on texels over the receivers' texture "
+                              "coordinates (`resolution` squared), read bilinearly",
+                   .serves =
+                       "diffuse receivers whose texture coordinates name each place once: any "
+                       "exact shape, meshes with an atlas",
+                   .effort = {"emitted=1000000", "resolution=64"},
+                   .more_effort = {"emitted=4000000", "resolution=128"}},
+         .parameters = {parameter::whole_number<P>(
+                            &P::emitted, 1, 1'000'000'000'000,
+                            {.key = "emitted",
+                             .meaning = "Light paths emitted, thinned ones included.",
+                             .unit = "paths",
+                             .source = "[Arvo 1986]"}),
+                        parameter::whole_number<P>(
+                            &P::resolution, 1, 4096,
+                            {.key = "resolution",
+                             .meaning = "Texels along each texture coordinate of a receiver.",
+                             .unit = "texels",
+                             .source = "[Arvo 1986]"}),
+                        parameter::max_bounces<P>()},
+         .take_least_work = [](P& params) { params.emitted = 1; }});
+    return method;
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene,

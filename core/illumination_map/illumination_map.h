@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
-#include "core/scene_file/json_reader.h"
+#include "core/method/described_method.h"
 
 namespace caustics {
 
@@ -21,7 +21,7 @@ struct IlluminationMapParams {
     int resolution = 256;               ///< texels along each texture coordinate
     int max_bounces = 16;               ///< specular events between light and receiver
 };
-void read(const JsonNode& node, IlluminationMapParams& params);
+const DescribedMethod<IlluminationMapParams>& illuminationmap_method();
 
 /// Phases "texels" and "trace". Counters: those of LightPathCounts and `texels`. Throws
 /// UnsupportedScene naming the receiver that is not diffuse or has no texture coordinates to use.

@@ -111,12 +111,19 @@ std::optional<LightParticle> AimedEmission::send(const Aim& aim, Rng& rng) const
         ray = send_through(source, source.discs[region], aim.disc, rng);
     } else if (kept_in_union(source, source.cones[region], aim.direction, rng)) {
         if (const auto* light = std::get_if<PointLight>(&scene_.lights()[source.light]))
-            ray = Ray{light->position, aim.direction};
+            ray = send_from_point(*light, aim.direction, rng);
         else
             ray = send_from_area(source, aim.direction, rng);
     }
     if (!ray) return {};
     return LightParticle{*ray, flux_[aim.source]};
+}
+
+// A spot light's particles are thinned by its falloff.
+std::optional<Ray> AimedEmission::send_from_point(const PointLight& light, const Vec3& direction,
+                                                  Rng& rng) {
+    if (light.spot && !(rng.next() < light.spot->falloff(direction))) return {};
+    return Ray{light.position, direction};
 }
 
 std::optional<Ray> AimedEmission::send_from_area(const AimedSource& source, const Vec3& direction,

@@ -47,6 +47,8 @@ private:
     std::optional<LightParticle> send(const Aim& aim, Rng& rng) const;
     std::optional<Ray> send_through(const AimedSource&, const AimedDisc&, const Vec2& at,
                                     Rng&) const;
+    static std::optional<Ray> send_from_point(const PointLight& light, const Vec3& direction,
+                                              Rng& rng);
     std::optional<Ray> send_from_area(const AimedSource&, const Vec3& direction, Rng&) const;
 
     const Scene& scene_;

@@ -134,6 +134,19 @@ double aim_cones(const Scene& scene, const BoundingSphere& from, AimedSource& so
     return measure_of(cones);
 }
 
+// Keeps the cones that a spot light may shine into, or takes its own cone where that is smaller; returns
+// their solid angle [sr].
+double narrowed(const SpotCone& spot, double solid_angle, AimedSource& source) {
+    const DirectionCone own =
+        spot.cutoff < 1.5F
+            ? cone_of_half_angle(spot.axis.cast<double>(), static_cast<double>(spot.cutoff) + 1e-6)
+            : DirectionCone{};
+    if (own.is_whole_sphere() || own.solid_angle() >= solid_angle) return solid_angle;
+    source.cones = {{own, Frame(own.axis)}};
+    source.cumulative = {1};
+    return own.solid_angle();
+}
+
 // Fills the discs of a directional light; returns their area [m^2].
 double aim_discs(const Scene& scene, const Vec3& direction, AimedSource& source) {
     source.across = Frame(direction);
@@ -243,7 +256,8 @@ std::vector<AimedSource> aimed_sources(const Scene& scene) {
             source.power = directional->irradiance * static_cast<float>(area);
         } else {
             const auto& point = std::get<PointLight>(light);
-            const double solid_angle = aim_cones(scene, {point.position, 0}, source);
+            double solid_angle = aim_cones(scene, {point.position, 0}, source);
+            if (point.spot) solid_angle = narrowed(*point.spot, solid_angle, source);
             source.power = point.intensity * static_cast<float>(solid_angle);
         }
         sources.push_back(std::move(source));

@@ -9,10 +9,10 @@
 namespace caustics {
 namespace {
 
-// [J96] eq. 6 divided by v: G(v)/v = 1/(alpha - alpha v + v) has no singularity at grazing.
+// [J96 (6)] divided by v: G(v)/v = 1/(alpha - alpha v + v) has no singularity at grazing.
 float shadowing_over_cosine(float v, float alpha) { return 1 / (alpha - alpha * v + v); }
 
-// The lobe Z(t) = alpha / (1 + alpha t^2 - t^2)^2 of [J96] eq. 5.
+// The lobe Z(t) = alpha / (1 + alpha t^2 - t^2)^2 of [J96 (5)].
 float schlick_lobe(float t2, float alpha) {
     const float denominator = 1 + alpha * t2 - t2;
     return alpha / (denominator * denominator);

@@ -14,7 +14,7 @@ struct Diffuse {
     Texture reflectance = Spectrum(Spectrum::Constant(0.5F));
 };
 
-/// Schlick's model as [J96] eqs. 5-6 print it, times `reflectance`, without anisotropy and
+/// Schlick's model as [J96 (5)], [J96 (6)] print it, times `reflectance`, without anisotropy and
 /// without Fresnel; alpha = 1 is broad, alpha -> 0 a mirror-like lobe. The printed t is always
 /// +-1; here t = n.h with the normalised half vector. Not Lambertian at alpha = 1: the albedo
 /// there is 5/4 - 2v/3, v = n.wo.

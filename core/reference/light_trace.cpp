@@ -164,16 +164,33 @@ private:
 
 }  // namespace
 
-void read(const JsonNode& node, LightTraceParams& params) {
-    if (const auto paths = node.find("paths"))
-        params.paths = static_cast<std::uint64_t>(paths->as_integer_in(1, 1'000'000'000'000));
-    if (const auto bounces = node.find("max_bounces"))
-        params.max_bounces = static_cast<int>(bounces->as_integer_in(1, 1000));
-    if (const auto radius = node.find("radius")) {
-        params.radius = radius->as_number_in(0, 1e12);
-        if (params.radius == 0) radius->fail("must be above 0");
-    }
-    node.finish();
+const DescribedMethod<LightTraceParams>& lighttrace_method() {
+    using P = LightTraceParams;
+    static const DescribedMethod<P> method(
+        {.facts = {.name = "lighttrace",
+                   .summary =
+                       "particle tracing connected to the pinhole, or gathered over a disc in "
+                       "`probe`",
+                   .serves = "every light; not pixels that see the receiver through glass (layer "
+                             "`unreached`)",
+                   .is_unbiased = true,
+                   .samples = {.parameter = "paths"},
+                   .gathers_over_discs = true,
+                   .effort = {"paths=400000"}},
+         .parameters =
+             {parameter::whole_number<P>(&P::paths, 1, 1'000'000'000'000,
+                                         {.key = "paths",
+                                          .meaning = "Light paths emitted, thinned ones included.",
+                                          .unit = "paths"}),
+              parameter::max_bounces<P>(),
+              parameter::optional_length<P>(
+                  &P::radius, "leave it out where each point has its own",
+                  {.key = "radius",
+                   .meaning =
+                       "In probe: radius of the disc round points that have none of their own."})
+                  .usually("none")},
+         .disc_radius = &P::radius});
+    return method;
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const LightTraceParams& params,

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
-#include "core/scene_file/json_reader.h"
+#include "core/method/described_method.h"
 
 namespace caustics {
 
@@ -17,7 +17,7 @@ struct LightTraceParams {
     int max_bounces = 16;             ///< specular events between light and receiver
     double radius = 0;                ///< [m] of the disc in `probe` for points without their own
 };
-void read(const JsonNode& node, LightTraceParams& params);
+const DescribedMethod<LightTraceParams>& lighttrace_method();
 std::unique_ptr<const CausticEstimator> build(const Scene&, const LightTraceParams&,
                                               const RunOptions&);
 

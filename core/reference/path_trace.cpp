@@ -134,12 +134,24 @@ private:
 
 }  // namespace
 
-void read(const JsonNode& node, PathTraceParams& params) {
-    if (const auto spp = node.find("spp"))
-        params.spp = static_cast<int>(spp->as_integer_in(1, 1'000'000'000));
-    if (const auto bounces = node.find("max_bounces"))
-        params.max_bounces = static_cast<int>(bounces->as_integer_in(1, 1000));
-    node.finish();
+const DescribedMethod<PathTraceParams>& pathtrace_method() {
+    using P = PathTraceParams;
+    static const DescribedMethod<P> method(
+        {.facts = {.name = "pathtrace",
+                   .summary = "unidirectional path tracing with multiple importance sampling",
+                   .serves = "lights with area",
+                   .is_unbiased = true,
+                   .samples = {.parameter = "spp", .of_a_pixel = true},
+                   .effort = {"spp=64"}},
+         .parameters = {
+             parameter::whole_number<P>(
+                 &P::spp, 1, 1'000'000'000,
+                 {.key = "spp",
+                  .meaning =
+                      "Paths a pixel, shared among its camera samples; in probe, paths a point.",
+                  .unit = "paths"}),
+             parameter::max_bounces<P>()}});
+    return method;
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PathTraceParams& params,
@@ -148,7 +160,7 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PathTrac
         if (!std::holds_alternative<AreaLight>(light))
             throw UnsupportedScene(
                 std::string("pathtrace cannot serve a scene with a ") +
-                (std::holds_alternative<PointLight>(light) ? "point" : "directional") +
+                (std::holds_alternative<PointLight>(light) ? "point or spot" : "directional") +
                 " light: a path from the receiver hits it with probability zero, so its caustic "
                 "would be black; use lighttrace, or give the light area");
     return std::make_unique<PathTrace>(scene, params, options);

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
-#include "core/scene_file/json_reader.h"
+#include "core/method/described_method.h"
 
 namespace caustics {
 
@@ -15,7 +15,7 @@ struct PathTraceParams {
                    ///< `probe`, paths a point
     int max_bounces = 16;  ///< specular events between light and receiver
 };
-void read(const JsonNode& node, PathTraceParams& params);
+const DescribedMethod<PathTraceParams>& pathtrace_method();
 std::unique_ptr<const CausticEstimator> build(const Scene&, const PathTraceParams&,
                                               const RunOptions&);
 

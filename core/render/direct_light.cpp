@@ -16,9 +16,10 @@ Spectrum scattering(const ReceiverPoint& p, const Vec3& wi) {
 Spectrum from_point(const Scene& scene, const ReceiverPoint& p, const PointLight& light) {
     const Vec3 towards = light.position - p.position;
     const float distance2 = towards.squaredNorm();
-    const Spectrum f = scattering(p, towards / std::sqrt(distance2));
+    const Vec3 wi = towards / std::sqrt(distance2);
+    const Spectrum f = scattering(p, wi) * light.intensity_along(-wi);
     if (is_black(f) || scene.occluded(end_of(p), SegmentEnd{light.position})) return black();
-    return f * light.intensity / distance2;
+    return f / distance2;
 }
 
 Spectrum from_directional(const Scene& scene, const ReceiverPoint& p,

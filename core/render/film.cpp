@@ -38,7 +38,7 @@ void encode_and_write(const std::string& format, const OIIO::ImageSpec& spec, OI
                       output->open(file.filename().string(), spec) &&
                       output->write_image(type, pixels) && output->close();
     if (!done) fail(file, "written", output->geterror());
-    write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_atomic_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace

@@ -1,15 +1,24 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "core/geometry/shape.h"
+#include "core/scene/spot_cone.h"
 
 namespace caustics {
 
+/// Shines alike all round, or, as a spot light, about an axis.
 struct PointLight {
     Vec3 position = Vec3::Zero();
     Spectrum intensity = Spectrum::Ones();  ///< [W/sr]
+    std::optional<SpotCone> spot = {};
+
+    /// Intensity along a unit direction away from the light [W/sr].
+    Spectrum intensity_along(const Vec3& direction) const {
+        return spot ? intensity * spot->falloff(direction) : intensity;
+    }
 };
 
 struct DirectionalLight {

@@ -81,6 +81,10 @@ struct AddLight {
     void operator()(const PointLight& light) const {
         digest.add(light.position);
         digest.add(light.intensity);
+        if (!light.spot) return;
+        digest.add(light.spot->axis);
+        digest.add(light.spot->beam_width);
+        digest.add(light.spot->cutoff);
     }
     void operator()(const DirectionalLight& light) const {
         digest.add(light.direction);
@@ -94,7 +98,7 @@ struct AddLight {
 
 }  // namespace
 
-std::uint64_t transport_digest(const Scene& scene) {
+std::uint64_t transport_hash(const Scene& scene) {
     Digest digest;
     digest.add(scene.shapes().size());
     for (const Shape& shape : scene.shapes()) add_shape(shape, digest);

@@ -124,12 +124,30 @@ struct Draft {
     Assets assets;
 };
 
-void read_point_light(const JsonNode& node, Draft& draft) {
+// Half angles of a spot light [degrees in the file].
+SpotCone read_spot_cone(const JsonNode& node, const std::optional<JsonNode>& to_world) {
+    constexpr double degree = pi_d / 180;
+    double cutoff = 20;
+    if (const auto angle = node.find("cutoff_angle")) cutoff = angle->as_number_in(1e-3, 179);
+    double beam = 0.75 * cutoff;
+    if (const auto width = node.find("beam_width")) beam = width->as_number_in(0, cutoff);
+    SpotCone cone;
+    cone.cutoff = static_cast<float>(cutoff * degree);
+    cone.beam_width = static_cast<float>(beam * degree);
+    if (to_world)
+        cone.axis =
+            Vec3d(scene_file::read_transform(*to_world).linear().col(2)).normalized().cast<float>();
+    return cone;
+}
+
+// `point`, or `spot`, which shines along +z.
+void read_point_light(const JsonNode& node, bool is_spot, Draft& draft) {
     PointLight light;
     Vec3d place = Vec3d::Zero();
-    const auto position = node.find("position");
+    const auto position = is_spot ? std::nullopt : node.find("position");
     const auto to_world = node.find("to_world");
     if (position && to_world) to_world->fail("give either position or to_world");
+    if (is_spot) light.spot = read_spot_cone(node, to_world);
     if (position) place = read_vector(*position);
     if (to_world) place = scene_file::read_transform(*to_world).translation();
     scene_file::require_near(node, {place});
@@ -160,7 +178,7 @@ void read_directional_light(const JsonNode& node, SceneDesc& desc) {
 // The children of the scene are told apart by their types alone.
 void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     const std::string type = node.at("type").as_string();
-    std::vector<std::string> known{"perspective", "point", "directional"};
+    std::vector<std::string> known{"perspective", "point", "spot", "directional"};
     std::vector<std::string> later{"constant",        "spot",   "envmap",       "projector",
                                    "directionalarea", "sunsky", "thinlens",     "orthographic",
                                    "homogeneous",     "ref",    "heterogeneous"};
@@ -176,7 +194,7 @@ void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     if (scene_file::is_bsdf_type(type) && type != "ref")
         node.fail("a bsdf is nested in the shape that has it; share one by $include");
     read_type(node, "scene object", known, later);
-    if (type == "point") return read_point_light(node, draft);
+    if (type == "point" || type == "spot") return read_point_light(node, type == "spot", draft);
     if (type == "directional") return read_directional_light(node, draft.desc);
     if (type != "perspective") {
         draft.desc.shapes.push_back(scene_file::make_for(

@@ -114,9 +114,10 @@ struct CommonKeys {
         if (transform_node) to_world = read_transform(*transform_node);
         if (const auto flip = node.find("flip_normals")) flip_normals = flip->as_bool();
         const bool file = type == "obj" || type == "ply";
-        resolution = node.find("resolution");
-        if (resolution && file)
-            resolution->fail("a mesh file has its own resolution; only analytic shapes take one");
+        if (file && node.has("resolution"))
+            node.at("resolution")
+                .fail("a mesh file has its own resolution; only analytic shapes take one");
+        if (!file) resolution = node.find("resolution");
         const auto faces = node.find("face_normals");
         if (faces && !file && !resolution && type != "cube")
             faces->fail("only a mesh has face normals; give the shape a `resolution`");

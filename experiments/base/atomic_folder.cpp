@@ -25,7 +25,7 @@ bool is_part(const fs::path& folder) {
 
 }  // namespace
 
-WholeFolder::WholeFolder(const fs::path& target)
+AtomicFolder::AtomicFolder(const fs::path& target)
     : target_(plain(target)), temporary_(target_.string() + ".part") {
     if (fs::exists(temporary_) && !is_part(temporary_))
         throw InputError(
@@ -35,12 +35,12 @@ WholeFolder::WholeFolder(const fs::path& target)
         if (entry.path().filename() != lock_name) fs::remove_all(entry.path());
 }
 
-WholeFolder::~WholeFolder() {
+AtomicFolder::~AtomicFolder() {
     std::error_code ignored;
     if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
 }
 
-void WholeFolder::commit() {
+void AtomicFolder::commit() {
     fs::remove(temporary_ / lock_name);
     const bool stays = fs::is_symlink(target_) || (fs::exists(target_) && !fs::is_empty(target_));
     if (stays) {

@@ -11,13 +11,13 @@ namespace caustics {
 /// commit() renames. Without commit() nothing is left behind; what a killed process left there, the
 /// next one for that target removes. Throws std::filesystem::filesystem_error where the system
 /// refuses.
-class WholeFolder {
+class AtomicFolder {
 public:
     /// Throws InputError also when another process is at work on that target.
-    explicit WholeFolder(const std::filesystem::path& target);
-    ~WholeFolder();
-    WholeFolder(const WholeFolder&) = delete;
-    WholeFolder& operator=(const WholeFolder&) = delete;
+    explicit AtomicFolder(const std::filesystem::path& target);
+    ~AtomicFolder();
+    AtomicFolder(const AtomicFolder&) = delete;
+    AtomicFolder& operator=(const AtomicFolder&) = delete;
 
     /// To write into.
     const std::filesystem::path& path() const { return temporary_; }

@@ -105,7 +105,7 @@ RunRequest request_of(const json& record, const PlanFile& plan) {
     const json& method = record.at("method");
     request.method = parse_method(method.at("name").get<std::string>(),
                                   JsonNode::parse_text(method.at("parameters").dump(), "/method"));
-    if (writes_files(request.method))
+    if (!request.method.configured->files_written().empty())
         throw InputError("/method/parameters: names a file to write, which no trial does");
     request.seed = record.at("seed").get<std::uint64_t>();
     request.samples_per_pixel = small_count(record, "spp");
@@ -159,7 +159,7 @@ std::string explanation(const json& record, const std::string& id, const PlanFil
 std::string explain(const fs::path& folder, const std::string& trial) {
     const PlanFile plan = read_plan_of(folder);
     const std::string id = find_trial(plan, trial, folder);
-    const JobStore store(folder);
+    const TrialStore store(folder);
     const std::optional<json> record = store.record(id);
     if (!record) throw InputError(fmt::format("{}: {} has not run yet", folder.string(), id));
     const auto broken = [&](const std::exception& error) {

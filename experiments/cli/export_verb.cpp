@@ -36,9 +36,9 @@ int export_scene(ExportOptions options) {
     if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
         throw InputError(
             fmt::format("-o {}: is no folder (a file of that name is there)", options.folder));
-    WholeFolder whole(folder);
+    AtomicFolder whole(folder);
     for (const ExportedScene::File& each : exported.files)
-        write_whole_file(whole.path() / each.name, each.bytes);
+        write_atomic_file(whole.path() / each.name, each.bytes);
     whole.commit();
     print_notes(exported.notes);
     write_stderr(fmt::format("{}: {} file{}\n", (folder / exported.files.front().name).string(),

@@ -47,12 +47,21 @@ std::string shape_line(const Shape& shape) {
 
 std::string rgb(const Spectrum& s) { return fmt::format("{:.6g} {:.6g} {:.6g}", s[0], s[1], s[2]); }
 
+double degrees(float radians) { return static_cast<double>(radians) * 180 / pi_d; }
+
 struct LightLine {
     const Scene& scene;
     std::string operator()(const PointLight& light) const {
         const Vec3d place = scene.origin() + light.position.cast<double>();
-        return fmt::format("  point at ({:.6g}, {:.6g}, {:.6g}), intensity {} W/sr\n", place.x(),
-                           place.y(), place.z(), rgb(light.intensity));
+        std::string line = fmt::format("  {} at ({:.6g}, {:.6g}, {:.6g}), intensity {} W/sr",
+                                       light.spot ? "spot" : "point", place.x(), place.y(),
+                                       place.z(), rgb(light.intensity));
+        if (const auto& spot = light.spot)
+            line += fmt::format(
+                " along ({:.6g}, {:.6g}, {:.6g}), whole up to {:.6g} degrees, none from {:.6g} on",
+                spot->axis.x(), spot->axis.y(), spot->axis.z(), degrees(spot->beam_width),
+                degrees(spot->cutoff));
+        return line + "\n";
     }
     std::string operator()(const DirectionalLight& light) const {
         return fmt::format("  directional along ({:.6g}, {:.6g}, {:.6g}), irradiance {} W/m^2\n",
@@ -78,7 +87,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
     for (const auto& [name, hash] : file.assets)
         text += fmt::format("asset    {} ({})\n", name, hash);
-    text += fmt::format("photons  of maps with transport {}\n", hex(transport_digest(scene)));
+    text += fmt::format("photons  of maps with transport {}\n", hex(transport_hash(scene)));
     text += fmt::format("diameter {:.6g} m\n", scene.diameter());
     if (const Vec3d& o = scene.origin(); !o.isZero(0))
         text +=
@@ -136,12 +145,9 @@ void info_on_scene(const InfoOptions& options) {
     if (options.beams) require_png(options.output, "beams");
     const SceneFile file = options.scene.load();
     const Scene scene(file.desc);
-    if (options.beams) {
-        const Method method = parse_method("beamtree", parameters_node(options.params));
-        write_png(
-            draw_beams(scene, std::get<BeamTreeParams>(method.params), drawing_options(scene)),
-            options.output);
-    }
+    if (options.beams)
+        write_png(draw_beams(scene, parameters_node(options.params), drawing_options(scene)),
+                  options.output);
     write_stdout(describe_scene(options.scene, file, scene));
 }
 

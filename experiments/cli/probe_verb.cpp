@@ -42,7 +42,7 @@ int probe_points(const ProbeOptions& options) {
     print_notes(answers.notes);
     const std::string table = probe_table(list, answers);
     if (to_file)
-        write_whole_file(options.output, table);
+        write_atomic_file(options.output, table);
     else
         write_stdout(table);
     return 0;

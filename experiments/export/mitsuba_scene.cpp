@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/math/frame.h"
 #include "experiments/export/exported_scene.h"
 #include "experiments/export/mesh_bytes.h"
 #include "experiments/export/xml_writer.h"
@@ -30,12 +31,7 @@ public:
         xml_.open("scene", {{"version", "3.0.0"}});
         write_integrator();
         write_sensor();
-        for (const PointLight& light : scene_.point_lights) {
-            xml_.open("emitter", {{"type", "point"}});
-            value("point", "position", three(light.position));
-            value("rgb", "intensity", three(light.intensity));
-            xml_.close();
-        }
+        for (const PointLight& light : scene_.point_lights) write_light(light);
         for (const DirectionalLight& light : scene_.directional_lights) {
             xml_.open("emitter", {{"type", "directional"}});
             value("vector", "direction", three(light.direction));
@@ -49,6 +45,24 @@ public:
     }
 
 private:
+    void write_light(const PointLight& light) {
+        xml_.open("emitter", {{"type", light.spot ? "spot" : "point"}});
+        if (light.spot) {
+            const Frame frame(light.spot->axis);
+            Eigen::Matrix4d to_world = Eigen::Matrix4d::Identity();
+            to_world.col(0).head<3>() = frame.s.cast<double>();
+            to_world.col(1).head<3>() = frame.t.cast<double>();
+            to_world.col(2).head<3>() = light.spot->axis.cast<double>();
+            to_world.col(3).head<3>() = light.position.cast<double>();
+            transform("to_world", to_world);
+            number("cutoff_angle", static_cast<double>(light.spot->cutoff) * 180 / pi_d);
+            number("beam_width", static_cast<double>(light.spot->beam_width) * 180 / pi_d);
+        } else {
+            value("point", "position", three(light.position));
+        }
+        value("rgb", "intensity", three(light.intensity));
+        xml_.close();
+    }
     void value(const std::string& type, const std::string& name, const std::string& text) {
         xml_.leaf(type, {{"name", name}, {"value", text}});
     }

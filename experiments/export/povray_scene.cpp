@@ -137,6 +137,9 @@ private:
     // truth; light fades by 2 / (1 + (d / fade_distance)^2), which is the inverse square for a
     // fade_distance that is nothing beside d.
     void write_light(const PointLight& light) {
+        if (light.spot)
+            refuse_export(settings_, "a spot light",
+                          "POV-Ray's falls off by another curve (a point light can be written)");
         const double fade = 1e-5 * static_cast<double>(world_.diameter());
         const SpectrumSum colour = light.intensity.cast<double>() / (2 * pi_d * fade * fade);
         text_ += fmt::format(

@@ -93,4 +93,10 @@ Picture draw_beams(const Scene& scene, const BeamTreeParams& params, const RunOp
     return picture;
 }
 
+Picture draw_beams(const Scene& scene, const JsonNode& params, const RunOptions& options) {
+    BeamTreeParams given;
+    read(params, given);
+    return draw_beams(scene, given, options);
+}
+
 }  // namespace caustics

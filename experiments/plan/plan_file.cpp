@@ -81,7 +81,7 @@ void write_plan(const PlanFile& plan, const std::filesystem::path& folder) {
     const json file = {{"version", plan_version}, {"sweeps", plan.sweeps},
                        {"filters", plan.filters}, {"started_in", plan.started_in.string()},
                        {"swept", plan.swept},     {"trials", std::move(trials)}};
-    write_whole_file(name_in(folder), file.dump(1) + "\n");
+    write_atomic_file(name_in(folder), file.dump(1) + "\n");
 }
 
 PlanFile read_plan_of(const std::filesystem::path& folder) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/base/csv.h"
+#include "experiments/plan/record_columns.h"
 
 namespace caustics {
 
@@ -15,96 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What a value of a record is, where it is there and not null.
-enum class Kind { number, count, text, any };
-
-struct Column {
-    const char* name;
-    const char* pointer;  ///< into record.json
-    Kind kind = Kind::number;
-};
-
-constexpr Column columns_of_all[] = {
-    {"trial", "/trial", Kind::text},
-    {"status", "/status", Kind::text},
-    {"scene", "/scene/name", Kind::text},
-    {"method", "/method/name", Kind::text},
-    {"seed", "/seed", Kind::count},
-    {"repeat", "/repeat", Kind::count},
-    {"threads", "/threads", Kind::count},
-    {"isa", "/isa", Kind::text},
-    {"photons_emitted", "/counters/photons_emitted"},
-    {"photons_stored", "/counters/photons_stored"},
-    {"nearest", "/method/parameters/nearest", Kind::any},
-    {"alpha", "/swept/alpha", Kind::any},
-    {"mesh_resolution", "/swept/mesh_resolution", Kind::any},
-    {"polygons", "/scene/polygons"},
-    {"beams", "/counters/beams"},
-    {"cone_point_tests", "/counters/cone_point_tests"},
-    {"beam_point_tests", "/counters/beam_point_tests"},
-    {"beam_point_hits", "/counters/beam_point_hits"},
-    {"map_bytes", "/memory/map_bytes"},
-    {"rss_start_bytes", "/memory/rss_start_bytes"},
-    {"peak_rss_bytes", "/memory/peak_rss_bytes"},
-    {"parse_s", "/seconds/parse/wall"},
-    {"precompute_s", "/seconds/precompute/wall"},
-    {"balance_s", "/seconds/balance/wall"},
-    {"render_s", "/seconds/render/wall"},
-    {"total_s", "/seconds/total/wall"},
-    {"cpu_s", "/seconds/total/cpu"},
-    {"rmse", "/metrics/rmse"},
-    {"relmse", "/metrics/relmse"},
-    {"bias", "/metrics/bias"},
-    {"variance", "/variance"},
-    {"mean_ratio", "/metrics/mean_ratio"},
-    {"leak_energy", "/metrics/leak_energy"},
-    {"beauty_rmse", "/beauty_rmse"},
-    {"unreached_fraction", "/unreached_fraction"},
-    {"reference", "/reference/name", Kind::text},
-    {"reference_stderr", "/reference/stderr"},
-    {"config_hash", "/config_hash", Kind::text},
-    {"code_version", "/code_version", Kind::text},
-    {"mask_rmse", "/mask_metrics/rmse"},
-    {"mask_relmse", "/mask_metrics/relmse"},
-    {"mask_mean_ratio", "/mask_metrics/mean_ratio"},
-    {"mask_fraction", "/mask_fraction"},
-    {"flip", "/flip"},  // which tools/flip_column.py adds
-    {"parse_cpu_s", "/seconds/parse/cpu"},
-    {"precompute_cpu_s", "/seconds/precompute/cpu"},
-    {"balance_cpu_s", "/seconds/balance/cpu"},
-    {"render_cpu_s", "/seconds/render/cpu"},
-    {"reference_mean", "/reference/mean"},
-    {"spp", "/spp", Kind::count},
-    {"trees", "/counters/trees"},
-    {"trees_binned", "/method/resolved/trees_binned"},
-    {"nodes", "/counters/nodes"},
-    {"tree_height", "/counters/height"},
-    {"casters_with_face_normals", "/method/resolved/casters_with_face_normals"},
-    {"flux_share_captured", "/method/resolved/flux_share_captured"},
-    {"camera_rays", "/counters/camera_rays"},
-    {"gathers", "/counters/gathers"},
-    {"gathered_photons", "/counters/gathered_photons"},
-    {"used_photons", "/counters/used_photons"},
-    {"photons_aimed", "/counters/photons_aimed"},
-    {"photons_reflected", "/counters/photons_reflected"},
-    {"photons_refracted", "/counters/photons_refracted"},
-    {"photons_connected", "/counters/photons_connected"},
-    {"empty_gathers", "/counters/empty_gathers"},
-    {"receiver_points", "/counters/receiver_points"},
-    {"lit_points", "/counters/lit_points"},
-    {"picture_hash", "/picture_hash", Kind::text},
-    {"elapsed_s", "/elapsed_s"},
-    {"finished", "/finished", Kind::text},
-    {"host", "/machine/host", Kind::text},
-    {"cpu", "/machine/cpu", Kind::text},
-    {"load_average", "/load/average"},
-    {"other_cores", "/load/other_cores"},
-    {"jobs", "/limits/jobs"},
-    {"timeout_s", "/limits/timeout_s"},
-    {"memory_limit_bytes", "/limits/memory_bytes"},
-    {"why_empty", "/why_empty", Kind::text},
-    {"message", "/message", Kind::text},
-};
+using Kind = RecordColumn::Kind;
 
 constexpr const char* kept_statuses[] = {"done", "failed", "timeout", "unsupported"};
 
@@ -112,7 +24,8 @@ constexpr const char* kept_statuses[] = {"done", "failed", "timeout", "unsupport
 const std::map<std::string, json::json_pointer>& places() {
     static const std::map<std::string, json::json_pointer> all = [] {
         std::map<std::string, json::json_pointer> made;
-        for (const Column& column : columns_of_all) made.emplace(column.name, column.pointer);
+        for (const RecordColumn& column : record_columns_of_all())
+            made.emplace(column.name, column.pointer);
         return made;
     }();
     return all;
@@ -161,7 +74,7 @@ json to_json(const Metrics& metrics) {
 
 std::string flaw_of(const json& record) {
     if (!record.is_object()) return "not a JSON object";
-    for (const Column& column : columns_of_all) {
+    for (const RecordColumn& column : record_columns_of_all()) {
         const json::json_pointer& place = places().at(column.name);
         if (!record.contains(place) || record.at(place).is_null()) continue;
         if (!is_of_kind(record.at(place), column.kind))
@@ -176,8 +89,8 @@ std::string flaw_of(const json& record) {
 }
 
 bool is_record_column(const std::string& name) {
-    return std::ranges::any_of(columns_of_all,
-                               [&](const Column& column) { return name == column.name; });
+    return std::ranges::any_of(record_columns_of_all(),
+                               [&](const RecordColumn& column) { return name == column.name; });
 }
 
 bool is_swept_column(const std::string& name) {
@@ -186,7 +99,7 @@ bool is_swept_column(const std::string& name) {
 
 std::vector<std::string> record_columns(const std::vector<std::string>& swept) {
     std::vector<std::string> names;
-    for (const Column& column : columns_of_all) names.emplace_back(column.name);
+    for (const RecordColumn& column : record_columns_of_all()) names.emplace_back(column.name);
     for (const std::string& name : swept)
         if (std::ranges::count(names, name) == 0) names.push_back(name);
     return names;

@@ -15,30 +15,26 @@ namespace {
 
 using json = nlohmann::json;
 
-/// The parameter that says how many samples there are; nullptr for methods without.
-const char* samples_name(const std::string& method) {
-    if (method == "lighttrace") return "paths";
-    if (method == "pathtrace") return "spp";
-    return nullptr;
-}
+/// The parameter that says how many samples there are; empty for methods without.
+const std::string& samples_name(const Method& method) { return method.facts().samples.parameter; }
 
 Method with_samples(const Method& method, std::uint64_t samples) {
     json parameters = describe(method);
-    parameters[samples_name(method.name)] = samples;
+    parameters[samples_name(method)] = samples;
     std::vector<std::string> assignments;
     for (const auto& [key, value] : parameters.items())
         assignments.push_back(key + "=" + value.dump());
     return parse_method(method.name, parameters_node(assignments));
 }
 
-json without_samples(json parameters, const std::string& method) {
+json without_samples(json parameters, const Method& method) {
     parameters.erase(samples_name(method));
     return parameters;
 }
 
-/// Paths that a picture was made of, or as many a pixel: pathtrace gives each camera sample as many, so rounds up.
+/// Samples that a picture was made of, or as many a pixel: each camera sample is given as many, rounded up.
 double weight(const RunRequest& request, std::uint64_t samples) {
-    if (request.method.name != "pathtrace") return static_cast<double>(samples);
+    if (!request.method.facts().samples.of_a_pixel) return static_cast<double>(samples);
     const auto each = static_cast<std::uint64_t>(request.samples_per_pixel);
     return static_cast<double>((samples + each - 1) / each * each);
 }
@@ -50,15 +46,15 @@ std::string said(const Film& film, const char* name) {
 
 bool belongs_to(const Film& film, const RunRequest& wanted, const SceneFile& scene, int version) {
     const json theirs = json::parse(said(film, "parameters"), nullptr, false);
-    return theirs.is_object() && theirs.contains(samples_name(wanted.method.name)) &&
+    return theirs.is_object() && theirs.contains(samples_name(wanted.method)) &&
            said(film, "reference_version") == (version > 1 ? fmt::format("{}", version) : "") &&
            said(film, "scene_hash") == scene.hash && said(film, "method") == wanted.method.name &&
            said(film, "seed") == fmt::format("{}", wanted.seed) &&
            said(film, "spp") == fmt::format("{}", wanted.samples_per_pixel) &&
            film.width() == scene.desc.camera.width && film.height() == scene.desc.camera.height &&
            film.has_layer("caustic") && film.find("stderr.Y") != nullptr &&
-           without_samples(theirs, wanted.method.name) ==
-               without_samples(describe(wanted.method), wanted.method.name);
+           without_samples(theirs, wanted.method) ==
+               without_samples(describe(wanted.method), wanted.method);
 }
 
 /// Empty for a file that is no picture: the trials that need that reference will say so.
@@ -73,9 +69,8 @@ std::optional<Film> readable(const std::filesystem::path& file) {
 }  // namespace
 
 std::optional<std::uint64_t> samples_of(const Method& method) {
-    const char* const name = samples_name(method.name);
-    if (name == nullptr) return {};
-    return describe(method).at(name).get<std::uint64_t>();
+    if (samples_name(method).empty()) return {};
+    return describe(method).at(samples_name(method)).get<std::uint64_t>();
 }
 
 std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::path>& folders,
@@ -94,7 +89,7 @@ std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::
             std::optional<Film> film = readable(file);
             if (!film || !belongs_to(*film, wanted, scene, version)) continue;
             const auto samples = json::parse(said(*film, "parameters"))
-                                     .at(samples_name(wanted.method.name))
+                                     .at(samples_name(wanted.method))
                                      .get<std::uint64_t>();
             if (samples < *most && (!best || samples > best->samples))
                 best = SmallerReference{file, std::move(*film), samples};

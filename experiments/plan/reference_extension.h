@@ -15,7 +15,7 @@ namespace caustics {
 struct SmallerReference {
     std::filesystem::path file;
     Film film;
-    std::uint64_t samples = 0;  ///< its `paths` (lighttrace) or `spp` (pathtrace)
+    std::uint64_t samples = 0;  ///< the value of its method's SampleCount::parameter
 };
 
 /// The samples that a reference method is asked for; empty for methods that have no such number.

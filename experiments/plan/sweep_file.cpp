@@ -85,8 +85,8 @@ std::string object_text(const std::vector<std::pair<std::string, std::string>>& 
 /// A parameter that leaves a file behind is refused: the trials would overwrite each other's.
 Method method_of_trials(const std::string& name, const JsonNode& params) {
     const Method method = parse_method(name, params);
-    if (writes_files(method))
-        params.at("save").fail(
+    for (const std::string& key : method.configured->files_written())
+        params.at(key).fail(
             "not in a sweep, whose trials would overwrite each other's file (save it by the verb "
             "render, then load it here)");
     return method;

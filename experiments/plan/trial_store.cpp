@@ -36,7 +36,7 @@ void bring_to_disk(const fs::path& place) {
 
 }  // namespace
 
-void JobStore::prepare() const {
+void TrialStore::prepare() const {
     try {
         fs::create_directories(trials_);
         for (const fs::directory_entry& entry : fs::directory_iterator(trials_)) {
@@ -53,7 +53,7 @@ void JobStore::prepare() const {
     }
 }
 
-std::optional<nlohmann::json> JobStore::record(const std::string& id) const {
+std::optional<nlohmann::json> TrialStore::record(const std::string& id) const {
     const fs::path file = record_of(id);
     const auto require = [&](bool whole, const std::string& flaw) {
         if (!whole)
@@ -74,11 +74,11 @@ std::optional<nlohmann::json> JobStore::record(const std::string& id) const {
     return record;
 }
 
-fs::path JobStore::temporary_of(const std::string& id) const {
+fs::path TrialStore::temporary_of(const std::string& id) const {
     return trials_ / fmt::format("{}{}", new_prefix, id);
 }
 
-fs::path JobStore::begin(const std::string& id) const {
+fs::path TrialStore::begin(const std::string& id) const {
     fs::path folder = temporary_of(id);
     std::error_code error;
     fs::remove_all(folder, error);
@@ -87,12 +87,12 @@ fs::path JobStore::begin(const std::string& id) const {
     return folder;
 }
 
-void JobStore::commit(const std::string& id, const nlohmann::json& record) const {
+void TrialStore::commit(const std::string& id, const nlohmann::json& record) const {
     const fs::path folder = temporary_of(id);
     const fs::path old = trials_ / fmt::format("{}{}", old_prefix, id);
     const fs::path place = folder_of(id);
-    write_whole_file(folder / "record.json",
-                     record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write_atomic_file(folder / "record.json",
+                      record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     try {
         for (const fs::directory_entry& file : fs::directory_iterator(folder))
             bring_to_disk(file.path());
@@ -105,7 +105,7 @@ void JobStore::commit(const std::string& id, const nlohmann::json& record) const
     }
 }
 
-std::vector<std::string> JobStore::trials() const {
+std::vector<std::string> TrialStore::trials() const {
     std::vector<std::string> ids;
     std::error_code none;
     for (const fs::directory_entry& entry : fs::directory_iterator(trials_, none)) {
@@ -117,12 +117,12 @@ std::vector<std::string> JobStore::trials() const {
     return ids;
 }
 
-void JobStore::drop(const std::string& id) const {
+void TrialStore::drop(const std::string& id) const {
     std::error_code ignored;
     fs::remove_all(temporary_of(id), ignored);
 }
 
-void JobStore::remove(const std::string& id) const {
+void TrialStore::remove(const std::string& id) const {
     std::error_code error;
     fs::remove_all(folder_of(id), error);
     if (error) cannot_be_written(folder_of(id), error);

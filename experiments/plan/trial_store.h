@@ -11,9 +11,9 @@ namespace caustics {
 /// The folder of finished trials, DIR/trials/ID/{record.json, image.exr, log.txt}. A trial's folder
 /// is whole or absent: it is filled under a temporary name, brought to the disk and renamed.
 /// Whoever writes holds the FolderLock of DIR.
-class JobStore {
+class TrialStore {
 public:
-    explicit JobStore(const std::filesystem::path& folder) : trials_(folder / "trials") {}
+    explicit TrialStore(const std::filesystem::path& folder) : trials_(folder / "trials") {}
 
     /// Makes the folder ready for writing: removes what killed processes left half-written, and
     /// brings back what they were about to replace. Throws InputError when it cannot be written.

@@ -112,7 +112,7 @@ std::string hash_of(const CellPictures& cell, const DonePictures& done) {
 }
 
 /// A number, null where no pixel counts, or text where a picture cannot be used.
-json variance_of(const CellPictures& cell, const JobStore& store) {
+json variance_of(const CellPictures& cell, const TrialStore& store) {
     if (cell.lacks_reference()) return {};
     std::vector<std::filesystem::path> files;
     for (const auto& [seed, id] : cell.trials) files.push_back(store.image_of(id));
@@ -133,7 +133,7 @@ json variance_of(const CellPictures& cell, const JobStore& store) {
     return mean ? json(*mean) : json();
 }
 
-json variances_of(const std::map<std::string, CellPictures>& cells, const JobStore& store) {
+json variances_of(const std::map<std::string, CellPictures>& cells, const TrialStore& store) {
     json result = json::object();
     for (const auto& [name, cell] : cells) result[name] = variance_of(cell, store);
     return result;
@@ -154,7 +154,7 @@ CellVariances cell_variances(const PlanFile& plan, const std::filesystem::path& 
     }
     // The table of a sweep that was stopped does without.
     if (fresh.empty() || interrupt_requested()) return all;
-    const JobStore store(folder);
+    const TrialStore store(folder);
     const json means = json::parse(run_in_child([&](const ChildProcess::Tell&) {
         return variances_of(fresh, store).dump(-1, ' ', false, json::error_handler_t::replace);
     }));

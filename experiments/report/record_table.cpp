@@ -36,7 +36,7 @@ public:
     }
 
 private:
-    WholeFile file_;
+    AtomicFile file_;
     std::uint64_t sum_ = fnv1a("");
     std::size_t size_ = 0;
 };
@@ -73,7 +73,7 @@ struct RecordNow {
     std::optional<json> record;
 };
 
-RecordNow record_now(const JobStore& store, const std::string& trial,
+RecordNow record_now(const TrialStore& store, const std::string& trial,
                      const std::map<std::string, json>& unfinished) {
     const auto left_nothing = unfinished.find(trial);
     if (left_nothing != unfinished.end()) return {"", left_nothing->second};
@@ -83,7 +83,7 @@ RecordNow record_now(const JobStore& store, const std::string& trial,
 
 }  // namespace
 
-std::vector<std::string> write_records(const std::filesystem::path& folder, const JobStore& store,
+std::vector<std::string> write_records(const std::filesystem::path& folder, const TrialStore& store,
                                        const PlanFile& plan,
                                        const std::map<std::string, json>& unfinished,
                                        const std::function<void(const TableRow& row)>& visit) {

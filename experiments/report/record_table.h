@@ -18,7 +18,7 @@ namespace caustics {
 /// record at a time. `visit` sees each row. Returns what the tables lack because pictures are gone, a
 /// line each. Trials of a cell that differ in their seed share
 /// `variance` (cell_variances). `unfinished` are records of trials that left nothing.
-std::vector<std::string> write_records(const std::filesystem::path& folder, const JobStore& store,
+std::vector<std::string> write_records(const std::filesystem::path& folder, const TrialStore& store,
                                        const PlanFile& plan,
                                        const std::map<std::string, nlohmann::json>& unfinished,
                                        const std::function<void(const TableRow& row)>& visit);

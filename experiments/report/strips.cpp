@@ -38,9 +38,9 @@ Picture figure(const fs::path& picture, const Reference& reference) {
 
 }  // namespace
 
-std::vector<std::string> write_figures(const SweepPlan& plan, const JobStore& store,
-                                       const std::function<bool(const Trial&)>& is_done,
-                                       ReferenceCache& references, const fs::path& folder) {
+std::vector<std::string> write_strips(const SweepPlan& plan, const TrialStore& store,
+                                      const std::function<bool(const Trial&)>& is_done,
+                                      ReferenceCache& references, const fs::path& folder) {
     const auto figure_of = [&](const Trial& trial) { return folder / (trial.id + ".png"); };
     std::vector<const Trial*> missing;
     std::set<std::string> cells;

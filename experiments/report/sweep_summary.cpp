@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "experiments/base/progress.h"
+#include "experiments/run/method.h"
 
 namespace caustics {
 
@@ -36,7 +37,8 @@ void SweepSummary::add(const TableRow& row) {
     if (const std::optional<double> bytes = row.number("peak_rss_bytes"))
         memory_.take_in(*bytes / (1 << 20));
     reference_error_.take_in(row.number("reference_stderr"));
-    if (row.text("method") != "none") energy_.take_in(row.number("mean_ratio"));
+    const MethodDescription* const method = find_method(row.text("method"));
+    if (method == nullptr || method->facts().has_caustic) energy_.take_in(row.number("mean_ratio"));
     const std::optional<double> rmse = row.number("rmse");
     if (!rmse) return;
     const Values values = values_of(row);

@@ -47,7 +47,7 @@ TableIndex from_json(const json& file) {
 }  // namespace
 
 void write_table_index(const TableIndex& index, const std::filesystem::path& folder) {
-    write_whole_file(folder / file_name, to_json(index).dump() + "\n");
+    write_atomic_file(folder / file_name, to_json(index).dump() + "\n");
 }
 
 TableIndex read_table_index(const std::filesystem::path& folder) {

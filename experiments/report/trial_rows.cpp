@@ -22,7 +22,7 @@ std::string content_of(const fs::path& file, const std::string& checksum) {
 
 }  // namespace
 
-TrialRows::TrialRows(const fs::path& folder, const JobStore& store)
+TrialRows::TrialRows(const fs::path& folder, const TrialStore& store)
     : store_(store), index_(read_table_index(folder)), columns_of_all_(record_columns({})) {
     csv_ = content_of(folder / "records.csv", index_.csv);
     const bool has_lines = !content_of(folder / "records.jsonl", index_.jsonl).empty();

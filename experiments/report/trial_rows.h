@@ -20,7 +20,7 @@ namespace caustics {
 /// table that is not the one its index tells of serves for nothing.
 class TrialRows {
 public:
-    TrialRows(const std::filesystem::path& folder, const JobStore& store);
+    TrialRows(const std::filesystem::path& folder, const TrialStore& store);
     TrialRows(const TrialRows&) = delete;
     TrialRows& operator=(const TrialRows&) = delete;
 
@@ -38,7 +38,7 @@ public:
 private:
     TableRow row_at(std::size_t offset) const;
 
-    const JobStore& store_;
+    const TrialStore& store_;
     TableIndex index_;
     std::string csv_;
     std::vector<std::string> columns_;                    ///< of the table

@@ -8,7 +8,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/scene_file/scene_reader.h"
-#include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 
 namespace caustics {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 
 namespace caustics {
 

@@ -6,7 +6,7 @@
 
 #include "core/caustic_estimator.h"
 #include "experiments/base/csv.h"
-#include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 
 namespace caustics {
 

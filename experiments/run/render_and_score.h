@@ -10,7 +10,7 @@
 #include "core/render/renderer.h"
 #include "core/scene_file/scene_reader.h"
 #include "experiments/base/stopwatch.h"
-#include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 
 namespace caustics {
 

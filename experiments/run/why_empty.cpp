@@ -12,6 +12,8 @@ namespace caustics {
 
 namespace {
 
+constexpr int usual_bounces = 16;  ///< of methods that have no limit of their own
+
 bool is_dark(const Film& film) {
     for (std::size_t i = 0; i < film.pixel_count(); ++i)
         if (!is_black(film.rgb("caustic", i))) return false;
@@ -28,7 +30,7 @@ std::optional<std::uint64_t> find(const Counters& counters, const std::string& n
 int max_bounces(const Method& method, const BuildReport& report) {
     const auto loaded = report.resolved.find("max_bounces");
     if (loaded != report.resolved.end()) return static_cast<int>(loaded->second);
-    return describe(method).value("max_bounces", LightTraceParams{}.max_bounces);
+    return describe(method).value("max_bounces", usual_bounces);
 }
 
 /// The camera sees lit receivers, but the method showed it nothing.
@@ -54,7 +56,7 @@ std::string why_missed(const Method& method, const CausticSurvey& survey, const 
 
 std::optional<std::string> why_empty(const Scene& scene, const Method& method, const Film& film,
                                      const BuildReport& report, const Counters& counters) {
-    if (method.name == "none" || !is_dark(film)) return {};
+    if (!method.facts().has_caustic || !is_dark(film)) return {};
     if (auto reason = why_nothing_is_aimed(scene)) return reason;
     const CausticSurvey survey = survey_caustic(scene, max_bounces(method, report));
     const bool traces_light = counters.contains("photons_emitted");
@@ -65,10 +67,11 @@ std::optional<std::string> why_empty(const Scene& scene, const Method& method, c
             "{} light paths are too few to bring any: {} of {} traced to find out arrived",
             counts.emitted, survey.counts.stored, survey.counts.emitted);
     if (find(counters, "receiver_points") == 0) return "the camera sees no receiver";
-    if (method.name == "lighttrace" && survey.behind_caster > 0 && survey.seen == 0)
-        return "the camera sees what light reaches through casters at most, where lighttrace "
-               "cannot "
-               "connect the two (layer unreached; photonmap can)";
+    if (counters.contains("photons_connected") && survey.behind_caster > 0 && survey.seen == 0)
+        return fmt::format(
+            "the camera sees what light reaches through casters at most, where {} cannot connect "
+            "the two (layer unreached; photonmap can)",
+            method.name);
     if (survey.seen == 0) return why_unseen(survey);
     return why_missed(method, survey, report, counters);
 }

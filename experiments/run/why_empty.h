@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 
 namespace caustics {
 

@@ -46,7 +46,7 @@ double free_bytes(fs::path folder) {
 }  // namespace
 
 std::string list_plan(const SweepPlan& plan, const SweepOptions& options) {
-    const SweepStatus status = sweep_status(plan, options, JobStore(options.folder));
+    const SweepStatus status = sweep_status(plan, options, TrialStore(options.folder));
     const std::set<const Trial*> share(status.share.begin(), status.share.end());
     std::string text;
     for (const Trial& trial : plan.trials) {
@@ -59,7 +59,7 @@ std::string list_plan(const SweepPlan& plan, const SweepOptions& options) {
 }
 
 std::string dry_run(const SweepPlan& plan, const SweepOptions& options) {
-    const SweepStatus status = sweep_status(plan, options, JobStore(options.folder));
+    const SweepStatus status = sweep_status(plan, options, TrialStore(options.folder));
     const ReferenceCache references(options.folder / "references", options.references);
     const std::optional<Cost> cost = status.cost();
     std::string text = fmt::format(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -70,7 +71,7 @@ std::vector<PlanFile> read_plans(const std::vector<fs::path>& folders) {
 }
 
 void take_in(Survey& survey, const PlanFile& plan, const fs::path& folder) {
-    const JobStore store(folder);
+    const TrialStore store(folder);
     const TrialRows rows(folder, store);
     for (const PlanFile::Entry& trial : plan.trials) {
         const std::optional<TableRow> row = rows.row(trial.id);
@@ -167,15 +168,15 @@ std::vector<std::string> write_merged(const std::vector<fs::path>& folders, cons
     copy_files(folders, "report/figures", target,
                [&](const fs::path& file) { return figures.contains(file.filename().string()); });
     write_plan(plan, target);
-    write_whole_file(target / "environment.json", environments(folders));
-    return write_records(target, JobStore(target), plan, {}, [](const TableRow&) {});
+    write_atomic_file(target / "environment.json", environments(folders));
+    return write_records(target, TrialStore(target), plan, {}, [](const TableRow&) {});
 }
 
 /// Throws InputError for what the file system refuses.
 std::vector<std::string> write_whole(const std::vector<fs::path>& folders, const PlanFile& plan,
                                      const Survey& survey, const fs::path& target) {
     try {
-        WholeFolder whole(target);
+        AtomicFolder whole(target);
         std::vector<std::string> lacks = write_merged(folders, plan, survey, whole.path());
         whole.commit();
         return lacks;

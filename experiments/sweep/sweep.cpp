@@ -42,7 +42,7 @@ std::string result_text(const json& record) {
     return status_of(record);
 }
 
-constexpr std::string_view temporary_mark = ".tmp-";  ///< of WholeFile
+constexpr std::string_view temporary_mark = ".tmp-";  ///< of AtomicFile
 
 /// Removes files that killed processes left under temporary names.
 void remove_leftovers(const fs::path& folder) {
@@ -53,7 +53,7 @@ void remove_leftovers(const fs::path& folder) {
             fs::remove(entry.path(), ignored);
 }
 
-std::size_t trials_of_others(const SweepPlan& plan, const JobStore& store) {
+std::size_t trials_of_others(const SweepPlan& plan, const TrialStore& store) {
     std::set<std::string> own;
     for (const Trial& trial : plan.trials) own.insert(trial.id);
     return static_cast<std::size_t>(std::ranges::count_if(
@@ -90,7 +90,7 @@ public:
         warn();
         write_plan(plan_file(plan_), options_.folder);
         if (!status_.todo.empty())
-            write_whole_file(options_.folder / "environment.json", environment().dump(2) + "\n");
+            write_atomic_file(options_.folder / "environment.json", environment().dump(2) + "\n");
         try {
             render_references();
             if (!options_.only_references) run_trials();
@@ -104,7 +104,7 @@ public:
         print_notes(write_table(&summary));
         const fs::path figures = figures_folder();
         fs::create_directories(figures);
-        print_notes(write_figures(
+        print_notes(write_strips(
             plan_, store_, [&](const Trial& trial) { return known_status(trial) == "done"; },
             references_, figures));
         write_stdout(fmt::format(
@@ -314,7 +314,7 @@ private:
     const SweepPlan& plan_;
     const SweepOptions& options_;
     FolderLock lock_;
-    JobStore store_;
+    TrialStore store_;
     ReferenceCache references_;
     SweepStatus status_;
     std::optional<Progress> progress_;

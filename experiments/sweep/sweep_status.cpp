@@ -19,7 +19,7 @@ bool must_run(const std::string& status, const SweepOptions& options) {
     return status.empty() || options.force || (options.rerun_failed && failed);
 }
 
-void take_note(SweepStatus& all, const Trial& trial, const TableRow& row, const JobStore& store) {
+void take_note(SweepStatus& all, const Trial& trial, const TableRow& row, const TrialStore& store) {
     const std::string& version = row.text("code_version");
     if (version != code_version()) ++all.other_code[version];
     const std::string& status = all.statuses[trial.id] = row.text("status");
@@ -71,7 +71,7 @@ std::string SweepStatus::code_warning() const {
 }
 
 SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,
-                         const JobStore& store) {
+                         const TrialStore& store) {
     SweepStatus all;
     const TrialRows rows(options.folder, store);
     for (const Trial& trial : plan.trials) {

@@ -32,6 +32,7 @@ struct SweepStatus {
 };
 
 /// Looks at every trial once (TrialRows).
-SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options, const JobStore& store);
+SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,
+                         const TrialStore& store);
 
 }  // namespace caustics

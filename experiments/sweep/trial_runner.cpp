@@ -32,7 +32,7 @@ std::string work(const Trial& trial, ReferenceCache& references, const RunOption
 
 }  // namespace
 
-TrialRunner::TrialRunner(const JobStore& store, ReferenceCache& references,
+TrialRunner::TrialRunner(const TrialStore& store, ReferenceCache& references,
                          const TrialSettings& settings)
     : store_(store), references_(references), settings_(settings), processors_(own_processors()) {}
 

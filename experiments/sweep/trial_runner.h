@@ -28,7 +28,7 @@ struct TrialSettings {
 /// With room for several, each has processors of its own if there are enough.
 class TrialRunner {
 public:
-    TrialRunner(const JobStore& store, ReferenceCache& references, const TrialSettings& settings);
+    TrialRunner(const TrialStore& store, ReferenceCache& references, const TrialSettings& settings);
     /// Kills the trials at work and forgets them.
     ~TrialRunner();
     TrialRunner(const TrialRunner&) = delete;
@@ -67,7 +67,7 @@ private:
     nlohmann::json finish(const Trial& trial, const ChildProcess& child) const;
     void store(const Trial& trial, nlohmann::json& record, double seconds) const;
 
-    const JobStore& store_;
+    const TrialStore& store_;
     ReferenceCache& references_;
     const TrialSettings& settings_;
     std::vector<int> processors_;

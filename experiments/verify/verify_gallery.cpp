@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 
 namespace caustics {
 

@@ -16,6 +16,7 @@
 #include "experiments/base/stopwatch.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/run/caustic_survey.h"
+#include "experiments/run/method.h"
 #include "experiments/run/methods.h"
 #include "experiments/verify/light_audit.h"
 
@@ -40,28 +41,18 @@ constexpr double most_while_shrinking = 0.1;
 
 Verdict verdict(bool holds) { return holds ? Verdict::holds : Verdict::fails; }
 
-/// What a check gives each method to do, at first and where that does not do.
-std::vector<std::string> effort(const std::string& method, bool more) {
-    using Efforts = std::map<std::string, std::vector<std::string>>;
-    static const Efforts first = {{"pathtrace", {"spp=64"}},
-                                  {"lighttrace", {"paths=400000"}},
-                                  {"photonmap", {"photons=60000", "nearest=60"}},
-                                  {"beamtree", {"mesh_resolution=64"}},
-                                  {"illuminationmap", {"emitted=1000000", "resolution=64"}},
-                                  {"causticpolygons", {"mesh_resolution=32"}}};
-    static const Efforts second = {{"photonmap", {"photons=480000", "nearest=60"}},
-                                   {"beamtree", {"mesh_resolution=128"}},
-                                   {"illuminationmap", {"emitted=4000000", "resolution=128"}},
-                                   {"causticpolygons", {"mesh_resolution=64"}}};
-    return (more ? second : first).at(method);
+Method with_effort(const MethodDescription& method, bool more = false) {
+    const MethodFacts& facts = method.facts();
+    return parse_method(facts.name, parameters_node(more ? facts.more_effort : facts.effort));
 }
 
-Method with_effort(const std::string& name, bool more = false) {
-    return parse_method(name, parameters_node(effort(name, more)));
-}
-
-bool is_reference(const std::string& method) {
-    return method == "pathtrace" || method == "lighttrace";
+/// The first unbiased method that serves the scene; nullptr where there is none.
+const MethodDescription* reference_for(const Scene& scene) {
+    const auto serves = [&](const MethodDescription* each) {
+        return each->facts().is_unbiased && !why_unsupported(scene, with_effort(*each));
+    };
+    const auto found = std::ranges::find_if(all_methods(), serves);
+    return found == all_methods().end() ? nullptr : *found;
 }
 
 SceneDesc made_small(SceneDesc desc) {
@@ -129,9 +120,10 @@ public:
     SceneVerifier(const SceneFile& file, const std::vector<std::string>& methods,
                   const RunOptions& options)
         : desc_(made_small(file.desc)), scene_(desc_), options_(options) {
-        for (const std::string& name : method_names())
-            if (name != "none" && (methods.empty() || std::ranges::count(methods, name) > 0))
-                methods_.push_back(name);
+        for (const MethodDescription* each : all_methods())
+            if (each->facts().has_caustic &&
+                (methods.empty() || std::ranges::count(methods, each->facts().name) > 0))
+                methods_.push_back(each);
     }
 
     SceneReport run() {
@@ -140,9 +132,9 @@ public:
         audit();
         look_for_the_caustic();
         progress.end("done");
-        for (const std::string& name : methods_) {
-            progress.begin(name + " by threads");
-            check_threads(name, progress);
+        for (const MethodDescription* method : methods_) {
+            progress.begin(method->facts().name + " by threads");
+            check_threads(*method, progress);
             progress.expect_later(Eta(comparing(served_).seconds, true));
             progress.end("done");
         }
@@ -204,92 +196,100 @@ private:
         return picture(scene_, method, options, seed);
     }
 
-    void check_threads(const std::string& name, StepProgress& progress) {
-        if (const auto reason = why_unsupported(scene_, with_effort(name))) {
+    void check_threads(const MethodDescription& method, StepProgress& progress) {
+        const std::string& name = method.facts().name;
+        const Method configured = with_effort(method);
+        if (const auto reason = why_unsupported(scene_, configured)) {
             add("threads: " + name, Verdict::told, "cannot serve the scene: " + *reason);
             return;
         }
         RunOptions options = options_;
         options.threads = 1;
         const Stopwatch watch;
-        const Film alone = picture_of(with_effort(name), options, 1, progress, 0);
+        const Film alone = picture_of(configured, options, 1, progress, 0);
         seconds_of_picture_[name] = watch.total().wall;
         bool same = true;
         for (options.threads = 2; options.threads <= std::max(2, options_.threads);
              options.threads = std::max(options.threads + 1, options_.threads)) {
             const Stopwatch again;
-            const Film other = picture_of(with_effort(name), options, 1, progress, 0.5);
+            const Film other = picture_of(configured, options, 1, progress, 0.5);
             if (options_.threads > 1) seconds_of_picture_[name] = again.total().wall;
             same = same && same_bits(alone, other);
         }
         add("threads: " + name, verdict(same),
             same ? "the same picture with one and more" : "pictures with one and more differ");
-        served_.push_back(name);
+        served_.push_back(&method);
     }
 
-    std::vector<Film> films_of(const std::string& name, bool more, StepProgress& progress) const {
+    std::vector<Film> films_of(const MethodDescription& method, bool more,
+                               StepProgress& progress) const {
         std::vector<Film> films;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed)
-            films.push_back(picture_of(with_effort(name, more), options_, seed, progress,
+            films.push_back(picture_of(with_effort(method, more), options_, seed, progress,
                                        static_cast<double>(seed - 1) / seeds));
         return films;
     }
 
     /// Seconds that the pictures of a method's first effort take, as far as one was timed.
-    std::optional<double> seconds_of(const std::string& method) const {
-        const auto found = seconds_of_picture_.find(method);
+    std::optional<double> seconds_of(const MethodDescription& method) const {
+        const auto found = seconds_of_picture_.find(method.facts().name);
         if (found == seconds_of_picture_.end()) return {};
         return seeds * found->second;
     }
 
     /// What comparing these methods takes, at least: which will want more effort, nothing tells.
-    Eta comparing(std::span<const std::string> methods) const {
+    Eta comparing(std::span<const MethodDescription* const> methods) const {
         Eta eta(0);
-        for (const std::string& name : methods) {
-            eta.seconds += seconds_of(name).value_or(0);
-            eta.at_least = eta.at_least || !is_reference(name);
+        for (const MethodDescription* method : methods) {
+            eta.seconds += seconds_of(*method).value_or(0);
+            eta.at_least = eta.at_least || !method->facts().more_effort.empty();
         }
         return eta;
     }
 
     void compare(StepProgress& progress) {
         if (why_nothing_is_aimed(scene_)) return;
-        const bool has_area_lights_alone =
-            !why_unsupported(scene_, with_effort("pathtrace")).has_value();
-        const std::string reference = has_area_lights_alone ? "pathtrace" : "lighttrace";
+        const MethodDescription* const reference = reference_for(scene_);
+        if (reference == nullptr) {
+            add("reference", Verdict::told, "no unbiased method can serve the scene");
+            return;
+        }
         std::erase(served_, reference);
         progress.expect_later(comparing(served_));
-        progress.begin("reference", seconds_of(reference));
-        const std::vector<Film> truth = films_of(reference, false, progress);
+        progress.begin("reference", seconds_of(*reference));
+        const std::vector<Film> truth = films_of(*reference, false, progress);
         progress.end("done");
         const PixelMask counted = reached_pixels(truth.front(), truth.front());
         add("reference", Verdict::told,
-            fmt::format("{}, {} seeds, {:.0f} % of the pixels reached", reference, seeds,
-                        100 * fraction(counted)));
+            fmt::format("{}, {} seeds, {:.0f} % of the pixels reached", reference->facts().name,
+                        seeds, 100 * fraction(counted)));
         for (std::size_t i = 0; i < served_.size(); ++i) {
             progress.expect_later(comparing(std::span(served_).subspan(i + 1)));
-            progress.begin(served_[i], seconds_of(served_[i]));
-            compare(served_[i], truth, progress);
+            progress.begin(served_[i]->facts().name, seconds_of(*served_[i]));
+            compare(*served_[i], truth, progress);
             progress.end("done");
         }
     }
 
-    void compare(const std::string& name, const std::vector<Film>& truth, StepProgress& progress) {
-        const std::vector<Film> films = films_of(name, false, progress);
+    void compare(const MethodDescription& method, const std::vector<Film>& truth,
+                 StepProgress& progress) {
+        const MethodFacts& facts = method.facts();
+        const std::string what = "against the reference: " + facts.name;
+        const std::vector<Film> films = films_of(method, false, progress);
         const PixelMask counted = reached_pixels(films.front(), truth.front());
         const CellLight known = cell_light(truth, counted);
-        const Gap first = gap(name, cell_light(films, counted), known);
-        if (first.holds || is_reference(name)) {
-            add("against the reference: " + name, verdict(first.holds), first.text);
+        const Gap first = gap(facts, cell_light(films, counted), known);
+        if (first.holds || facts.more_effort.empty()) {
+            add(what, verdict(first.holds), first.text);
             return;
         }
-        progress.begin(name + " with more effort");
-        const std::vector<Film> better = films_of(name, true, progress);
-        const Gap second = gap(name, cell_light(better, counted), known);
+        progress.begin(facts.name + " with more effort");
+        const std::vector<Film> better = films_of(method, true, progress);
+        const Gap second = gap(facts, cell_light(better, counted), known);
         const bool shrinks = second.whole <= most_while_shrinking &&
                              1.3 * second.whole <= first.whole &&
                              second.cells_off <= first.cells_off;
-        add("against the reference: " + name, verdict(second.holds || shrinks),
+        add(what, verdict(second.holds || shrinks),
             first.text + "; with more effort " + second.text);
     }
 
@@ -301,11 +301,11 @@ private:
         std::string text;
     };
 
-    static Gap gap(const std::string& name, const CellLight& found, const CellLight& truth) {
+    static Gap gap(const MethodFacts& method, const CellLight& found, const CellLight& truth) {
         const std::size_t whole = truth.mean.size() - 1;
         const double mean = truth.mean[whole];
-        const double in_cells = is_reference(name) ? 0 : allowed_in_cells;
-        const double in_all = is_reference(name) ? 0 : allowed_in_all;
+        const double in_cells = method.is_unbiased ? 0 : allowed_in_cells;
+        const double in_all = method.is_unbiased ? 0 : allowed_in_all;
         std::size_t off = 0;
         for (std::size_t cell = 0; cell < whole; ++cell) {
             const double error = std::hypot(found.error[cell], truth.error[cell]);
@@ -325,8 +325,8 @@ private:
     SceneDesc desc_;
     Scene scene_;
     RunOptions options_;
-    std::vector<std::string> methods_;
-    std::vector<std::string> served_;
+    std::vector<const MethodDescription*> methods_;
+    std::vector<const MethodDescription*> served_;
     std::map<std::string, double> seconds_of_picture_;  ///< with all threads
     SceneReport report_;
 };

@@ -20,10 +20,10 @@ double mean_factor(std::size_t rungs) {
 
 }  // namespace
 
-AdaptiveCount::AdaptiveCount(Isa isa) : chooser_(tree_kernels(isa).choose_count) {}
+AdaptiveN::AdaptiveN(Isa isa) : chooser_(tree_kernels(isa).choose_count) {}
 
-ChosenPhotons AdaptiveCount::choose(const ReceiverPoint& point, const GatheredPhotons& gathered,
-                                    bool full, CountScratch& scratch) const {
+ChosenPhotons AdaptiveN::choose(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                                bool full, NScratch& scratch) const {
     const std::size_t room = gathered.count + widest_register;
     PhotonsAround around{};
     if (gathered.count > 0)
@@ -39,7 +39,7 @@ ChosenPhotons AdaptiveCount::choose(const ReceiverPoint& point, const GatheredPh
         scratch.direction[part].reserve(room);
         around.direction[part] = scratch.direction[part].data();
     }
-    const CountChoice choice = chooser_(around);
+    const NChoice choice = chooser_(around);
 
     const double mean = mean_factor(choice.rungs);
     if (!choice.stopped) return {gathered, full, 1 / mean};

@@ -9,9 +9,9 @@
 namespace caustics {
 
 /// A thread's arrays for choosing.
-struct CountScratch {
+struct NScratch {
     AlignedArray<std::uint32_t> direction[4];
-    NearPhotons near;
+    RadiusFilter near;
 };
 
 /// The photons that were chosen.
@@ -42,17 +42,17 @@ struct ChosenPhotons {
 /// photon's disc, the mean of (K-1) / a_K is (S-1) / a, that of a fixed N = S (RadianceEstimate).
 /// What the factor takes away by chance, up to 0.28 %, is given back by its known mean for as many
 /// steps as could be tested.
-class AdaptiveCount {
+class AdaptiveN {
 public:
-    explicit AdaptiveCount(Isa isa);
+    explicit AdaptiveN(Isa isa);
 
     /// Chooses among the photons gathered at the point, with their positions; `full` tells whether
     /// they are the N nearest, or all within the maximum radius.
     ChosenPhotons choose(const ReceiverPoint& point, const GatheredPhotons& gathered, bool full,
-                         CountScratch& scratch) const;
+                         NScratch& scratch) const;
 
 private:
-    CountChooser* chooser_;
+    NChooser* chooser_;
 };
 
 }  // namespace caustics

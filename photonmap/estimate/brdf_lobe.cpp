@@ -25,23 +25,23 @@ Lobe lobe_of(const Vec3& normal, const Vec3& wo, float alpha) {
 
 }  // namespace
 
-Reflection reflection_of(const ReceiverPoint& point) {
-    Reflection reflection;
+BrdfLobe reflection_of(const ReceiverPoint& point) {
+    BrdfLobe reflection;
     const Vec3& n = point.shading_normal;
     if (!(n.dot(point.wo) > 0)) return reflection;
     if (const auto* diffuse = std::get_if<Diffuse>(&point.bsdf->model)) {
-        reflection.model = Reflection::Model::lambert;
+        reflection.model = BrdfLobe::Model::lambert;
         copy(n, reflection.lobe.normal);
         reflection.scale = evaluate(diffuse->reflectance, point.uv).cast<double>() / pi_d;
     } else if (const auto* schlick = std::get_if<Schlick>(&point.bsdf->model)) {
-        reflection.model = Reflection::Model::schlick;
+        reflection.model = BrdfLobe::Model::schlick;
         reflection.lobe = lobe_of(n, point.wo, schlick->alpha);
         const auto cosine = static_cast<double>(reflection.lobe.cosine);
         const auto alpha = static_cast<double>(schlick->alpha);
         reflection.scale = evaluate(schlick->reflectance, point.uv).cast<double>() * alpha /
                            (pi_d * (cosine + alpha * (1 - cosine)));
     } else {
-        reflection.model = Reflection::Model::other;
+        reflection.model = BrdfLobe::Model::other;
         reflection.scale = SpectrumSum::Ones();
     }
     return reflection;

@@ -7,7 +7,7 @@ namespace caustics {
 
 /// The f_r of a receiver point seen along its `wo`, taken apart for shading many photons:
 /// f_r(wi) = `scale` x a factor of wi that a kernel works out.
-struct Reflection {
+struct BrdfLobe {
     enum class Model {
         black,    ///< no light reaches the viewer
         lambert,  ///< the kernel `facing`
@@ -20,6 +20,6 @@ struct Reflection {
 };
 
 /// The point's texture is evaluated here, once.
-Reflection reflection_of(const ReceiverPoint& point);
+BrdfLobe reflection_of(const ReceiverPoint& point);
 
 }  // namespace caustics

@@ -11,13 +11,13 @@ namespace caustics {
 /// photon can have: the lookup table that [J96, section 5] proposes. Photons near one point come
 /// from few directions, so an entry is worked out when it is first asked for, and forgetting all
 /// entries costs nothing. A thread's scratch of 1 MB.
-class ReflectionTable {
+class BrdfLobeTable {
 public:
-    ReflectionTable() : entries_(65'536) {}
+    BrdfLobeTable() : entries_(65'536) {}
 
     /// Turns to a point; `reflection` is that of `point`. Entries are kept where it is that of
     /// the point before but for `scale`, as on a flat floor seen from very far away.
-    void turn_to(const ReceiverPoint& point, const Reflection& reflection);
+    void turn_to(const ReceiverPoint& point, const BrdfLobe& reflection);
     /// f_r / `scale`, per channel, for a direction code: theta + 256 phi.
     const float* factor(std::uint16_t direction) {
         Entry& entry = entries_[direction];
@@ -43,7 +43,7 @@ private:
     std::uint64_t lookups_ = 0;
     std::uint64_t fillings_ = 0;
     ReceiverPoint point_{};
-    Reflection reflection_;
+    BrdfLobe reflection_;
 };
 
 }  // namespace caustics

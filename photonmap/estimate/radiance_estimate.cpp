@@ -55,6 +55,7 @@ RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
 }
 
 Spectrum RadianceEstimate::density(const SpectrumSum& sum, const Disc& disc) const {
+    // [J96 (3)], and with the sum [J96 (4)]: over the disc's area.
     const SpectrumSum density =
         sum * settings_.flux_unit.cast<double>() * (disc.factor / (pi_d * disc.squared_radius));
     return density.cast<float>();

@@ -14,12 +14,12 @@ namespace caustics {
 /// A thread's arrays for estimates, and how many photons they were made from.
 struct EstimateScratch {
     AlignedArray<float> weight;
-    CountScratch count;
+    NScratch count;
     std::uint64_t used_photons = 0;
-    std::optional<ReflectionTable> table;  ///< of f_r, where reflection is to be looked up
+    std::optional<BrdfLobeTable> table;  ///< of f_r, where reflection is to be looked up
 };
 
-/// Radiance from the N nearest photons, [J96] eqs. 1-4: the sum of f_r times flux over the area
+/// Radiance from the N nearest photons, [J96 (1)], [J96 (2)]: the sum of f_r times flux over the area
 /// pi r^2 of the disc that holds them; each photon weighs as the filter says (density_filter.h).
 ///
 /// `raw` is eq. 4: r is the distance of the N-th photon. It reads high by w(1) / (N-1), w(1) being
@@ -45,7 +45,7 @@ public:
         GatherLimits limits;
         PhotonMapParams::Estimator estimator = PhotonMapParams::Estimator::unbiased;
         FilterKind filter = FilterKind::none;
-        bool adaptive = false;  ///< whether N is the largest number (AdaptiveCount)
+        bool adaptive = false;  ///< whether N is the largest number (AdaptiveN)
         double share = 1;       ///< of the squared radius within which photons count (pass_share)
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1
     };
@@ -73,7 +73,7 @@ private:
 
     Settings settings_;
     Shading shading_;
-    AdaptiveCount adaptive_;
+    AdaptiveN adaptive_;
 };
 
 }  // namespace caustics

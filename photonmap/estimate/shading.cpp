@@ -78,25 +78,25 @@ SpectrumSum Shading::arriving(const WeightedPhotons& photons) const {
 }
 
 SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons& photons) const {
-    const Reflection reflection = reflection_of(point);
+    const BrdfLobe reflection = reflection_of(point);
     const auto sum_by = [&](ShadingKernel* kernel) -> SpectrumSum {
         return sum_in_runs(kernel, reflection.lobe, photons) * reflection.scale;
     };
     switch (reflection.model) {
-        case Reflection::Model::lambert:
+        case BrdfLobe::Model::lambert:
             // All photons are in front already where the normals are one.
             return sum_by(point.shading_normal == point.geometric_normal ? kernels_.arriving
                                                                          : kernels_.facing);
-        case Reflection::Model::schlick: return sum_by(kernels_.schlick);
-        case Reflection::Model::other: return sum_evaluated(point, photons);
-        case Reflection::Model::black: break;
+        case BrdfLobe::Model::schlick: return sum_by(kernels_.schlick);
+        case BrdfLobe::Model::other: return sum_evaluated(point, photons);
+        case BrdfLobe::Model::black: break;
     }
     return SpectrumSum::Zero();
 }
 
 SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons& photons,
-                               ReflectionTable& table) const {
-    const Reflection reflection = reflection_of(point);
+                               BrdfLobeTable& table) const {
+    const BrdfLobe reflection = reflection_of(point);
     table.turn_to(point, reflection);
     SpectrumSum sum = SpectrumSum::Zero();
     for (std::size_t i = 0; i < photons.photons.count; ++i) {

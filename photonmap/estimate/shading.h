@@ -17,7 +17,7 @@ struct WeightedPhotons {
     std::size_t left_out = none;    ///< index of a photon that does not count
 };
 
-/// Sums over gathered photons, the numerator of [J96, eq. 4]. Directions are decoded at the centres
+/// Sums over gathered photons, the numerator of [J96 (4)]. Directions are decoded at the centres
 /// of their cells, energies exactly. The order of summation is fixed by the instruction set;
 /// all agree to 1e-5, and on which photons count exactly.
 class Shading {
@@ -38,7 +38,7 @@ public:
 
     /// The same by a table of f_r, one photon after another.
     SpectrumSum reflected(const ReceiverPoint& point, const WeightedPhotons& photons,
-                          ReflectionTable& table) const;
+                          BrdfLobeTable& table) const;
 
 private:
     const ShadingKernels& kernels_;

@@ -5,13 +5,13 @@
 
 namespace caustics {
 
-/// CountChooser for registers of one kind. Directions are kept as whole numbers, so that sums, and
+/// NChooser for registers of one kind. Directions are kept as whole numbers, so that sums, and
 /// with them choices, depend neither on the photons' order nor on the instruction set.
 template <typename Lanes>
-class CountChoiceOf {
+class NChoiceOf {
 public:
-    static CountChoice choose(const PhotonsAround& photons) {
-        CountChoice choice;
+    static NChoice choose(const PhotonsAround& photons) {
+        NChoice choice;
         find_directions(photons);
         float bound[2] = {0, 0};
         Sums sums[2], now;

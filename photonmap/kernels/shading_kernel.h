@@ -14,7 +14,7 @@ struct Lobe {
     float tangent[3];
     float bitangent[3];
     float wo[3];
-    float cosine;  ///< v = n.wo of [J96, eq. 5], > 0
+    float cosine;  ///< v = n.wo of [J96 (5)], > 0
     float alpha;   ///< of Schlick's model
 };
 
@@ -30,7 +30,7 @@ struct ShadedPhotons {
 /// Adds to rgb[3] the sum over photons of energy x weight x
 ///   `arriving`: 1;
 ///   `facing`: 1 where n.wi > 0, else 0 (Lambert's law but for the factor 1/pi);
-///   `schlick`: pi f_r (alpha + (1 - alpha) v) / alpha by [J96, eqs. 5-6] where n.wi > 0, else 0.
+///   `schlick`: pi f_r (alpha + (1 - alpha) v) / alpha by [J96 (5)], [J96 (6)] where n.wi > 0, else 0.
 ///
 /// n.wi is rounded step by step as `evaluate(bsdf, ...)` does it, on every instruction set, so that
 /// all agree on which photons count. Runs should be at most `longest_run` photons, so that sums in

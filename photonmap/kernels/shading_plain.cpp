@@ -56,7 +56,7 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
 
 }  // namespace
 
-// [J96, eqs. 5-6] with D(v) = v / G(v) = v + alpha (1 - v), s = wo + wi and t^2 = (n.s)^2 / |s|^2:
+// [J96 (5)], [J96 (6)] with D(v) = v / G(v) = v + alpha (1 - v), s = wo + wi and t^2 = (n.s)^2 / |s|^2:
 //   pi f_r = (1 - G G') + Z / (4 D D'), and D D' - v v' = alpha ((1-v) v' + (1-v') D),
 //   Z = alpha / (1 - (1-alpha) t^2)^2 = alpha |s|^4 / (alpha |s|^2 + (1-alpha) |n x s|^2)^2.
 // Nothing here cancels, however small alpha is, and nothing is divided by v or v'.
@@ -83,7 +83,6 @@ float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t the
     return dot(lobe.normal, decode(tables, theta, phi)) > 0 ? 1.0F : 0.0F;
 }
 
-const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick,
-                                   weigh_photons<PlainLanes>};
+const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick, weigh_photons<PlainSimd>};
 
 }  // namespace caustics

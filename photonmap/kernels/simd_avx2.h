@@ -6,7 +6,7 @@
 
 namespace caustics {
 
-/// PlainLanes, eight at a time.
+/// PlainSimd, eight at a time.
 struct Avx2Lanes {
     static constexpr size_t width = 8;
     using Floats = __m256;

@@ -6,7 +6,7 @@
 
 namespace caustics {
 
-/// PlainLanes, sixteen at a time.
+/// PlainSimd, sixteen at a time.
 struct Avx512Lanes {
     static constexpr size_t width = 16;
     using Floats = __m512;

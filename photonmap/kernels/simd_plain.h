@@ -9,7 +9,7 @@ namespace caustics {
 /// lane i in bit i. Every width does the same operations, each rounded to float, in the same order,
 /// so that results are the same bits. `compress` puts the masked lanes side by side and may write
 /// a whole register.
-struct PlainLanes {
+struct PlainSimd {
     static constexpr size_t width = 1;
     using Floats = float;
     using Words = uint32_t;

@@ -7,7 +7,7 @@
 namespace caustics {
 
 /// A value of given rank and its place among the others.
-struct KthSmallest {
+struct SimdSelect {
     float value;
     size_t less;       ///< how many are below it
     size_t not_above;  ///< how many are not above it
@@ -84,8 +84,8 @@ struct Selection {
     }
 
     /// The value of rank `rank` (1 = the smallest), exactly.
-    static KthSmallest kth(const float* values, size_t count, size_t rank, float least,
-                           float greatest) {
+    static SimdSelect kth(const float* values, size_t count, size_t rank, float least,
+                          float greatest) {
         const Bound bound = bound_for(values, count, count, rank, rank, least, greatest);
         const float value = greatest_not_above(values, count, bound.value);
         return {value, count_less(values, count, value), bound.not_above};

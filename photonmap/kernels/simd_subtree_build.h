@@ -9,7 +9,7 @@ namespace caustics {
 /// Builds the subtrees of small ranges: the positions lie in columns, and every level of the tree moves
 /// them from one set of columns to the other, a register at a time.
 template <typename Lanes>
-class SmallOrder {
+class SimdSubtreeBuild {
 public:
     static void bounds(const unsigned char* photons, size_t count, float least[3],
                        float greatest[3]) {
@@ -50,11 +50,11 @@ public:
     }
 
     static void order(unsigned char* photons, size_t count, OrderScratch& scratch) {
-        SmallOrder(photons, count, scratch).order_subtree(0, 0, count);
+        SimdSubtreeBuild(photons, count, scratch).order_subtree(0, 0, count);
     }
 
     static void fill_buckets(const BucketRange& range, OrderScratch& scratch) {
-        SmallOrder order(range.photons, range.count, scratch);
+        SimdSubtreeBuild order(range.photons, range.count, scratch);
         order.range_ = &range;
         order.fill(0, 0, range.count, range.node, range.leaves);
     }
@@ -62,7 +62,7 @@ public:
 private:
     using Columns = OrderScratch::Columns;
 
-    SmallOrder(unsigned char* photons, size_t count, OrderScratch& scratch)
+    SimdSubtreeBuild(unsigned char* photons, size_t count, OrderScratch& scratch)
         : photons_(photons), scratch_(scratch) {
         Columns& columns = scratch.columns[0];
         for (size_t i = 0; i < count; ++i) {
@@ -97,7 +97,7 @@ private:
                 greatest = high;
             }
         }
-        const KthSmallest kth =
+        const SimdSelect kth =
             Selection<Lanes>::kth(columns.position[axis] + begin, count, rank + 1, least, greatest);
         move_lower(from, begin, count, axis, kth);
         move_others(from, begin, count, axis, kth);
@@ -126,7 +126,7 @@ private:
     /// Registers are stored whole: what a store writes past its lanes is written over later, or
     /// belongs to ranges further right, which are done before those to their left.
     void move_lower(unsigned from, size_t begin, size_t count, unsigned axis,
-                    const KthSmallest& kth) {
+                    const SimdSelect& kth) {
         const auto value = Lanes::all(kth.value);
         const float* const keys = scratch_.columns[from].position[axis] + begin;
         size_t to = begin;
@@ -139,7 +139,7 @@ private:
     }
 
     void move_others(unsigned from, size_t begin, size_t count, unsigned axis,
-                     const KthSmallest& kth) {
+                     const SimdSelect& kth) {
         const auto value = Lanes::all(kth.value);
         const float* const keys = scratch_.columns[from].position[axis] + begin;
         size_t to = begin + kth.not_above;

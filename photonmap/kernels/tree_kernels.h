@@ -119,7 +119,7 @@ struct TreeKernels {
     /// The first of the farthest candidates; there must be one.
     Farthest (*farthest)(const Candidates&);
     /// Chooses how many of a point's photons to take.
-    CountChooser* choose_count;
+    NChooser* choose_count;
     /// Bounds of the positions of an array of 20-byte photons.
     void (*bounds)(const unsigned char* photons, size_t count, float least[3], float greatest[3]);
     /// Orders at most small_range photons as an in-order walk of their left-balanced tree.

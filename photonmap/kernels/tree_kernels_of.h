@@ -15,10 +15,10 @@ struct TreeKernelsOf {
         .find_in_columns = &ColumnScan<Lanes>::find,
         .shrink = &CandidateLoops<Lanes>::shrink,
         .farthest = &CandidateLoops<Lanes>::farthest,
-        .choose_count = &CountChoiceOf<Lanes>::choose,
-        .bounds = &SmallOrder<Lanes>::bounds,
-        .order_small = &SmallOrder<Lanes>::order,
-        .fill_buckets = &SmallOrder<Lanes>::fill_buckets,
+        .choose_count = &NChoiceOf<Lanes>::choose,
+        .bounds = &SimdSubtreeBuild<Lanes>::bounds,
+        .order_small = &SimdSubtreeBuild<Lanes>::order,
+        .fill_buckets = &SimdSubtreeBuild<Lanes>::fill_buckets,
     };
 };
 

@@ -3,6 +3,6 @@
 
 namespace caustics {
 
-const TreeKernels& plain_tree_kernels() { return TreeKernelsOf<PlainLanes>::value; }
+const TreeKernels& plain_tree_kernels() { return TreeKernelsOf<PlainSimd>::value; }
 
 }  // namespace caustics

@@ -163,7 +163,7 @@ void require_sense(const Reader& in, const TracedPhotons& photons) {
 
 void save_photon_map(const TracedPhotons& photons, const PhotonOrigin& origin,
                      const std::filesystem::path& file) {
-    WholeFile out(file);
+    AtomicFile out(file);
     std::uint64_t hash = fnv1a("");
     const auto put = [&](std::string_view bytes) {
         out.write(bytes);

@@ -11,7 +11,7 @@ namespace caustics {
 
 /// Where the photons of a map come from.
 struct PhotonOrigin {
-    std::uint64_t transport = 0;  ///< transport_digest() of the scene
+    std::uint64_t transport = 0;  ///< transport_hash() of the scene
     std::uint64_t seed = 0;
     PhotonMapParams::Emission emission = PhotonMapParams::Emission::random;
     Interaction interaction = Interaction::roulette;

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "core/light_path/light_path.h"
-#include "core/scene_file/json_reader.h"
 
 namespace caustics {
 
@@ -41,10 +40,10 @@ struct PhotonMapParams {
     Interaction interaction = Interaction::roulette;
     TreeKind tree = TreeKind::balanced;
     static constexpr int default_adaptive_nearest = 200;
-    static constexpr int least_adaptive_nearest = 20;  ///< for AdaptiveCount's ladder to have room
+    static constexpr int least_adaptive_nearest = 20;  ///< for AdaptiveN's ladder to have room
     static constexpr int most_adaptive_nearest = 100'000;
     int nearest = 50;       ///< N; at least 2 for `unbiased`
-    bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveCount)
+    bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveN)
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
     FilterKind filter = FilterKind::none;
@@ -62,9 +61,5 @@ struct PhotonMapParams {
     /// emitted are 0, and how the photons were traced stands in the file.
     std::filesystem::path load = {};
 };
-
-/// Relative names of files start at the folder of the file that names them (a sweep file), or at
-/// the working folder. Throws InputError for what cannot be used or is not built yet.
-void read(const JsonNode& node, PhotonMapParams& params);
 
 }  // namespace caustics

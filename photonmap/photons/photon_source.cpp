@@ -31,7 +31,7 @@ SavedPhotons loaded(const Scene& scene, const PhotonMapParams& params, const Run
 
 void require_transport(const PhotonOrigin& origin, const Scene& scene,
                        const std::filesystem::path& file) {
-    const std::uint64_t transport = transport_digest(scene);
+    const std::uint64_t transport = transport_hash(scene);
     if (origin.transport == transport) return;
     throw InputError(file.string() +
                      ": the photons are those of another scene: lights, casters or geometry differ "
@@ -40,15 +40,15 @@ void require_transport(const PhotonOrigin& origin, const Scene& scene,
                      "); only camera, film and what receivers reflect may change");
 }
 
-SavedPhotons kept_photons(const Scene& scene, const PhotonMapParams& params,
-                          const RunOptions& options) {
+SavedPhotons photon_source(const Scene& scene, const PhotonMapParams& params,
+                           const RunOptions& options) {
     if (!params.load.empty()) return loaded(scene, params, options);
     // Tried now, rather than after the tracing.
-    if (!params.save.empty()) WholeFile trial(params.save);
+    if (!params.save.empty()) AtomicFile trial(params.save);
     SavedPhotons photons = traced(scene, params, options);
     if (params.save.empty()) return photons;
     options.phase("save");
-    photons.origin.transport = transport_digest(scene);
+    photons.origin.transport = transport_hash(scene);
     save_photon_map(photons.photons, photons.origin, params.save);
     return photons;
 }

@@ -8,9 +8,9 @@ namespace caustics {
 /// The photons that a map stands on: traced in phase "trace", or those of the file `params.load`, in
 /// phase "load"; and written to `params.save`, in phase "save". A file that cannot be written to is
 /// told before anything is traced. Throws InputError when the loaded photons are not those of the
-/// scene: its transport_digest differs.
-SavedPhotons kept_photons(const Scene& scene, const PhotonMapParams& params,
-                          const RunOptions& options);
+/// scene: its transport_hash differs.
+SavedPhotons photon_source(const Scene& scene, const PhotonMapParams& params,
+                           const RunOptions& options);
 
 /// Throws InputError naming the file unless the photons are those of the scene.
 void require_transport(const PhotonOrigin& origin, const Scene& scene,

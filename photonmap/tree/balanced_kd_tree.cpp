@@ -65,7 +65,7 @@ void balance(std::span<Photon> photons, Isa isa) {
 }
 
 BalancedKdTree::BalancedKdTree(PhotonStore photons, Isa isa)
-    : SearchTree(tree_kernels(isa), ArrivalDirections(photons.photons())),
+    : KdTreeBase(tree_kernels(isa), ArrivalDirections(photons.photons())),
       photons_(std::move(photons)) {
     balance(photons_.photons(), isa);
 }

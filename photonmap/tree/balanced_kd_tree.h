@@ -6,14 +6,14 @@
 namespace caustics {
 
 /// Turns an array of photons into the balanced kd-tree of [J96, section 2], in place with O(1) extra
-/// memory: a heap (heap_shape.h), node i = photon i - 1 of the array, whose root is the median along the
+/// memory: a heap (left_balanced.h), node i = photon i - 1 of the array, whose root is the median along the
 /// largest interval of the photons' tight bounding box, and so on. The two lowest bits of a
 /// photon's flags hold its splitting axis. Positions must be finite. The same tree on every instruction
 /// set.
 void balance(std::span<Photon> photons, Isa isa = widest_isa());
 
 /// The paper's tree: the photons alone, no child pointers.
-class BalancedKdTree final : public SearchTree {
+class BalancedKdTree final : public KdTreeBase {
 public:
     BalancedKdTree(PhotonStore photons, Isa isa);
 

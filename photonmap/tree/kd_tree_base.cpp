@@ -23,38 +23,38 @@ unsigned widest_axis(std::span<const Photon> photons, const TreeKernels& kernels
     return widest;
 }
 
-void SearchTree::gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
+void KdTreeBase::gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
                         GatherScratch& scratch, const Consumer& consume) const {
     Batch batch{points, limits, scratch, consume};
     begin(batch);
     for (std::size_t i = 0; i < points.size(); ++i) answer(batch, i);
 }
 
-std::size_t SearchTree::nearest(const GatherLimits& limits) const {
+std::size_t KdTreeBase::nearest(const GatherLimits& limits) const {
     return std::max<std::size_t>(1, std::min(limits.nearest, size()));
 }
 
-void SearchTree::begin(Batch& batch) const {
+void KdTreeBase::begin(Batch& batch) const {
     const GatherLimits& limits = batch.limits;
     NearestQuery& query = batch.query;
     query.nearest = nearest(limits);
     query.max_squared_distance = limits.max_radius * limits.max_radius;
     query.tie_context = this;
     query.drop_ties = [](const void* tree, Candidates& found, std::size_t wanted) {
-        const auto& self = *static_cast<const SearchTree*>(tree);
+        const auto& self = *static_cast<const KdTreeBase*>(tree);
         keep_smallest_codes(found, wanted,
                             [&self](std::uint32_t photon) { return self.code_of(photon); });
     };
     batch.scratch.reserve(room_for(query.nearest), limits.positions);
 }
 
-NearestQuery SearchTree::Batch::query_at(const Vec3& point) const {
+NearestQuery KdTreeBase::Batch::query_at(const Vec3& point) const {
     NearestQuery at = query;
     std::copy_n(point.data(), 3, at.point);
     return at;
 }
 
-void SearchTree::answer(Batch& batch, std::size_t i) const {
+void KdTreeBase::answer(Batch& batch, std::size_t i) const {
     const GatherLimits& limits = batch.limits;
     GatherScratch& scratch = batch.scratch;
     NeighbourBound& bound = batch.bound;
@@ -91,7 +91,7 @@ void SearchTree::answer(Batch& batch, std::size_t i) const {
     batch.consume(i, answer);
 }
 
-GatheredPhotons SearchTree::gathered(const Candidates& found, const CopiedPhotons& copied) const {
+GatheredPhotons KdTreeBase::gathered(const Candidates& found, const CopiedPhotons& copied) const {
     GatheredPhotons answer{found.squared_distance,
                            copied.energy,
                            copied.direction,

@@ -36,13 +36,13 @@ inline void copy_photon(const Photon& photon, std::size_t i, const CopiedPhotons
 
 /// What the three trees share: the side test, the bound from the query before, and the answer's
 /// arrays.
-class SearchTree : public PhotonTree {
+class KdTreeBase : public PhotonTree {
 public:
     void gather(std::span<const ReceiverPoint> points, const GatherLimits& limits,
                 GatherScratch& scratch, const Consumer& consume) const override;
 
 protected:
-    SearchTree(const TreeKernels& kernels, const ArrivalDirections& directions)
+    KdTreeBase(const TreeKernels& kernels, const ArrivalDirections& directions)
         : kernels_(kernels), directions_(directions) {}
 
     /// A photon's energy and direction as one number.
@@ -95,7 +95,7 @@ protected:
 };
 
 template <typename CodeOf>
-void SearchTree::keep_smallest_codes(Candidates& found, std::size_t nearest,
+void KdTreeBase::keep_smallest_codes(Candidates& found, std::size_t nearest,
                                      const CodeOf& code_of) {
     const float greatest =
         *std::max_element(found.squared_distance, found.squared_distance + found.count);

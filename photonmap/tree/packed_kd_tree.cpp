@@ -36,7 +36,7 @@ void fill_buckets(BucketRange range, const TreeKernels& kernels, OrderScratch& s
 }  // namespace
 
 PackedKdTree::PackedKdTree(PhotonStore photons, Isa isa)
-    : SearchTree(tree_kernels(isa), ArrivalDirections(photons.photons())),
+    : KdTreeBase(tree_kernels(isa), ArrivalDirections(photons.photons())),
       photons_(std::move(photons)),
       planes_(std::make_unique<std::uint32_t[]>(std::max<std::size_t>(1, bucket_count()))) {
     order();

@@ -9,10 +9,10 @@ namespace caustics {
 
 /// A kd-tree over buckets of photons, built in the photons' own memory. A bucket holds x, y, z, energy,
 /// directions and flags of its photons one array after the other, so that a register takes many photons
-/// at once. The tree above is a heap of splitting planes, four bytes a bucket (heap_shape.h): inner
+/// at once. The tree above is a heap of splitting planes, four bytes a bucket (left_balanced.h): inner
 /// node i's plane is planes[i], its axis in the lowest two bits. The last bucket, when it is not
 /// full, is filled up with positions at infinity.
-class PackedKdTree final : public SearchTree {
+class PackedKdTree final : public KdTreeBase {
 public:
     PackedKdTree(PhotonStore photons, Isa isa);
 

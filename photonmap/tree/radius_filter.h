@@ -9,7 +9,7 @@
 namespace caustics {
 
 /// Some of a query's photons, with their memory.
-class NearPhotons {
+class RadiusFilter {
 public:
     /// The photons not beyond the radius, without positions, good until the next call; they may be
     /// kept ones themselves.

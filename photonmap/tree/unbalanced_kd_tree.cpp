@@ -48,7 +48,7 @@ void* map_memory(std::size_t bytes) {
 void UnbalancedKdTree::Unmap::operator()(Node* memory) const { munmap(memory, bytes); }
 
 UnbalancedKdTree::UnbalancedKdTree(PhotonStore photons, Isa isa)
-    : SearchTree(tree_kernels(isa), ArrivalDirections(photons.photons())),
+    : KdTreeBase(tree_kernels(isa), ArrivalDirections(photons.photons())),
       size_(photons.size()),
       nodes_(static_cast<Node*>(map_memory(size_ * sizeof(Node))), {size_ * sizeof(Node)}) {
     const std::span<const Photon> arrived = photons.photons();

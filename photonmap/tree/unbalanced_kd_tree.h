@@ -7,7 +7,7 @@ namespace caustics {
 /// What the paper's balanced tree is compared with [J96, section 2]: photons inserted one by one in the
 /// order of their arrival, the axes taken in turn x, y, z from level to level, each node with two
 /// child pointers. Searched by the same code as the balanced tree.
-class UnbalancedKdTree final : public SearchTree {
+class UnbalancedKdTree final : public KdTreeBase {
 public:
     /// The photons' own memory is given back when the nodes are made.
     UnbalancedKdTree(PhotonStore photons, Isa isa);

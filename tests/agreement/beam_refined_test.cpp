@@ -58,7 +58,7 @@ TEST(BeamRefined, IsOfSecondOrderAtPoints) {
         EXPECT_LT(fine.median, 0.003);
         EXPECT_LT(fine.mean, 0.008);
     }
-    // The paper's eq. 11, as a control: first order.
+    // [CC95 (11)], as a control: first order.
     const Errors coarse = truth.errors(water_of(48), with(Intensity::area));
     const Errors fine = truth.errors(water_of(96), with(Intensity::area));
     EXPECT_NEAR(order(coarse, fine), 1, 0.15);

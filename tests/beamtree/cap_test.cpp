@@ -42,6 +42,7 @@ double smallest_angle_by_force(const std::vector<Vec3d>& u) {
     return best;
 }
 
+// [CC95 (1)].
 TEST(Cap, SmallestIsThatOfBruteForce) {
     Rng rng(1, Stage::test, 0);
     for (int i = 0; i < 200; ++i) {
@@ -93,6 +94,7 @@ TEST(Circle, SmallestIsThatOfBruteForce) {
     }
 }
 
+// [CC95 (2)].
 TEST(Neck, IsTheLeastOfAConvexSize) {
     for (const double at : {0.0, 0.001, 0.3, 0.77, 0.999, 1.0, 3.0, -2.0}) {
         const auto size = [at](double t) { return std::sqrt(0.01 + (t - at) * (t - at)); };

@@ -43,15 +43,15 @@ SceneDesc wavy_pool(int cells) {
 }
 
 // Where the light that enters at x meets the floor.
-double landing(double x) {
+double arrival(double x) {
     const double angle = std::atan(amplitude * wave_number * std::cos(wave_number * x + 0.3));
     const double turn = angle - std::asin(std::sin(angle) / ior);
     return x + (depth + amplitude * std::sin(wave_number * x + 0.3)) * std::tan(turn);
 }
 
-// The caustics are lines along y: where the landing turns back.
+// The caustics are lines along y: where the arrival turns back.
 std::vector<double> caustic_lines() {
-    const auto slope = [](double x) { return landing(x + 1e-6) - landing(x - 1e-6); };
+    const auto slope = [](double x) { return arrival(x + 1e-6) - arrival(x - 1e-6); };
     std::vector<double> lines;
     constexpr int steps = 10000;
     for (int i = 0; i < steps; ++i) {
@@ -62,7 +62,7 @@ std::vector<double> caustic_lines() {
             const double middle = (low + high) / 2;
             (slope(low) * slope(middle) > 0 ? low : high) = middle;
         }
-        lines.push_back(landing(low));
+        lines.push_back(arrival(low));
     }
     return lines;
 }

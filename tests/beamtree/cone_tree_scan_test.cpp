@@ -171,6 +171,7 @@ struct Bounds {
     ConeTreeSettings settings;
 };
 
+// Parents from their own rays, and from their children's cones [CC95 (4)].
 std::vector<Bounds> all_bounds() {
     using Merging = ConeTreeSettings::Merging;
     std::vector<Bounds> all;

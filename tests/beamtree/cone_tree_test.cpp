@@ -61,7 +61,7 @@ TEST(DoubleCone, NeedsItsSlackOnTiltedPlanes) {
     EXPECT_GT(lost, 0);
 }
 
-// Corrected eqs. 5-10: points of the ellipse lie on the cone and on the plane.
+// [CC95 (5)] to [CC95 (10)], corrected: points of the ellipse lie on the cone and on the plane.
 TEST(ConeSection, LiesOnTheConeAndThePlane) {
     Rng rng(4, Stage::test, 0);
     int ellipses = 0;

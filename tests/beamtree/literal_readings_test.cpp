@@ -10,7 +10,7 @@
 
 // Where the printed text of [CC95] fails, what it would lose: the printed formulas stand here, and
 // nowhere in the library. They are negative controls of the tests that find nothing lost, and the
-// figures of PAPERS.md.
+// figures of beamtree/README.md.
 namespace caustics {
 namespace {
 
@@ -96,6 +96,7 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
 
 // Section 3.2.1: "two rays are fired from the point to the two apexes [...]. If any one of the angles
 // between the rays and the axis is smaller than the spread angle, the point is inside".
+// The apexes are those of [CC95 (3)].
 struct Apexes {
     Vec3d rear, front, axis;  ///< the light comes past the rear one first
     double spread;
@@ -171,7 +172,7 @@ private:
     Vec3d a_, s_, t_;
 };
 
-// Eq. 2 and the two next brackets that are printed, as printed.
+// [CC95 (2)] and the two next brackets that are printed, as printed.
 struct PrintedNeck {
     bool has_bracket = false;
     bool ends_in_an_unprinted_case = false;
@@ -241,7 +242,7 @@ TEST(LiteralReadings, TheNeckSearchAsPrintedSeldomStarts) {
     EXPECT_NEAR(ring.widening, 1.62, 0.01);
 }
 
-// Eq. 9 as printed: the centre is sought along the child's axis.
+// [CC95 (9)] as printed: the centre is sought along the child's axis.
 Vec3d printed_centre(const Vec3d& apex, const Vec3d& child, double spread, const Vec3d& parent,
                      double z0) {
     const double between = angle_between(child, parent);

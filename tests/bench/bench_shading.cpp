@@ -34,7 +34,7 @@ struct Work {
     std::vector<std::uint32_t> energy;     ///< `padded` a point
     std::vector<std::uint16_t> direction;  ///< likewise
     Shading shading;
-    ReflectionTable table;
+    BrdfLobeTable table;
     std::vector<SpectrumSum> sums;
 
     explicit Work(Isa isa) : shading(isa) {}

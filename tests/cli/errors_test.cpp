@@ -208,7 +208,7 @@ TEST_P(BrokenInput, EndsInOneLine) {
     const Broken& broken = GetParam();
     const support::TemporaryFolder folder;
     const std::string file = folder / "broken.json";
-    write_whole_file(file, broken.text);
+    write_atomic_file(file, broken.text);
     std::vector<std::string> arguments = broken.arguments;
     for (std::string& argument : arguments) {
         if (argument == "SCENE") argument = good_scene;

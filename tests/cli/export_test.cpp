@@ -41,7 +41,7 @@ TEST(Export, TakesNamesOfAnyLength) {
     for (std::size_t at = text.find("parts/"); at != std::string::npos;
          at = text.find("parts/", at + scenes.size() + 6))
         text.insert(at, scenes);
-    write_whole_file(folder / "scene.json", text);
+    write_atomic_file(folder / "scene.json", text);
     const ProgramResult result =
         causticbench({"export", folder / "scene.json", "--to", "mitsuba", "-o", folder / "out",
                       "--set", "/" + name + "/bsdf/absorption=0", "--set",

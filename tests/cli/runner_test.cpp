@@ -26,9 +26,9 @@ class Runner : public testing::Test {
 protected:
     std::string write_sweep(const std::string& methods) {
         const fs::path file = folder_ / "sweep.json";
-        write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+        write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
                                                "methods": {}}})",
-                                           scene, methods));
+                                            scene, methods));
         return file;
     }
     std::vector<std::string> arguments(const std::string& file,
@@ -66,13 +66,13 @@ const std::string endless = R"([{"method": "photonmap", "param": {"emitted": 200
 
 TEST_F(Runner, MakesARowOfATrialThatHangsAndOfOneThatEatsMemory) {
     const std::string file = folder_ / "sweep.json";
-    write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+    write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
         "set": {{"film": {{"pointer": "/sensor/film", "values": [
             {{"type": "hdrfilm", "width": 4, "height": 4}},
             {{"type": "hdrfilm", "width": 11000, "height": 11000}}]}}}},
         "methods": [{{"method": "none"}},
                     {{"method": "photonmap", "param": {{"emitted": 2000000000}}}}]}})",
-                                       scene));
+                                        scene));
     const ProgramResult result = sweep(file, {"--timeout", "1.5", "--memory", "200"});
     EXPECT_EQ(result.exit_code, 1) << result.err;
     const std::vector<json> table = rows();
@@ -148,12 +148,12 @@ TEST_F(Runner, WarnsOfResultsByOtherCodeAndRunsBrokenOnesAgain) {
         fs::path(out_) / "trials" / rows()[0].at("trial").get<std::string>() / "record.json";
     json changed = json::parse(read_whole_file(record));
     changed["code_version"] = "0.0.1 (older)";
-    write_whole_file(record, changed.dump());
+    write_atomic_file(record, changed.dump());
     const ProgramResult warned = sweep(file);
     EXPECT_EQ(warned.exit_code, 0);
     EXPECT_NE(warned.err.find("1 by 0.0.1 (older)"), std::string::npos) << warned.err;
 
-    write_whole_file(record, changed.dump().substr(0, 100));
+    write_atomic_file(record, changed.dump().substr(0, 100));
     const ProgramResult again = sweep(file);
     EXPECT_EQ(again.exit_code, 0);
     EXPECT_NE(again.err.find("broken record"), std::string::npos) << again.err;
@@ -171,7 +171,7 @@ TEST_F(Runner, RunsBrokenRecordsAgainAndNamesThem) {
     for (const auto& [key, value] : changes) {
         json changed = good;
         changed[key] = value;
-        write_whole_file(record, changed.dump());
+        write_atomic_file(record, changed.dump());
         const ProgramResult again = sweep(file);
         EXPECT_EQ(again.exit_code, 0) << again.err;
         EXPECT_NE(again.err.find("note: " + record.string() + ": broken record (/" + key),
@@ -183,11 +183,11 @@ TEST_F(Runner, RunsBrokenRecordsAgainAndNamesThem) {
 
 TEST_F(Runner, GoesOnWithoutPicturesThatAreGone) {
     const std::string file = folder_ / "sweep.json";
-    write_whole_file(file,
-                     fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1, 2],
+    write_atomic_file(file,
+                      fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1, 2],
         "methods": [{{"method": "photonmap", "param": {{"emitted": 100}}}}],
         "reference": {{"method": "lighttrace", "param": {{"paths": 100}}}}}})",
-                                 scene));
+                                  scene));
     ASSERT_EQ(sweep(file).exit_code, 0);
     const std::vector<json> before = rows();
     for (const json& row : before)
@@ -218,9 +218,9 @@ TEST_F(Runner, WarnsOfTrialsThatAreNotInTheTable) {
         write_sweep(R"([{"method": "photonmap", "param": {"photons": [10, 20]}}])");
     ASSERT_EQ(sweep(first).exit_code, 0);
     const std::string other = folder_ / "other.json";
-    write_whole_file(other, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+    write_atomic_file(other, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
                                              "methods": [{{"method": "none"}}]}})",
-                                        scene));
+                                         scene));
     const ProgramResult result = sweep(other);
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(rows().size(), 1U);
@@ -239,11 +239,11 @@ TEST_F(Runner, WarnsOfTrialsThatAreNotInTheTable) {
 
 TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
     const std::string file = folder_ / "sweep.json";
-    write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [7],
+    write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [7],
         "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3]}},
                  "kind": {{"pointer": "/ball/bsdf", "values": [{{"type": "dielectric"}}]}}}},
         "methods": [{{"method": "photonmap", "param": {{"photons": 100, "filter": "cone"}}}}]}})",
-                                       scene));
+                                        scene));
     ASSERT_EQ(sweep(file).exit_code, 0);
     const std::string id = rows()[0].at("trial");
     const ProgramResult result =

@@ -21,9 +21,9 @@ const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.js
 class Surroundings : public testing::Test {
 protected:
     void SetUp() override {
-        write_whole_file(sweep_, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+        write_atomic_file(sweep_, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
                                                   "methods": [{{"method": "none"}}]}})",
-                                             scene));
+                                              scene));
     }
     /// $D is the test's folder.
     ProgramResult run(const std::string& line) const {
@@ -89,9 +89,9 @@ TEST_F(Surroundings, AWorkingFolderThatIsGoneIsNamed) {
 }
 
 TEST_F(Surroundings, WhatTheFileSystemRefusesIsOneLineWithItsPlace) {
-    write_whole_file(folder_ / "long.json", fmt::format(R"({{"version": 1, "scenes": ["{}"],
+    write_atomic_file(folder_ / "long.json", fmt::format(R"({{"version": 1, "scenes": ["{}"],
                                       "methods": [{{"method": "none"}}]}})",
-                                                        std::string(5000, 'a')));
+                                                         std::string(5000, 'a')));
     const ProgramResult scenes = run("$P sweep $D/long.json -o $D/out");
     EXPECT_EQ(scenes.exit_code, 2);
     EXPECT_NE(scenes.err.find("File name too long"), std::string::npos) << scenes.err;

@@ -58,7 +58,7 @@ class Sweeps : public testing::Test {
 protected:
     std::string write_sweep(const std::string& methods) {
         const fs::path file = folder_ / "sweep.json";
-        write_whole_file(
+        write_atomic_file(
             file, fmt::format(
                       R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [1, 2], "methods": {},
                 "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3, 1.5]}}}},
@@ -89,11 +89,11 @@ const std::string two_methods =
 
 TEST_F(Sweeps, RecordCountsAndWhyACausticIsEmpty) {
     const std::string file = folder_ / "lamps.json";
-    write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1],
+    write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1],
         "set": {{"lamp": {{"pointer": "/light/intensity", "values": [0, 10]}}}},
         "methods": [{{"method": "photonmap", "param": {{"emitted": 500}}}}],
         "reference": {{"method": "lighttrace", "param": {{"paths": 500}}}}}})",
-                                       scene));
+                                        scene));
     ASSERT_EQ(sweep(file).exit_code, 0);
     const std::vector<Row> table = rows();
     ASSERT_EQ(table.size(), 2U);
@@ -193,7 +193,7 @@ TEST_F(Sweeps, GoOnAfterAFailureAndTryItAgain) {
     const std::string key = read_plan({file}).trials[0].reference->key;
     const fs::path broken = fs::path(out_) / "references" / (key + ".exr");
     fs::create_directories(broken.parent_path());
-    write_whole_file(broken, "no picture");
+    write_atomic_file(broken, "no picture");
     const ProgramResult result = sweep(file);
     EXPECT_EQ(result.exit_code, 1) << result.err;
     std::map<std::string, int> statuses;
@@ -238,7 +238,7 @@ TEST_F(Sweeps, StopAtTheFirstFailureWhenAsked) {
     const std::string file = write_sweep(R"([{"method": "none"}])");
     const std::string key = read_plan({file}).trials[0].reference->key;
     fs::create_directories(fs::path(out_) / "references");
-    write_whole_file(fs::path(out_) / "references" / (key + ".exr"), "no picture");
+    write_atomic_file(fs::path(out_) / "references" / (key + ".exr"), "no picture");
     EXPECT_EQ(sweep(file, {"--fail-fast"}).exit_code, 1);
     EXPECT_EQ(rows().size(), 1U);
 }

@@ -138,10 +138,10 @@ TEST(PhotonMaps, AreSavedLoadedDescribedAndDrawn) {
 TEST(Probe, KeepsTheRowsAndAddsItsAnswers) {
     const support::TemporaryFolder folder;
     const std::string points = folder / "points.csv";
-    write_whole_file(points,
-                     "radius,x,y,z,nx,ny,nz,wx,wy,wz\n"
-                     "0.1,0,0,0,0,0,2,0,0,1\n"
-                     "0.1,0,0,0,0,0,-1,0,0,-1\n");
+    write_atomic_file(points,
+                      "radius,x,y,z,nx,ny,nz,wx,wy,wz\n"
+                      "0.1,0,0,0,0,0,2,0,0,1\n"
+                      "0.1,0,0,0,0,0,-1,0,0,-1\n");
     const ProgramResult result = causticbench(
         {"probe", scene, "--method", "lighttrace", "--param", "paths=20000", "--points", points});
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -161,7 +161,7 @@ TEST(Probe, KeepsTheRowsAndAddsItsAnswers) {
 
 TEST(Probe, ReadsPointsFromStandardInputAndWritesToStandardOutput) {
     const support::TemporaryFolder folder;
-    write_whole_file(folder / "points.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n");
+    write_atomic_file(folder / "points.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n");
     const ProgramResult result = support::causticbench_reading(
         folder / "points.csv", {"probe", scene, "--method", "none", "--points", "-", "-o", "-"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -178,7 +178,7 @@ TEST(Probe, ReadsPointsFromStandardInputAndWritesToStandardOutput) {
 TEST(Render, FollowsLightToTheFarthestCoordinates) {
     const support::TemporaryFolder folder;
     const std::string file = folder / "far.json";
-    write_whole_file(file, R"({
+    write_atomic_file(file, R"({
         "sensor": {"type": "perspective",
             "to_world": [{"look_at": {"origin": [0, -4e17, 4e17], "target": [0, 0, 0], "up": [0, 0, 1]}}],
             "film": {"type": "hdrfilm", "width": 4, "height": 3}},

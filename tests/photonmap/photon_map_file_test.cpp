@@ -98,7 +98,7 @@ TEST_F(PhotonMapFile, HasAChecksumThatStandsForItsContent) {
     EXPECT_EQ(photon_map_checksum(folder_ / "b.photons"), first);
     save(4);
     EXPECT_NE(photon_map_checksum(file_), first);
-    write_whole_file(file_, "a picture, say, and a long one at that");
+    write_atomic_file(file_, "a picture, say, and a long one at that");
     EXPECT_THROW(photon_map_checksum(file_), InputError);
     EXPECT_THROW(photon_map_checksum(folder_ / "absent"), InputError);
 }
@@ -109,14 +109,14 @@ TEST_F(PhotonMapFile, RefusesEveryDamagedByteAndEveryCut) {
     for (std::size_t i = 0; i < good.size(); ++i) {
         std::string bad = good;
         bad[i] = static_cast<char>(bad[i] ^ 0x10);
-        write_whole_file(file_, bad);
+        write_atomic_file(file_, bad);
         EXPECT_EQ(refusal(file_).rfind(file_.string() + ": ", 0), 0U) << i;
-        write_whole_file(file_, std::string_view(good).substr(0, i));
+        write_atomic_file(file_, std::string_view(good).substr(0, i));
         EXPECT_EQ(refusal(file_).rfind(file_.string() + ": ", 0), 0U) << i;
     }
-    write_whole_file(file_, good + "x");
+    write_atomic_file(file_, good + "x");
     EXPECT_NE(refusal(file_).find("checksum"), std::string::npos);
-    write_whole_file(file_, good);
+    write_atomic_file(file_, good);
     EXPECT_EQ(refusal(file_), "taken");
 }
 
@@ -167,7 +167,7 @@ TEST_F(PhotonMapFile, OfTheVersionBeforeIsRead) {
     const SavedPhotons now = load_photon_map(file_);
     EXPECT_EQ(now.version, 3U);
     EXPECT_EQ(now.photons.counts.misdirected, 13U);
-    write_whole_file(file_, as_version_2(content(file_)));
+    write_atomic_file(file_, as_version_2(content(file_)));
     const SavedPhotons before = load_photon_map(file_);
     EXPECT_EQ(before.version, 2U);
     EXPECT_EQ(before.photons.counts.misdirected, 0U);
@@ -180,19 +180,19 @@ TEST_F(PhotonMapFile, OfTheVersionBeforeIsRead) {
 }
 
 TEST_F(PhotonMapFile, NamesWhatIsWrong) {
-    write_whole_file(file_, "a picture, say, and a long one at that");
+    write_atomic_file(file_, "a picture, say, and a long one at that");
     EXPECT_FALSE(is_photon_map(file_));
     EXPECT_NE(refusal(file_).find("no photon map"), std::string::npos);
     EXPECT_NE(refusal(folder_ / "absent").find("cannot be read"), std::string::npos);
     save(3);
     std::string text = content(file_);
     text[24] = 1;
-    write_whole_file(file_, text);
+    write_atomic_file(file_, text);
     EXPECT_NE(refusal(file_).find("version 1 (known: 2 to 3)"), std::string::npos)
         << refusal(file_);
     save(3);
     text = content(file_);
-    write_whole_file(file_, std::string_view(text).substr(0, text.size() - 30));
+    write_atomic_file(file_, std::string_view(text).substr(0, text.size() - 30));
     EXPECT_NE(refusal(file_).find("cut short"), std::string::npos);
 }
 

@@ -40,6 +40,7 @@ TEST(RadianceEstimate, UnbiasedMeansTheTruthAndScattersAsItShould) {
     EXPECT_NEAR(s.mean, 1, 4 * s.deviation / 25);
 }
 
+// [J96 (4)] as printed.
 TEST(RadianceEstimate, RawReadsHighByNOverNMinus1) {
     const Statistics unbiased = relative_irradiance({.limits = {.nearest = 10, .max_radius = 1}});
     const Statistics raw = relative_irradiance(
@@ -77,6 +78,7 @@ TEST(RadianceEstimate, AnEmptyMapIsBlack) {
     EXPECT_TRUE(is_black(test::EstimateMap({}).radiance({}, floor_point({0, 0, 0}))));
 }
 
+// [J96 (1)] of a constant f_r: the flux [J96 (2)] over the disc's area [J96 (3)].
 TEST(RadianceEstimate, LambertIsIrradianceOverPi) {
     const test::EstimateMap map(test::uniform_field(1'000, 22));
     const ReceiverPoint point = floor_point({0.5F, 0.5F, 0});

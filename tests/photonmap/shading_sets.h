@@ -78,7 +78,7 @@ inline ReceiverPoint random_point(Rng& rng, const Bsdf& bsdf) {
     return point;
 }
 
-/// f_r of [J96, eqs. 5-6] as printed but for t = n.h, in double.
+/// f_r of [J96 (5)], [J96 (6)] as printed but for t = n.h, in double.
 inline double schlick_as_printed(double alpha, const Vec3d& n, const Vec3d& wo, const Vec3d& wi) {
     const double v = n.dot(wo), v_in = n.dot(wi);
     const auto shadowing = [alpha](double cosine) {

@@ -58,7 +58,7 @@ TEST(Shading, IsTheFormulaOnEveryInstructionSet) {
                                  truth,
                                  name(isa) + std::string(" ") + std::to_string(alpha) + " " +
                                      std::to_string(count) + " channel ");
-                ReflectionTable table;
+                BrdfLobeTable table;
                 expect_close(Shading(Isa::plain)
                                  .reflected(point, photons.photons(weighted, left_out), table),
                              truth, "table ");
@@ -121,7 +121,7 @@ TEST(Shading, IsBlackFromBelow) {
     for (const Bsdf& bsdf : {lambert(), schlick(0.1F)}) {
         ReceiverPoint point = test::random_point(rng, bsdf);
         point.wo = -point.wo;
-        ReflectionTable table;
+        BrdfLobeTable table;
         for (const Isa isa : supported_isas()) {
             EXPECT_TRUE((Shading(isa).reflected(point, photons.photons()) == 0).all());
             EXPECT_TRUE((Shading(isa).reflected(point, photons.photons(), table) == 0).all());
@@ -160,12 +160,12 @@ TEST(Shading, EvaluatesWhatHasNoKernelPhotonByPhoton) {
     Rng rng(38, Stage::test, 0);
     const ReceiverPoint point = test::random_point(rng, glass);
     const PhotonArrays photons = test::random_photons(20, 39);
-    ReflectionTable table;
+    BrdfLobeTable table;
     EXPECT_TRUE((Shading(Isa::plain).reflected(point, photons.photons()) == 0).all());
     EXPECT_TRUE((Shading(Isa::plain).reflected(point, photons.photons(), table) == 0).all());
 }
 
-TEST(ReflectionTable, WorksEachDirectionOutOnce) {
+TEST(BrdfLobeTable, WorksEachDirectionOutOnce) {
     const Bsdf bsdf = schlick(0.1F);
     Rng rng(40, Stage::test, 0);
     const ReceiverPoint point = test::random_point(rng, bsdf);
@@ -173,7 +173,7 @@ TEST(ReflectionTable, WorksEachDirectionOutOnce) {
     std::set<int> codes;
     for (std::size_t i = 0; i < photons.size(); ++i)
         codes.insert(photons.direction(i).theta + 256 * photons.direction(i).phi);
-    ReflectionTable table;
+    BrdfLobeTable table;
     const Shading shading(Isa::plain);
     const SpectrumSum once = shading.reflected(point, photons.photons(), table);
     EXPECT_EQ(table.lookups(), photons.size());
@@ -183,11 +183,11 @@ TEST(ReflectionTable, WorksEachDirectionOutOnce) {
     EXPECT_EQ(table.fillings(), codes.size());
 }
 
-TEST(ReflectionTable, ForgetsWhenThePointOrTheViewChanges) {
+TEST(BrdfLobeTable, ForgetsWhenThePointOrTheViewChanges) {
     const Bsdf sharp = schlick(0.1F), broad = schlick(0.2F), flat = lambert();
     Rng rng(42, Stage::test, 0);
     const PhotonArrays photons = test::random_photons(100, 43);
-    ReflectionTable table;
+    BrdfLobeTable table;
     const Shading shading(Isa::plain);
     ReceiverPoint point = test::random_point(rng, sharp);
     const auto expect_right = [&](const std::string& what) {

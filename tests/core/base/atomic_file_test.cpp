@@ -26,12 +26,12 @@ std::ptrdiff_t files_in(const std::filesystem::path& folder) {
     return std::distance(std::filesystem::directory_iterator(folder), {});
 }
 
-TEST(WholeFile, IsThereOnlyWhenItIsWhole) {
+TEST(AtomicFile, IsThereOnlyWhenItIsWhole) {
     const support::TemporaryFolder folder;
     const std::filesystem::path file = folder / "a.txt";
-    write_whole_file(file, "old");
+    write_atomic_file(file, "old");
     {
-        WholeFile out(file);
+        AtomicFile out(file);
         out.write("new ");
         EXPECT_EQ(content(file), "old");
         out.write("text");
@@ -39,18 +39,18 @@ TEST(WholeFile, IsThereOnlyWhenItIsWhole) {
     }
     EXPECT_EQ(content(file), "new text");
     {
-        WholeFile out(file);
+        AtomicFile out(file);
         out.write("never finished");
     }
     EXPECT_EQ(content(file), "new text");
     EXPECT_EQ(files_in(folder.path()), 1) << "nothing temporary is left";
 }
 
-TEST(WholeFile, LeavesNothingOfAKilledProcess) {
+TEST(AtomicFile, LeavesNothingOfAKilledProcess) {
     const support::TemporaryFolder folder;
     const pid_t writer = fork();
     if (writer == 0) {
-        WholeFile out(folder / "a.txt");
+        AtomicFile out(folder / "a.txt");
         out.write(std::string(1 << 20, 'x'));
         std::raise(SIGKILL);
     }
@@ -64,14 +64,14 @@ TEST(WholeFile, LeavesNothingOfAKilledProcess) {
 
 std::string refusal(const std::filesystem::path& file, std::string_view bytes) {
     try {
-        write_whole_file(file, bytes);
+        write_atomic_file(file, bytes);
     } catch (const InputError& error) {
         return error.what();
     }
     return "written";
 }
 
-TEST(WholeFile, NamesTheFileAndTheReason) {
+TEST(AtomicFile, NamesTheFileAndTheReason) {
     const support::TemporaryFolder folder;
     const std::filesystem::path nowhere = folder / "absent" / "a.txt";
     EXPECT_EQ(refusal(nowhere, "x"),
@@ -96,7 +96,7 @@ TEST(ReadWholeFile, GivesBackEveryByte) {
     std::string bytes;
     for (int i = 0; i < 1000; ++i) bytes += static_cast<char>(i);
     for (const std::string& text : {bytes, std::string()}) {
-        write_whole_file(folder / "a", text);
+        write_atomic_file(folder / "a", text);
         EXPECT_EQ(read_whole_file(folder / "a"), text);
     }
 }
@@ -112,7 +112,7 @@ TEST(ReadWholeFile, RefusesWhatIsNoRegularFileWithoutWaitingForIt) {
     EXPECT_NE(read_refusal(folder / "absent").find("no such file"), std::string::npos);
 }
 
-TEST(WholeFile, ReplacesNoPipeOrDevice) {
+TEST(AtomicFile, ReplacesNoPipeOrDevice) {
     const support::TemporaryFolder folder;
     const std::string pipe = folder / "pipe";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -44,7 +44,7 @@ TEST(PictureFile, PrintsNothingOfItsOwnWhereThePictureIsBroken) {
     for (std::size_t at = 8; at < good.size(); ++at) {
         std::string broken = good;
         broken[at] = static_cast<char>(broken[at] ^ 0x55);
-        write_whole_file(file, broken);
+        write_atomic_file(file, broken);
         try {
             static_cast<void>(load_bitmap(file, true));
         } catch (const InputError& error) {
@@ -64,7 +64,7 @@ TEST(PictureFile, HasNoMorePixelsThanAFilm) {
     // The header of a TGA picture of 12,000 x 12,000 pixels: 100 bytes that ask for 1.7 GB.
     const unsigned char header[100] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
                                        0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
-    write_whole_file(folder / "a.tga", {reinterpret_cast<const char*>(header), sizeof header});
+    write_atomic_file(folder / "a.tga", {reinterpret_cast<const char*>(header), sizeof header});
     try {
         PictureFile(folder / "a.tga");
         ADD_FAILURE();

@@ -17,9 +17,9 @@ SceneDesc still_life() {
     return desc;
 }
 
-std::uint64_t digest(SceneDesc desc) { return transport_digest(Scene(std::move(desc))); }
+std::uint64_t digest(SceneDesc desc) { return transport_hash(Scene(std::move(desc))); }
 
-TEST(TransportDigest, DoesNotSeeTheCameraNorWhatReceiversReflect) {
+TEST(TransportHash, DoesNotSeeTheCameraNorWhatReceiversReflect) {
     SceneDesc other = still_life();
     other.camera.width = 10;
     other.camera.fov_degrees = 20;
@@ -29,7 +29,7 @@ TEST(TransportDigest, DoesNotSeeTheCameraNorWhatReceiversReflect) {
     EXPECT_EQ(digest(still_life()), digest(other));
 }
 
-TEST(TransportDigest, SeesEverythingThatALightPathMeets) {
+TEST(TransportHash, SeesEverythingThatALightPathMeets) {
     std::vector<SceneDesc> others(9, still_life());
     others[0].shapes[0].bsdf.twosided = true;
     others[1].shapes[0].to_world.translation().z() = 0.25;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include <algorithm>
 #include <fstream>
 
@@ -116,8 +118,16 @@ TEST(Scene, Lights) {
         "c": {"type": "directional", "direction": [0, 0, -2],
               "irradiance": {"type": "rgb", "value": [3, 2, 1]}},
         "d": {"type": "directional", "to_world": [{"rotate": {"axis": [1, 0, 0], "angle": 90}}]},
+        "s": {"type": "spot", "to_world": [{"look_at":
+              {"origin": [1, 1, 2], "target": [1, 1, 0], "up": [0, 1, 0]}}], "cutoff_angle": 40},
         "lamp": {"type": "disk", "e": {"type": "area", "radiance": 7}})"));
-    ASSERT_EQ(desc.point_lights.size(), 2U);
+    ASSERT_EQ(desc.point_lights.size(), 3U);
+    EXPECT_FALSE(desc.point_lights[0].spot);
+    EXPECT_EQ(desc.point_lights[2].position, Vec3(1, 1, 2));
+    ASSERT_TRUE(desc.point_lights[2].spot);
+    expect_near(desc.point_lights[2].spot->axis.cast<double>(), {0, 0, -1});
+    EXPECT_FLOAT_EQ(desc.point_lights[2].spot->cutoff, 40 * std::numbers::pi_v<float> / 180);
+    EXPECT_FLOAT_EQ(desc.point_lights[2].spot->beam_width, 30 * std::numbers::pi_v<float> / 180);
     EXPECT_EQ(desc.point_lights[0].position, Vec3(1, 2, 3));
     EXPECT_TRUE(equal(desc.point_lights[0].intensity, Spectrum::Constant(5)));
     EXPECT_EQ(desc.point_lights[1].position, Vec3(4, 5, 6));

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 class WholeFolders : public testing::Test {
 protected:
     void write(bool commit = true) const {
-        WholeFolder whole(target_);
-        write_whole_file(whole.path() / "new", "new");
+        AtomicFolder whole(target_);
+        write_atomic_file(whole.path() / "new", "new");
         if (commit) whole.commit();
     }
     std::set<std::string> files_in(const fs::path& folder) const {
@@ -44,10 +44,10 @@ TEST_F(WholeFolders, AreThereOnlyWhenTheyAreWhole) {
 }
 
 TEST_F(WholeFolders, LeaveOtherFilesWhereTheyAre) {
-    write_whole_file(folder_ / "mine", "mine");
+    write_atomic_file(folder_ / "mine", "mine");
     fs::create_directory(target_);
     fs::rename(folder_ / "mine", target_ / "mine");
-    write_whole_file(target_ / "new", "old");
+    write_atomic_file(target_ / "new", "old");
     write(false);
     EXPECT_EQ(read_whole_file(target_ / "new"), "old");
     write();
@@ -59,8 +59,8 @@ TEST_F(WholeFolders, LeaveOtherFilesWhereTheyAre) {
 TEST_F(WholeFolders, RemoveWhatAKilledProcessLeft) {
     const pid_t writer = fork();
     if (writer == 0) {
-        const WholeFolder whole(target_);
-        write_whole_file(whole.path() / "half", "");
+        const AtomicFolder whole(target_);
+        write_atomic_file(whole.path() / "half", "");
         std::raise(SIGKILL);
     }
     waitpid(writer, nullptr, 0);
@@ -72,7 +72,7 @@ TEST_F(WholeFolders, RemoveWhatAKilledProcessLeft) {
 
 TEST_F(WholeFolders, RemoveNothingElse) {
     fs::create_directory(folder_ / "target.part");
-    write_whole_file(folder_ / "target.part/mine", "mine");
+    write_atomic_file(folder_ / "target.part/mine", "mine");
     EXPECT_THROW(write(), InputError);
     EXPECT_EQ(read_whole_file(folder_ / "target.part/mine"), "mine");
 }

@@ -39,7 +39,7 @@ TEST(Cells, AreReadAsTheyWereWritten) {
 class NumberTables : public testing::Test {
 protected:
     NumberTable read(const std::string& text) {
-        write_whole_file(folder_ / "t.csv", text);
+        write_atomic_file(folder_ / "t.csv", text);
         return read_numbers(folder_ / "t.csv", {"x", "y"}, {"radius"});
     }
     std::string error(const std::string& text) {

@@ -16,7 +16,7 @@ namespace {
 TEST(ReadInput, TakesFilesAndPipesUntilTheyEnd) {
     const support::TemporaryFolder folder;
     const std::string text(200'000, 'x');  // more than a pipe holds
-    write_whole_file(folder / "file", text);
+    write_atomic_file(folder / "file", text);
     EXPECT_EQ(read_input(folder / "file"), text);
     const std::string pipe = folder / "pipe";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -33,7 +33,7 @@ protected:
         }
     }
     support::TemporaryFolder folder_;
-    JobStore store_{folder_.path()};
+    TrialStore store_{folder_.path()};
     PlanFile plan_{{{"a", "a", 1, true}}, {}, {"sweep.json"}, {}, "/"};
     json record_ = {{"trial", "a"},
                     {"status", "done"},

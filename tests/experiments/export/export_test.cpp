@@ -148,7 +148,7 @@ TEST(MeshBytes, AreReadBackAsTheyWere) {
     for (const bool smooth : {true, false}) {
         if (!smooth) mesh.normals.clear();
         const auto ply = folder / "mesh.ply";
-        write_whole_file(ply, ply_bytes(mesh));
+        write_atomic_file(ply, ply_bytes(mesh));
         const TriangleMesh read = load_mesh(ply, {.face_normals = !smooth});
         EXPECT_EQ(read.positions, mesh.positions);
         EXPECT_EQ(read.uvs, mesh.uvs);
@@ -167,7 +167,7 @@ TEST(MeshBytes, OfAPictureStandRightSideUp) {
     for (int i = 0; i < 6; ++i)
         bitmap.texels.emplace_back(Spectrum(0.125F * static_cast<float>(i), 0.5F, 0.25F));
     const auto pfm = folder / "a.pfm";
-    write_whole_file(pfm, pfm_bytes(bitmap));
+    write_atomic_file(pfm, pfm_bytes(bitmap));
     const Bitmap read = load_bitmap(pfm, true);
     ASSERT_EQ(read.width, 2);
     ASSERT_EQ(read.height, 3);

@@ -21,8 +21,8 @@ protected:
     /// A sweep file over the test scene with these members.
     std::filesystem::path sweep(const std::string& members) {
         const std::filesystem::path file = folder_ / "sweep.json";
-        write_whole_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, {}}})",
-                                           scene, members));
+        write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, {}}})",
+                                            scene, members));
         return file;
     }
     SweepPlan plan(const std::string& members) { return read_plan({sweep(members)}); }
@@ -86,7 +86,7 @@ TEST_F(SweepPlans, JoinFilesAndDropWhatIsNamedTwice) {
     const std::filesystem::path first =
         sweep(R"("methods": [{"method": "none"}], "seeds": [1, 2])");
     const std::filesystem::path second = folder_ / "second.json";
-    write_whole_file(
+    write_atomic_file(
         second,
         fmt::format(
             R"({{"version": 1, "scenes": ["{}"], "spp": 4, "methods": [{{"method": "none"}}],
@@ -191,9 +191,10 @@ TEST_F(SweepPlans, NameThePlaceOfAMistakeInTheSweepFileToo) {
                   .find(file + ": /set/a: 1: "),
               std::string::npos);
     const std::string broken = folder_ / "broken.json";
-    write_whole_file(broken, "{}");
+    write_atomic_file(broken, "{}");
     const std::filesystem::path sweep = folder_ / "second.json";
-    write_whole_file(sweep, fmt::format(R"({{"version": 1, "scenes": ["{}"], {}}})", broken, none));
+    write_atomic_file(sweep,
+                      fmt::format(R"({{"version": 1, "scenes": ["{}"], {}}})", broken, none));
     try {
         read_plan({sweep});
         FAIL();

@@ -14,12 +14,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Writes a trial with a file of that content beside the record.
-void add(const JobStore& store, const std::string& id, const std::string& status) {
-    write_whole_file(store.begin(id) / "log.txt", status);
+void add(const TrialStore& store, const std::string& id, const std::string& status) {
+    write_atomic_file(store.begin(id) / "log.txt", status);
     store.commit(id, {{"trial", id}, {"status", status}});
 }
 
-std::string log_of(const JobStore& store, const std::string& id) {
+std::string log_of(const TrialStore& store, const std::string& id) {
     return read_whole_file(store.folder_of(id) / "log.txt");
 }
 
@@ -33,7 +33,7 @@ protected:
         return names;
     }
     support::TemporaryFolder folder_;
-    JobStore store_{folder_.path()};
+    TrialStore store_{folder_.path()};
 };
 
 TEST_F(JobStores, KeepWholeTrials) {
@@ -50,7 +50,7 @@ TEST_F(JobStores, KeepWholeTrials) {
 }
 
 TEST_F(JobStores, RemoveWhatAKilledProcessLeft) {
-    write_whole_file(store_.begin("a-1") / "record.json", "{");
+    write_atomic_file(store_.begin("a-1") / "record.json", "{");
     EXPECT_FALSE(store_.record("a-1"));
     store_.prepare();
     EXPECT_TRUE(entries().empty());
@@ -62,7 +62,7 @@ TEST_F(JobStores, BringBackWhatAKilledProcessWasAboutToReplace) {
     // Killed between the two renames, and between the second and the removal.
     fs::rename(folder_ / "trials/a-1", folder_ / "trials/.old-a-1");
     fs::copy(folder_ / "trials/b-2", folder_ / "trials/.old-b-2");
-    write_whole_file(folder_ / "trials/.old-b-2/log.txt", "older");
+    write_atomic_file(folder_ / "trials/.old-b-2/log.txt", "older");
     store_.prepare();
     EXPECT_EQ(entries(), (std::set<std::string>{"a-1", "b-2"}));
     EXPECT_EQ(log_of(store_, "a-1"), "done");
@@ -80,7 +80,7 @@ TEST_F(JobStores, SaySoWhenARecordIsBroken) {
           R"({"trial": "a-1", "status": "done", "seed": -1})",
           R"({"trial": "a-1", "status": "done", "metrics": {"rmse": [1]}})",
           R"({"trial": "a-1", "status": "done", "machine": {"cpu": 1}})"}) {
-        write_whole_file(folder_ / "trials/a-1/record.json", text);
+        write_atomic_file(folder_ / "trials/a-1/record.json", text);
         EXPECT_THROW(store_.record("a-1"), InputError) << text;
     }
 }
@@ -96,8 +96,8 @@ TEST_F(JobStores, TakeNothingElseForARecord) {
 }
 
 TEST_F(JobStores, NeedAFolderTheyCanWrite) {
-    write_whole_file(folder_ / "file", "");
-    EXPECT_THROW(JobStore(folder_ / "file").prepare(), InputError);
+    write_atomic_file(folder_ / "file", "");
+    EXPECT_THROW(TrialStore(folder_ / "file").prepare(), InputError);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ protected:
         return json::parse(lines.substr(0, lines.find('\n'))).at("variance").dump();
     }
     support::TemporaryFolder folder_;
-    JobStore store_{folder_.path()};
+    TrialStore store_{folder_.path()};
     PlanFile plan_{{}, {"key"}, {"sweep.json"}, {}, "/"};
     std::string visited_;  ///< trials and their variances
     std::vector<std::string> lacks_;
@@ -118,7 +118,7 @@ TEST_F(RecordTables, NoticeWhateverChanges) {
         {"a trial is gone", [&] { store_.remove("y1"); }},
         {"it is back", [&] { add("y1", 1); }},
         {"a table that somebody edited",
-         [&] { write_whole_file(folder_ / "records.csv", text("records.csv") + "x\n"); }},
+         [&] { write_atomic_file(folder_ / "records.csv", text("records.csv") + "x\n"); }},
         {"a table that is gone", [&] { fs::remove(folder_ / "records.jsonl"); }},
         {"a table cut short",
          [&] { fs::resize_file(folder_ / "records.csv", text("records.csv").size() - 5); }},
@@ -127,7 +127,7 @@ TEST_F(RecordTables, NoticeWhateverChanges) {
          [&] {
              json index = json::parse(text(".table"));
              index["code_version"] = "another";
-             write_whole_file(folder_ / ".table", index.dump());
+             write_atomic_file(folder_ / ".table", index.dump());
          }},
         {"another order of the plan", [&] { std::swap(plan_.trials[0], plan_.trials[1]); }},
         {"another column", [&] { plan_.swept.emplace_back("other"); }},
@@ -261,7 +261,7 @@ TEST_F(RecordTables, SayWhatTheRecordsSay) {
 
 TEST_F(RecordTables, SayWhenARecordIsBroken) {
     write();
-    write_whole_file(store_.record_of("x2"), "{");
+    write_atomic_file(store_.record_of("x2"), "{");
     const TrialRows rows(folder_.path(), store_);
     EXPECT_THROW(rows.row("x2"), InputError);
     EXPECT_TRUE(rows.row("x1"));

@@ -1,10 +1,13 @@
 #include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "experiments/cli/help_text.h"
 
 namespace caustics {
 namespace {
@@ -52,6 +55,73 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
             EXPECT_EQ(value.is_string() ? value.get<std::string>() : value.dump(),
                       param.substr(key.size() + 1));
         }
+    }
+}
+
+// Trials are named by hashes of these texts: another text would run a sweep's trials again.
+TEST(Methods, AreDescribedByTheSameTextsAsEver) {
+    const auto text = [](const std::string& name, const std::vector<std::string>& params) {
+        return describe(method(name, params)).dump();
+    };
+    EXPECT_EQ(text("none", {}), "{}");
+    EXPECT_EQ(text("pathtrace", {}), R"({"max_bounces":16,"spp":16})");
+    EXPECT_EQ(text("lighttrace", {}), R"({"max_bounces":16,"paths":1000000})");
+    EXPECT_EQ(text("lighttrace", {"radius=0.25"}),
+              R"({"max_bounces":16,"paths":1000000,"radius":0.25})");
+    EXPECT_EQ(text("illuminationmap", {}),
+              R"({"emitted":1000000,"max_bounces":16,"resolution":256})");
+    EXPECT_EQ(text("causticpolygons", {}),
+              R"({"light_samples":16,"max_bounces":16,"mesh_resolution":64,"polygons":"triangles",)"
+              R"("receiver_resolution":16})");
+    EXPECT_EQ(text("photonmap", {}),
+              R"({"adaptive":false,"emission":"random","estimator":"unbiased","filter":"none",)"
+              R"("interaction":"roulette","max_bounces":16,"nearest":50,"passes":1,)"
+              R"("photons":100000,"tables":false,"tree":"balanced"})");
+    EXPECT_EQ(text("photonmap", {"load=a.photons", "radius=0.5"}),
+              R"({"adaptive":false,"estimator":"unbiased","filter":"none","load":"a.photons",)"
+              R"("passes":1,"radius":0.5,"tables":false,"tree":"balanced"})");
+    EXPECT_EQ(text("photonmap", {"emitted=10", "adaptive=true", "max_radius=1"}),
+              R"({"adaptive":true,"emission":"random","emitted":10,"estimator":"unbiased",)"
+              R"("filter":"none","interaction":"roulette","max_bounces":16,"max_radius":1.0,)"
+              R"("nearest":200,"passes":1,"tables":false,"tree":"balanced"})");
+    EXPECT_EQ(text("beamtree", {}),
+              R"({"bound":"hybrid","hierarchy":"quadtree","intensity":"area","leaf":"n",)"
+              R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
+              R"("polygons":"triangles","spread_threshold":10.0})");
+    EXPECT_EQ(text("beamtree", {"bound=two_slice", "footprint=0.1"}),
+              R"({"bound":"two_slice","footprint":0.10000000149011612,"hierarchy":"binned",)"
+              R"("intensity":"area","leaf":"k","light_samples":16,"max_bounces":16,)"
+              R"("merging":"rays","mesh_resolution":64,"polygons":"triangles"})");
+}
+
+TEST(Methods, KeepTheWordsOfOlderFilesInRecords) {
+    for (const auto& [word, recorded] : {std::pair("receiver", "n"), std::pair("fixed", "k"),
+                                         std::pair("n", "n"), std::pair("k", "k")})
+        EXPECT_EQ(describe(method("beamtree", {std::string("leaf=") + word})).at("leaf"), recorded);
+    EXPECT_NE(error("beamtree", {"leaf=m"}).find("receiver, fixed"), std::string::npos);
+    EXPECT_NE(help_text("beamtree").find("receiver, fixed, default receiver"), std::string::npos);
+}
+
+TEST(Methods, AreToldKeyByKey) {
+    for (const MethodDescription* each : all_methods()) {
+        const std::string help = help_text(each->facts().name);
+        for (std::size_t start = 0; start < help.size(); start = help.find('\n', start) + 1)
+            EXPECT_LE(help.find('\n', start) - start, 100U) << help.substr(start);
+        for (const KeyText& key : each->parameters()) {
+            EXPECT_NE(help.find("\n  " + key.key + " "), std::string::npos) << key.key;
+            EXPECT_TRUE(key.meaning.ends_with(".")) << key.key;
+            EXPECT_FALSE(key.usual.empty()) << key.key << " has a default";
+        }
+    }
+}
+
+TEST(Methods, StandInTheReadme) {
+    const std::string readme = read_whole_file(CAUSTICS_SOURCE_DIR "/README.md");
+    for (const MethodDescription* each : all_methods()) {
+        const MethodFacts& facts = each->facts();
+        const std::string row =
+            "| `" + facts.name + "` | " + facts.summary + " | " + facts.serves + " |";
+        EXPECT_NE(readme.find(row), std::string::npos) << "README.md needs this row:\n" << row;
     }
 }
 

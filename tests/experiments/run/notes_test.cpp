@@ -8,7 +8,7 @@
 #include "core/geometry/tessellate.h"
 #include "core/geometry/vertex_normals.h"
 #include "core/math/rng.h"
-#include "experiments/run/methods.h"
+#include "experiments/run/method.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics {

@@ -37,9 +37,9 @@ SweepPlan plan_of(const fs::path& sweep) {
 class ForeignFolders : public testing::Test {
 protected:
     void SetUp() override {
-        write_whole_file(folder_ / "sweep.json", R"({"version": 1, "scenes": [")" +
-                                                     std::string(CAUSTICS_SOURCE_DIR) +
-                                                     R"(/tests/experiments/scenes/ball.json"],
+        write_atomic_file(folder_ / "sweep.json", R"({"version": 1, "scenes": [")" +
+                                                      std::string(CAUSTICS_SOURCE_DIR) +
+                                                      R"(/tests/experiments/scenes/ball.json"],
             "spp": 1, "seeds": [1, 2],
             "set": {"film": {"pointer": "/sensor/film/width", "values": [8]}},
             "methods": [{"method": "photonmap", "param": {"emitted": [20]}}],
@@ -65,7 +65,7 @@ protected:
         is_refused_or([&] {
             sweep(results_);
             for (const Trial& trial : plan_.trials)
-                EXPECT_TRUE(JobStore(results_).record(trial.id)) << trial.id;
+                EXPECT_TRUE(TrialStore(results_).record(trial.id)) << trial.id;
         });
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path()))
             EXPECT_EQ(entry.path().string().find("pwned"), std::string::npos) << entry.path();
@@ -101,7 +101,7 @@ private:
             text.replace(at, text.find(' ', at) - at, "true");
         }
         EXPECT_EQ(commands, 1U) << text;
-        write_whole_file(folder_ / "script", text);
+        write_atomic_file(folder_ / "script", text);
         const std::string run = "cd '" + folder_.path().string() + "' && sh script";
         EXPECT_EQ(std::system(run.c_str()), 0) << text;
     }
@@ -152,7 +152,7 @@ TEST_F(ForeignFolders, MayHoldAnyValueAnywhere) {
                       [&](const fs::path& folder) {
                           json changed = file;
                           changed[place] = value;
-                          write_whole_file(folder / name, changed.dump());
+                          write_atomic_file(folder / name, changed.dump());
                       });
     }
 }
@@ -160,7 +160,7 @@ TEST_F(ForeignFolders, MayHoldAnyValueAnywhere) {
 TEST_F(ForeignFolders, MayLackAnyFileOrHoldAnythingInItsPlace) {
     const std::vector<std::pair<std::string, std::function<void(const fs::path&)>>> changes = {
         {"removed", [](const fs::path& file) { fs::remove_all(file); }},
-        {"empty", [](const fs::path& file) { write_whole_file(file, ""); }},
+        {"empty", [](const fs::path& file) { write_atomic_file(file, ""); }},
         {"cut", [](const fs::path& file) { fs::resize_file(file, fs::file_size(file) / 2); }},
         {"a folder",
          [](const fs::path& file) {

@@ -32,10 +32,10 @@ protected:
     }
     void add(const fs::path& folder, const std::string& id, const std::string& code = "1",
              const std::string& isa = "avx2", const std::string& cpu = "fast") {
-        const JobStore store(folder);
+        const TrialStore store(folder);
         store.prepare();
         write_plan(plan_, folder);
-        write_whole_file(store.begin(id) / "log.txt", "log of " + id);
+        write_atomic_file(store.begin(id) / "log.txt", "log of " + id);
         store.commit(id, {{"trial", id},
                           {"status", "unsupported"},
                           {"scene", {{"name", "pool"}}},
@@ -64,11 +64,11 @@ protected:
 
 TEST_F(Merges, PutShardsTogether) {
     fs::create_directories(one_ / "references");
-    write_whole_file(one_ / "references/key.exr", "picture");
+    write_atomic_file(one_ / "references/key.exr", "picture");
     EXPECT_TRUE(merge().empty());
     EXPECT_EQ(read_plan_of(whole_).trials, plan_.trials);
     for (const char* id : {"a", "b", "c", "d"})
-        EXPECT_EQ(read_whole_file(JobStore(whole_).folder_of(id) / "log.txt"),
+        EXPECT_EQ(read_whole_file(TrialStore(whole_).folder_of(id) / "log.txt"),
                   std::string("log of ") + id);
     EXPECT_EQ(read_whole_file(whole_ / "references/key.exr"), "picture");
     const std::string table = read_whole_file(whole_ / "records.csv");
@@ -77,7 +77,7 @@ TEST_F(Merges, PutShardsTogether) {
 }
 
 TEST_F(Merges, RefuseGaps) {
-    JobStore(two_).remove("b");
+    TrialStore(two_).remove("b");
     EXPECT_NE(error().find("1 of the plan's trials are in none of the folders: b"),
               std::string::npos)
         << error();
@@ -86,7 +86,7 @@ TEST_F(Merges, RefuseGaps) {
 TEST_F(Merges, LeaveOutWhatNoFilterChose) {
     plan_.trials[1].chosen = false;
     for (const fs::path& folder : {one_, two_}) write_plan(plan_, folder);
-    JobStore(two_).remove("b");
+    TrialStore(two_).remove("b");
     EXPECT_TRUE(merge().empty());
 }
 
@@ -123,26 +123,26 @@ TEST_F(Merges, WriteNowhereElse) {
 }
 
 TEST_F(Merges, FollowNoLinks) {
-    const fs::path log = JobStore(two_).folder_of("b") / "log.txt";
-    write_whole_file(folder_ / "secret", "secret");
+    const fs::path log = TrialStore(two_).folder_of("b") / "log.txt";
+    write_atomic_file(folder_ / "secret", "secret");
     fs::remove(log);
     fs::create_symlink(folder_ / "secret", log);
     EXPECT_NE(error().find(log.string() + ": is a symbolic link"), std::string::npos) << error();
     fs::remove_all(log.parent_path());
-    fs::create_directory_symlink(JobStore(one_).folder_of("a"), log.parent_path());
+    fs::create_directory_symlink(TrialStore(one_).folder_of("a"), log.parent_path());
     EXPECT_NE(error().find("trials/b"), std::string::npos) << error();
 }
 
 TEST_F(Merges, NameABrokenFile) {
     for (const char* text : {"{", "[]", ""}) {
-        write_whole_file(two_ / "environment.json", text);
+        write_atomic_file(two_ / "environment.json", text);
         EXPECT_NE(error().find((two_ / "environment.json").string() + ": broken"),
                   std::string::npos)
             << error();
     }
     fs::remove(two_ / "environment.json");
-    const fs::path record = JobStore(two_).record_of("b");
-    write_whole_file(record, R"({"trial": 16, "status": "done"})");
+    const fs::path record = TrialStore(two_).record_of("b");
+    write_atomic_file(record, R"({"trial": 16, "status": "done"})");
     EXPECT_NE(error().find(record.string() + ": broken record (/trial: expected text)"),
               std::string::npos)
         << error();
@@ -171,7 +171,7 @@ TEST_F(Merges, WaitForRunnersToEnd) {
     const fs::path sign = folder_ / "locked";
     const ChildProcess runner([&](const ChildProcess::Tell&) -> std::string {
         const FolderLock lock(two_);
-        write_whole_file(sign, "");
+        write_atomic_file(sign, "");
         while (true) pause();
     });
     while (!fs::exists(sign)) usleep(1000);
@@ -182,7 +182,7 @@ TEST_F(Merges, WaitForRunnersToEnd) {
 }
 
 TEST_F(Merges, OverwriteNothing) {
-    write_whole_file(folder_ / "whole", "mine");
+    write_atomic_file(folder_ / "whole", "mine");
     EXPECT_THROW(merge(), InputError);
     EXPECT_EQ(read_whole_file(whole_), "mine");
 }

@@ -71,21 +71,21 @@ double true_irradiance(const Scene& scene, const Vec3& point, const Vec3& normal
 
 // Points of the lamp's square, 32 x 32 cells of even area, come as often as the weight that they bring says,
 // and the weights' inverses make up the whole.
-TEST(LampSampler, SamplesFollowTheDensityThatTheirWeightsTell) {
+TEST(AreaLightSampler, SamplesFollowTheDensityThatTheirWeightsTell) {
     constexpr std::size_t side = 32;
     constexpr int draws = 200'000;
     for (const Shape& lamp :
          {support::sphere("ball", {0.3, 0, 0.6}, 0.2, support::diffuse(0)), cylinder()}) {
         const Scene scene(lamp_below_a_mirror(lamp));
         const auto& light = std::get<AreaLight>(scene.lights()[0]);
-        const LampSampler sampler(scene, light);
+        const AreaLightSampler sampler(scene, light);
         const Shape& shape = scene.shapes()[light.shape];
         const Transform to_local = shape.to_world.inverse();
         std::vector<double> counts(side * side), density(side * side);
         Rng rng(1, Stage::test, 0);
         for (int i = 0; i < draws; ++i) {
             const float u0 = rng.next();
-            const LampSampler::Sample sample = sampler.sample(u0, rng.next());
+            const AreaLightSampler::Sample sample = sampler.sample(u0, rng.next());
             Vec2d uv = exact_uv(shape, to_local * sample.position.cast<double>()).cast<double>();
             if (shape.primitive == Primitive::sphere) uv.y() = (1 - std::cos(pi_d * uv.y())) / 2;
             const auto cell = [](double u) {
@@ -106,7 +106,7 @@ TEST(LampSampler, SamplesFollowTheDensityThatTheirWeightsTell) {
 
 // Sixteen points of a lamp tell what it shines onto a caster: right on average, and nearly right each
 // time.
-TEST(LampSampler, ShinesOnCastersAsTheWholeLamp) {
+TEST(AreaLightSampler, ShinesOnCastersAsTheWholeLamp) {
     const Vec3d at(0.3, 0, 0.6);
     const std::vector<Shape> lamps = {
         support::sphere("ball", at, 0.2, support::diffuse(0)), cylinder(),
@@ -131,7 +131,7 @@ TEST(LampSampler, ShinesOnCastersAsTheWholeLamp) {
 }
 
 // The sphere's image in the mirror lights the floor by pi L (r / d)^2 cos.
-TEST(LampSampler, ASphereInAMirrorIsAsBrightAsItsImage) {
+TEST(AreaLightSampler, ASphereInAMirrorIsAsBrightAsItsImage) {
     const double radius = 0.1;
     const Scene scene(
         lamp_below_a_mirror(support::sphere("lamp", {0.3, 0, 0.6}, radius, support::diffuse(0))));

@@ -61,9 +61,9 @@ struct Choice {
 
 Choice choose(const std::vector<Vec2>& places, Isa isa = widest_isa()) {
     const Around around(places);
-    CountScratch scratch;
+    NScratch scratch;
     const ChosenPhotons chosen =
-        AdaptiveCount(isa).choose(floor_point(Vec3::Zero()), around.photons(), true, scratch);
+        AdaptiveN(isa).choose(floor_point(Vec3::Zero()), around.photons(), true, scratch);
     Choice choice{chosen.photons.count, chosen.factor, {}};
     for (std::size_t i = 0; i < chosen.photons.count; ++i)
         choice.energies.push_back(chosen.photons.energy[i]);
@@ -109,7 +109,7 @@ std::vector<Vec2> random_places(Rng& rng) {
     return places;
 }
 
-TEST(AdaptiveCount, IsTheRuleOnEveryInstructionSetWhateverThePhotonsOrder) {
+TEST(AdaptiveN, IsTheRuleOnEveryInstructionSetWhateverThePhotonsOrder) {
     Rng rng(51, Stage::test, 0);
     std::size_t stopped = 0;
     for (int i = 0; i < 500; ++i) {
@@ -130,7 +130,7 @@ TEST(AdaptiveCount, IsTheRuleOnEveryInstructionSetWhateverThePhotonsOrder) {
     EXPECT_LT(stopped, 450U);
 }
 
-TEST(AdaptiveCount, TakesTheNearestOfThem) {
+TEST(AdaptiveN, TakesTheNearestOfThem) {
     Rng rng(52, Stage::test, 0);
     std::vector<Vec2> places;
     for (int i = 0; i < 200; ++i) {
@@ -144,7 +144,7 @@ TEST(AdaptiveCount, TakesTheNearestOfThem) {
     EXPECT_EQ(choose(places).energies.back(), choice.count - 1);
 }
 
-TEST(AdaptiveCount, KnowsTheMeanOfItsFactor) {
+TEST(AdaptiveN, KnowsTheMeanOfItsFactor) {
     // Even directions: what the factor takes away on average the division by its mean gives back.
     Rng rng(53, Stage::test, 0);
     for (const std::size_t count : {8U, 20U, 100U}) {
@@ -162,7 +162,7 @@ TEST(AdaptiveCount, KnowsTheMeanOfItsFactor) {
     }
 }
 
-TEST(AdaptiveCount, LeavesAUniformFieldUnbiased) {
+TEST(AdaptiveN, LeavesAUniformFieldUnbiased) {
     constexpr std::size_t photons = 800'000;
     constexpr int side = 90;
     const EstimateMap map(test::uniform_field(photons, 54));
@@ -183,7 +183,7 @@ TEST(AdaptiveCount, LeavesAUniformFieldUnbiased) {
         }
 }
 
-TEST(AdaptiveCount, KeepsDarknessBesideAnEdgeAndEvennessAwayFromIt) {
+TEST(AdaptiveN, KeepsDarknessBesideAnEdgeAndEvennessAwayFromIt) {
     // Light on [0, 1] x [0, 1], darkness to the left: the relative error of points on both sides.
     constexpr std::size_t photons = 100'000;
     const EstimateMap map(test::uniform_field(photons, 55));
@@ -205,7 +205,7 @@ TEST(AdaptiveCount, KeepsDarknessBesideAnEdgeAndEvennessAwayFromIt) {
     }
 }
 
-TEST(AdaptiveCount, WorksOnAnyTreeAndAnyPlaneAlike) {
+TEST(AdaptiveN, WorksOnAnyTreeAndAnyPlaneAlike) {
     // The same photons on a tilted plane give the same counts up to rounding.
     const std::vector<Photon> flat = test::uniform_field(3'000, 56);
     const Frame frame(Vec3(0.3F, -0.5F, 0.8F).normalized());

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "beamtree/beams/beam_params.h"
+#include "core/method/parameter.h"
+
+namespace caustics {
+
+/// The rows of BeamParams in a method's table.
+template <class Params>
+std::vector<Parameter<Params>> beam_parameters() {
+    return {
+        parameter::choice<Params>(
+            &BeamParams::polygons,
+            {{"triangles", PolygonKind::triangle}, {"quads", PolygonKind::quad}},
+            {.key = "polygons",
+             .meaning = "What casters are divided into; quads only where they have a grid.",
+             .source = "[CC95 3.1]"}),
+        parameter::whole_number<Params>(&BeamParams::light_samples, 1, 65'536,
+                                        {.key = "light_samples",
+                                         .meaning = "Points that stand for each area light.",
+                                         .unit = "points"}),
+        parameter::whole_number<Params>(
+            &BeamParams::mesh_resolution, 2, 4096,
+            {.key = "mesh_resolution",
+             .meaning =
+                 "Polygons along each parameter of exact casters; meshes are taken as they are.",
+             .unit = "polygons"}),
+        parameter::max_bounces<Params>()};
+}
+
+}  // namespace caustics

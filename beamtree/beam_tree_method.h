@@ -1,0 +1,10 @@
+#pragma once
+
+#include "beamtree/beam_tree.h"
+#include "core/method/described_method.h"
+
+namespace caustics {
+
+const DescribedMethod<BeamTreeParams>& beamtree_method();
+
+}  // namespace caustics

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace caustics {
+
+/// What users are told of a key: of a method's parameter, a scene file or a sweep file.
+struct KeyText {
+    std::string key;
+    std::string meaning;       ///< one sentence
+    std::string unit = {};     ///< empty: a pure number, or none
+    std::string source = {};   ///< paper and equation, as "[J96 (4)]"; empty: our own
+    std::string type = {};     ///< "number", "whole number", "choice", ...
+    std::string usual = {};    ///< the default; empty: the key must be given
+    std::string choices = {};  ///< range or words; empty: any
+};
+
+/// The keys of one kind of object of a file.
+struct ObjectText {
+    std::string name;     ///< its `type`, or what it is where it has none
+    std::string meaning;  ///< what it is and where it stands, one sentence
+    std::vector<KeyText> keys;
+};
+
+}  // namespace caustics

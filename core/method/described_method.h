@@ -1,0 +1,104 @@
+#pragma once
+
+#include "core/method/method_description.h"
+
+namespace caustics {
+
+/// A method told by a params struct with its defaults in place and a table of its members.
+template <class Params>
+struct MethodTable {
+    MethodFacts facts;
+    std::vector<Parameter<Params>> parameters = {};
+    /// What holds between parameters, once those that are given are in place: throws InputError, or
+    /// puts defaults in place that depend on others.
+    void (*settle)(const JsonNode& node, Params& params) = [](const JsonNode&, Params&) {};
+    void (*take_least_work)(Params& params) = [](Params&) {};
+    std::unique_ptr<const CausticEstimator> (*make)(const Scene&, const Params&, const RunOptions&,
+                                                    int pass) =
+        [](const Scene& scene, const Params& params, const RunOptions& options, int) {
+            return build(scene, params, options);
+        };
+    int Params::* passes = nullptr;
+    double Params::* disc_radius = nullptr;
+};
+
+/// A method of such a table. Lives as long as what it configures.
+template <class Params>
+class DescribedMethod final : public MethodDescription {
+public:
+    explicit DescribedMethod(MethodTable<Params> table) : table_(std::move(table)) {}
+
+    const MethodFacts& facts() const override { return table_.facts; }
+
+    std::vector<KeyText> parameters() const override {
+        std::vector<KeyText> all;
+        for (const auto& parameter : table_.parameters) all.push_back(parameter.text);
+        return all;
+    }
+
+    std::shared_ptr<const ConfiguredMethod> configure(const JsonNode& node) const override {
+        return std::make_shared<Configured>(table_, read(node));
+    }
+
+    Params read(const JsonNode& node) const {
+        Params params;
+        for (const auto& parameter : table_.parameters)
+            if (const auto given = node.find(parameter.text.key)) parameter.read(*given, params);
+        node.finish();
+        table_.settle(node, params);
+        return params;
+    }
+
+private:
+    class Configured final : public ConfiguredMethod {
+    public:
+        Configured(const MethodTable<Params>& table, Params params)
+            : table_(table), params_(std::move(params)) {}
+
+        std::vector<std::pair<std::string, ParameterValue>> values() const override {
+            std::vector<std::pair<std::string, ParameterValue>> all;
+            for (const auto& parameter : table_.parameters)
+                if (auto value = parameter.value(params_))
+                    all.emplace_back(parameter.text.key, std::move(*value));
+            return all;
+        }
+        std::map<std::string, std::uint64_t> files_read() const override {
+            std::map<std::string, std::uint64_t> all;
+            for (const auto& parameter : table_.parameters)
+                if (parameter.checksum)
+                    if (const auto checksum = parameter.checksum(params_))
+                        all[parameter.text.key] = *checksum;
+            return all;
+        }
+        std::vector<std::string> files_written() const override {
+            std::vector<std::string> all;
+            for (const auto& parameter : table_.parameters)
+                if (parameter.is_written_file && parameter.value(params_))
+                    all.push_back(parameter.text.key);
+            return all;
+        }
+        int pass_count() const override {
+            return table_.passes == nullptr ? 1 : params_.*table_.passes;
+        }
+        double disc_radius() const override {
+            return table_.disc_radius == nullptr ? 0 : params_.*table_.disc_radius;
+        }
+        std::shared_ptr<const ConfiguredMethod> with_least_work() const override {
+            Params least = params_;
+            table_.take_least_work(least);
+            return std::make_shared<Configured>(table_, std::move(least));
+        }
+        std::unique_ptr<const CausticEstimator> build(const Scene& scene, const RunOptions& options,
+                                                      int pass) const override {
+            return table_.make(scene, params_, options, pass);
+        }
+
+    private:
+        const MethodTable<Params>& table_;
+        Params params_;
+    };
+
+    MethodTable<Params> table_;
+};
+
+}  // namespace caustics

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/caustic_estimator.h"
+#include "core/method/parameter.h"
+
+namespace caustics {
+
+/// How a method's picture is made of samples, so that one can go on where a smaller one ended.
+struct SampleCount {
+    std::string parameter = {};  ///< that says how many; empty: the method has no such number
+    /// Whether they count for each pixel, shared by the eye pass's samples, at least one each.
+    bool of_a_pixel = false;
+};
+
+/// What is known of a method whatever its parameters.
+struct MethodFacts {
+    std::string name;
+    std::string summary;  ///< what it is, in one line
+    std::string serves;   ///< which scenes, lights and pixels
+    bool has_caustic = true;
+    bool is_unbiased = false;  ///< so that it may serve as a reference
+    SampleCount samples = {};
+    bool gathers_over_discs = false;  ///< answers a probe over a disc round each point, all at once
+    /// Parameters ("key=value") with which `verify SCENE` tries it, and where that does not do, once more.
+    std::vector<std::string> effort = {};
+    std::vector<std::string> more_effort = {};  ///< empty: there is no second try
+};
+
+/// A method with its parameters in place. Immutable.
+class ConfiguredMethod {
+public:
+    virtual ~ConfiguredMethod() = default;
+
+    /// Every parameter with the value in force, defaults included.
+    virtual std::vector<std::pair<std::string, ParameterValue>> values() const = 0;
+    /// What stands for the contents of the files that are read, by parameter. Throws InputError for a
+    /// file that is not what the parameter asks for.
+    virtual std::map<std::string, std::uint64_t> files_read() const = 0;
+    /// The parameters that name files to be written.
+    virtual std::vector<std::string> files_written() const = 0;
+    /// How often the method goes through its precompute pass; 1 for most.
+    virtual int pass_count() const = 0;
+    /// Of points in `probe` that have none of their own [m]; 0 = none.
+    virtual double disc_radius() const = 0;
+    /// The same where building costs next to nothing: what a method can serve does not depend on how
+    /// much work it is given.
+    virtual std::shared_ptr<const ConfiguredMethod> with_least_work() const = 0;
+    /// Runs the precompute pass of that number.
+    virtual std::unique_ptr<const CausticEstimator> build(const Scene& scene,
+                                                          const RunOptions& options,
+                                                          int pass) const = 0;
+};
+
+/// A method as its own folder describes it: all that a program asks of methods it knows only by name.
+class MethodDescription {
+public:
+    virtual ~MethodDescription() = default;
+
+    virtual const MethodFacts& facts() const = 0;
+    virtual std::vector<KeyText> parameters() const = 0;
+    /// Reads parameters strictly. Throws InputError naming the key and what is known.
+    virtual std::shared_ptr<const ConfiguredMethod> configure(const JsonNode& node) const = 0;
+};
+
+}  // namespace caustics

@@ -1,0 +1,296 @@
+#include "core/scene_file/scene_keys.h"
+
+#include <utility>
+
+namespace caustics::scene_file {
+
+namespace {
+
+using Keys = std::vector<KeyText>;
+using Objects = std::vector<ObjectText>;
+
+Keys joined(Keys first, const Keys& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+}
+
+KeyText type_key() {
+    return {.key = "type", .meaning = "Says what the object is: the name above.", .type = "word"};
+}
+
+KeyText transform(const std::string& meaning) {
+    return {.key = "to_world", .meaning = meaning, .type = "transform", .usual = "[]"};
+}
+
+KeyText number(const std::string& key, const std::string& meaning, const std::string& unit,
+               const std::string& usual, const std::string& range) {
+    return {.key = key,
+            .meaning = meaning,
+            .unit = unit,
+            .type = "number",
+            .usual = usual,
+            .choices = range};
+}
+
+KeyText whole(const std::string& key, const std::string& meaning, const std::string& unit,
+              const std::string& usual, const std::string& range) {
+    KeyText text = number(key, meaning, unit, usual, range);
+    text.type = "whole number";
+    return text;
+}
+
+KeyText vector(const std::string& key, const std::string& meaning, const std::string& usual) {
+    return {.key = key, .meaning = meaning, .unit = "m", .type = "[x, y, z]", .usual = usual};
+}
+
+KeyText yes_or_no(const std::string& key, const std::string& meaning, const std::string& usual) {
+    return {.key = key, .meaning = meaning, .type = "true or false", .usual = usual};
+}
+
+KeyText colour(const std::string& key, const std::string& meaning, const std::string& unit,
+               const std::string& usual, const std::string& range) {
+    return {.key = key,
+            .meaning = meaning,
+            .unit = unit,
+            .type = "colour",
+            .usual = usual,
+            .choices = range};
+}
+
+KeyText texture(const std::string& key, const std::string& meaning, const std::string& usual) {
+    return {.key = key,
+            .meaning = meaning,
+            .type = "colour or texture",
+            .usual = usual,
+            .choices = "0 to 1"};
+}
+
+KeyText choice(const std::string& key, const std::string& meaning, const std::string& usual,
+               const std::string& choices) {
+    return {.key = key, .meaning = meaning, .type = "choice", .usual = usual, .choices = choices};
+}
+
+KeyText file(const std::string& meaning) {
+    return {.key = "filename", .meaning = meaning, .type = "file"};
+}
+
+Objects files() {
+    return {
+        {"scene",
+         "The file itself; beside these keys it holds a sensor, lights and shapes under names of "
+         "your choice.",
+         {choice("type", "Says that the file is a scene.", "scene", "scene"),
+          whole("version", "Of the format.", "", "1", "1 to 1")}},
+        {"$include",
+         "An object that holds this key alone stands for the content of another file.",
+         {{.key = "$include",
+           .meaning = "The file, relative to the one that names it.",
+           .type = "file"}}}};
+}
+
+Objects sensors() {
+    const KeyText count =
+        whole("sample_count", "Camera samples a pixel.", "samples", "4", "1 to 1048576");
+    return {
+        {"perspective",
+         "The sensor, a pinhole that looks along +z with +y up; holds a film and a sampler.",
+         {type_key(), number("fov", "Field of view.", "degrees", "50", "0.000001 to 179.9999"),
+          choice("fov_axis", "Which extent of the film fov is for.", "x",
+                 "x, y, diagonal, smaller, larger"),
+          transform("Place and view: rotations, translations and one scale.")}},
+        {"hdrfilm",
+         "The film, in a sensor; may hold a reconstruction filter.",
+         {type_key(), whole("width", "Of the picture.", "pixels", "768", "1 to 65536"),
+          whole("height", "Of the picture.", "pixels", "576", "1 to 65536")}},
+        {"box", "The reconstruction filter, in a film.", {type_key()}},
+        {"independent", "A sampler, in a sensor: random samples.", {type_key(), count}},
+        {"stratified",
+         "A sampler, in a sensor: one sample in each cell of a square grid.",
+         {type_key(),
+          whole("sample_count", "Camera samples a pixel, a square number.", "samples", "4",
+                "1 to 1048576"),
+          yes_or_no("jitter", "Samples lie at random in their cells, not at the middle.", "true")}},
+        {"adaptive",
+         "A sampler, in a sensor: more samples where those of a pixel scatter.",
+         {type_key(),
+          whole("sample_count", "First samples of a pixel.", "samples", "4", "2 to 1048576"),
+          whole("max_sample_count", "Most samples of a pixel.", "samples", "32 times sample_count",
+                "sample_count to 1048576"),
+          number("max_error", "Allowed standard error of a pixel over its brightness.", "", "0.05",
+                 "above 0")}}};
+}
+
+Objects lights() {
+    return {{"point",
+             "A light, in the scene.",
+             {type_key(), vector("position", "Where it is.", "[0, 0, 0]"),
+              transform("Where it is, in place of position."),
+              colour("intensity", "Power sent into a direction.", "W/sr", "1", "0 to 1e+30")}},
+            {"spot",
+             "A light, in the scene: from a point, about an axis.",
+             {type_key(), transform("Where it is, and its axis: +z."),
+              colour("intensity", "Power sent along the axis.", "W/sr", "1", "0 to 1e+30"),
+              number("cutoff_angle", "From the axis to where no light goes.", "degrees", "20",
+                     "0.001 to 179"),
+              number("beam_width", "From the axis to where the light begins to fall, linearly.",
+                     "degrees", "0.75 times cutoff_angle", "0 to cutoff_angle")}},
+            {"directional",
+             "A light, in the scene: parallel rays from far away.",
+             {type_key(),
+              {.key = "direction",
+               .meaning = "Where the light goes, of any length.",
+               .type = "[x, y, z]",
+               .usual = "[0, 0, 1]"},
+              transform("The light goes along its +z, in place of direction."),
+              colour("irradiance", "On a surface across the light.", "W/m^2", "1", "0 to 1e+30")}},
+            {"area",
+             "A light, in a shape that shines from its front side.",
+             {type_key(), colour("radiance", "Of the surface.", "W/(m^2 sr)", "1", "0 to 1e+30")}}};
+}
+
+Keys shape_keys(const std::string& least) {
+    return {type_key(), transform("Places the shape in the world."),
+            yes_or_no("flip_normals", "Turns the front side over.", "false"),
+            yes_or_no("face_normals", "Shades a mesh flat, triangle by triangle.", "false"),
+            whole("resolution",
+                  "Cells along each parameter of a mesh that stands for the shape for everybody.",
+                  "cells", "none", least + " to 4096")};
+}
+
+Objects shapes() {
+    const KeyText radius = number("radius", "Of the shape.", "m", "1", "above 0 to 1e+30");
+    Keys mesh = shape_keys("1");
+    mesh.pop_back();
+    return {
+        {"rectangle", "A shape: the square from -1 to 1 in x and y, facing +z.", shape_keys("1")},
+        {"disk", "A shape: the unit disk across z, facing +z.", shape_keys("1")},
+        {"sphere", "A shape, facing outwards.",
+         joined(shape_keys("2"), {vector("center", "The middle.", "[0, 0, 0]"), radius})},
+        {"cylinder", "A shape: an open tube, facing outwards.",
+         joined(shape_keys("1"), {vector("p0", "One end of the axis.", "[0, 0, 0]"),
+                                  vector("p1", "The other end.", "[0, 0, 1]"), radius})},
+        {"cube", "A shape: the box from -1 to 1, a mesh.", shape_keys("1")},
+        {"obj", "A shape: a mesh of a Wavefront file.",
+         joined(mesh, {file("The .obj file, relative to the scene's.")})},
+        {"ply", "A shape: a mesh of a PLY file.",
+         joined(mesh, {file("The .ply file, relative to the scene's.")})},
+        {"heightfield", "A shape: a sum of sines over a rectangle round the origin, facing up.",
+         joined(shape_keys("1"),
+                {{.key = "waves", .meaning = "The sines that are added.", .type = "list of waves"},
+                 {.key = "half_size",
+                  .meaning = "Half the rectangle's extent in x and y.",
+                  .unit = "m",
+                  .type = "[x, y]",
+                  .usual = "[1, 1]"}})},
+        {"wave",
+         "An element of waves: amplitude sin(wave_vector . (x, y) + phase).",
+         {number("amplitude", "Of the sine.", "m", "", "-1e+30 to 1e+30"),
+          {.key = "wave_vector",
+           .meaning = "Direction of the crests' motion; its length is 2 pi over the wavelength.",
+           .unit = "rad/m",
+           .type = "[x, y]"},
+          number("phase", "At the origin.", "rad", "0", "-1e+30 to 1e+30")}}};
+}
+
+Objects bsdfs() {
+    const KeyText reflected = colour(
+        "specular_reflectance", "Share of the reflected light that is kept.", "", "1", "0 to 1");
+    const auto ior = [](const std::string& key, const std::string& meaning,
+                        const std::string& usual) {
+        return KeyText{.key = key,
+                       .meaning = meaning,
+                       .type = "number or Mitsuba's name",
+                       .usual = usual,
+                       .choices = "0.1 to 10"};
+    };
+    return {{"diffuse",
+             "A bsdf, in a shape: Lambert's law; the default.",
+             {type_key(), texture("reflectance", "Share of the light that is scattered.", "0.5")}},
+            {"schlick",
+             "A bsdf, in a shape: Schlick's glossy model.",
+             {type_key(),
+              texture("reflectance", "Factor of the model.", "0.5"),
+              {.key = "alpha",
+               .meaning = "Roughness: 1 is broad, towards 0 a mirror.",
+               .source = "[J96 (5)]",
+               .type = "number",
+               .usual = "1",
+               .choices = "0.000001 to 1"}}},
+            {"dielectric",
+             "A bsdf, in a shape: smooth glass or water; the shape is a caster.",
+             {type_key(), ior("int_ior", "Refractive index behind the surface.", "bk7"),
+              ior("ext_ior", "Refractive index in front of it.", "air"),
+              colour("absorption", "Of the inside.", "1/m", "0", "0 to 1e+30"),
+              colour("ext_absorption", "Of the outside.", "1/m", "0", "0 to 1e+30"), reflected,
+              colour("specular_transmittance", "Share of the refracted light that is kept.", "",
+                     "1", "0 to 1")}},
+            {"conductor",
+             "A bsdf, in a shape: a mirror; the shape is a caster.",
+             {type_key(), choice("material", "The perfect mirror.", "none", "none"), reflected}},
+            {"twosided",
+             "A bsdf, in a shape: the diffuse, schlick or conductor that it holds, on both sides.",
+             {type_key()}}};
+}
+
+Objects textures() {
+    const KeyText to_uv{.key = "to_uv",
+                        .meaning = "Moves the texture over the surface.",
+                        .type = "transform",
+                        .usual = "[]"};
+    return {
+        {"rgb",
+         "A colour: a number or [r, g, b] may stand for it; linear sRGB.",
+         {type_key(),
+          {.key = "value", .meaning = "All channels, or each.", .type = "number or [r, g, b]"}}},
+        {"bitmap",
+         "A texture: a picture over the texture coordinates.",
+         {type_key(), file("The picture, relative to the scene's file."),
+          yes_or_no("raw", "Takes its numbers as they are, not as sRGB.", "false"),
+          choice("filter_type", "Between texels.", "bilinear", "bilinear, nearest"),
+          choice("wrap_mode", "Outside of the picture.", "repeat", "repeat, mirror, clamp"),
+          to_uv}},
+        {"checkerboard",
+         "A texture: two colours by turns.",
+         {type_key(), colour("color0", "Of the first cells.", "", "0.4", "0 to 1"),
+          colour("color1", "Of the others.", "", "0.2", "0 to 1"), to_uv}}};
+}
+
+Objects transforms() {
+    const auto part = [](const std::string& key, const std::string& meaning,
+                         const std::string& type, const std::string& unit = {}) {
+        return KeyText{.key = key, .meaning = meaning, .unit = unit, .type = type};
+    };
+    KeyText translate = part("translate", "Moves.", "[x, y, z]", "m");
+    KeyText rotate = part("rotate", "Turns; see below.", "object");
+    KeyText scale = part("scale", "Stretches.", "number or [x, y, z]");
+    KeyText look_at = part("look_at", "Turns +z from one point to another; see below.", "object");
+    for (KeyText* each : {&translate, &rotate, &scale, &look_at}) each->usual = "none";
+    return {{"transform",
+             "A list of such objects of one key each, applied in their order, or 16 numbers row by "
+             "row.",
+             {translate, rotate, scale, look_at}},
+            {"rotate",
+             "In a transform.",
+             {part("axis", "Of any length.", "[x, y, z]"),
+              part("angle", "Right-handed.", "number", "degrees")}},
+            {"look_at",
+             "In a transform.",
+             {part("origin", "Where the view starts.", "[x, y, z]", "m"),
+              part("target", "What it goes to.", "[x, y, z]", "m"),
+              part("up", "What is up in it.", "[x, y, z]")}}};
+}
+
+}  // namespace
+
+const std::vector<ObjectText>& scene_keys() {
+    static const Objects all = [] {
+        Objects made;
+        for (Objects family :
+             {files(), sensors(), lights(), shapes(), bsdfs(), textures(), transforms()})
+            for (ObjectText& object : family) made.push_back(std::move(object));
+        return made;
+    }();
+    return all;
+}
+
+}  // namespace caustics::scene_file

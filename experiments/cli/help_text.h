@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace caustics {
+
+/// What `help` tells about: each method, and the kinds of files.
+std::vector<std::string> help_topics();
+
+/// What `help TOPIC` prints, in lines of at most 100 columns; the topics for an empty one. Throws
+/// InputError naming the topics for one that is unknown.
+std::string help_text(const std::string& topic);
+
+}  // namespace caustics

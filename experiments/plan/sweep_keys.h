@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/key_text.h"
+
+namespace caustics {
+
+/// Every object that read_sweep_file knows, with its keys.
+const std::vector<ObjectText>& sweep_keys();
+
+}  // namespace caustics

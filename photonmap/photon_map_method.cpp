@@ -1,0 +1,197 @@
+#include "photonmap/photon_map_method.h"
+
+#include <algorithm>
+#include <string>
+
+#include "photonmap/photons/photon_map_file.h"
+
+namespace caustics {
+
+namespace {
+
+using P = PhotonMapParams;
+
+constexpr std::int64_t most_photons = 2'000'000'000;
+constexpr std::int64_t most_paths = 1'000'000'000'000;
+constexpr std::int64_t most_nearest = 1'000'000;
+constexpr std::int64_t most_passes = 100'000;
+
+bool is_traced(const P& params) { return params.load.empty(); }
+
+std::vector<Parameter<P>> photon_parameters() {
+    return {
+        parameter::whole_number<P>(
+            &P::photons, 1, most_photons,
+            {.key = "photons",
+             .meaning = "Photons to store; light paths are traced until so many are.",
+             .unit = "photons",
+             .source = "[J96 2]"})
+            .only_if([](const P& p) { return p.photons > 0; }),
+        parameter::whole_number<P>(&P::emitted, 1, most_paths,
+                                   {.key = "emitted",
+                                    .meaning = "Light paths to emit, in place of photons.",
+                                    .unit = "paths"})
+            .only_if([](const P& p) { return p.emitted > 0; })
+            .usually("none"),
+        parameter::choice<P>(
+            &P::emission,
+            {{"random", P::Emission::random}, {"stratified", P::Emission::stratified}},
+            {.key = "emission",
+             .meaning = "Draws light paths at random, or one jittered path from each stratum.",
+             .source = "[J96 2]"})
+            .only_if(is_traced),
+        parameter::choice<P>(&P::interaction,
+                             {{"roulette", Interaction::roulette}, {"split", Interaction::split}},
+                             {.key = "interaction",
+                              .meaning = "At glass, follows one way by Russian roulette, or both.",
+                              .source = "[J96 2]"})
+            .only_if(is_traced),
+        parameter::max_bounces<P>().only_if(is_traced),
+        parameter::written_file<P>(
+            &P::save, {.key = "save",
+                       .meaning = "File that the traced photons are written to; not in sweeps."}),
+        parameter::read_file<P>(
+            &P::load, photon_map_checksum,
+            {.key = "load",
+             .meaning = "File that the photons come from, in place of being traced."})};
+}
+
+std::vector<Parameter<P>> estimate_parameters() {
+    return {
+        parameter::choice<P>(
+            &P::tree,
+            {{name(TreeKind::balanced), TreeKind::balanced},
+             {name(TreeKind::unbalanced), TreeKind::unbalanced},
+             {name(TreeKind::packed), TreeKind::packed}},
+            {.key = "tree",
+             .meaning =
+                 "How photons are ordered for finding the nearest; all give the same answers.",
+             .source = "[J96 2]"}),
+        parameter::whole_number<P>(
+            &P::nearest, 1, most_nearest,
+            {.key = "nearest",
+             .meaning = "N, the photons of an estimate; where adaptive, the most (usually 200).",
+             .unit = "photons",
+             .source = "[J96 (3)]"})
+            .only_if([](const P& p) { return !(p.radius > 0); }),
+        parameter::yes_or_no<P>(&P::adaptive,
+                                {.key = "adaptive",
+                                 .meaning = "Takes fewer than N photons where they lie unevenly.",
+                                 .source = "[J96 5]"}),
+        parameter::optional_length<P>(&P::max_radius, "leave it out to have it chosen",
+                                      {.key = "max_radius",
+                                       .meaning = "Farthest photon of an estimate.",
+                                       .source = "[J96 3]"})
+            .usually("chosen"),
+        parameter::optional_length<P>(
+            &P::radius, "leave it out to take the nearest photons",
+            {.key = "radius",
+             .meaning = "Takes all photons within it, in place of nearest and max_radius."})
+            .usually("none"),
+        parameter::choice<P>(&P::filter,
+                             {{name(FilterKind::none), FilterKind::none},
+                              {name(FilterKind::cone), FilterKind::cone},
+                              {name(FilterKind::gaussian), FilterKind::gaussian},
+                              {name(FilterKind::epanechnikov), FilterKind::epanechnikov}},
+                             {.key = "filter",
+                              .meaning = "How photons weigh by their distance.",
+                              .source = "[Jensen 2001]"}),
+        parameter::choice<P>(&P::estimator,
+                             {{"unbiased", P::Estimator::unbiased}, {"raw", P::Estimator::raw}},
+                             {.key = "estimator",
+                              .meaning = "Leaves the outermost photon out, or is the equation as "
+                                         "printed, which reads high.",
+                              .source = "[J96 (4)]"}),
+        parameter::whole_number<P>(
+            &P::passes, 1, most_passes,
+            {.key = "passes",
+             .meaning =
+                 "Maps that are averaged, one after another, with smaller and smaller discs.",
+             .unit = "maps",
+             .source = "[Knaus & Zwicker 2011]"}),
+        parameter::yes_or_no<P>(
+            &P::tables, {.key = "tables",
+                         .meaning = "Shades by tables over the directions that photons can have.",
+                         .source = "[J96 5]"})};
+}
+
+void settle_files(const JsonNode& node, P& params) {
+    if (node.has("load")) {
+        params.photons = 0;
+        for (const char* key :
+             {"save", "photons", "emitted", "emission", "interaction", "max_bounces"})
+            if (const std::optional<JsonNode> given = node.find(key))
+                given->fail("cannot be given with load: the photons of " + params.load.string() +
+                            " are there already, traced as that file says");
+    }
+    if (params.passes > 1)
+        for (const char* key : {"save", "load"})
+            if (const auto given = node.find(key))
+                given->fail("cannot be given with several passes, each of which has its own map");
+}
+
+void settle_nearest(const JsonNode& node, P& params) {
+    const auto nearest = node.find("nearest");
+    if (!nearest) {
+        if (params.adaptive) params.nearest = P::default_adaptive_nearest;
+        return;
+    }
+    if (params.nearest < 2 && params.estimator == P::Estimator::unbiased)
+        nearest->fail(
+            "must be at least 2 with the estimator \"unbiased\", which leaves the "
+            "outermost photon out (or choose \"raw\")");
+    if (params.adaptive)
+        nearest->as_integer_in(P::least_adaptive_nearest, P::most_adaptive_nearest);
+}
+
+void settle_radius(const JsonNode& node, P& params) {
+    const auto radius = node.find("radius");
+    if (!radius) return;
+    for (const char* const other : {"nearest", "max_radius"})
+        if (node.has(other))
+            radius->fail(
+                std::string("takes all photons within it, in place of the nearest: leave ") +
+                other + " out, or radius");
+    if (params.adaptive) radius->fail("leaves no N for adaptive to choose: leave one of them out");
+}
+
+void settle(const JsonNode& node, P& params) {
+    if (const auto emitted = node.find("emitted")) {
+        if (node.has("photons")) emitted->fail("give either photons or emitted, not both");
+        params.photons = 0;
+    }
+    settle_nearest(node, params);
+    settle_radius(node, params);
+    settle_files(node, params);
+}
+
+}  // namespace
+
+const DescribedMethod<PhotonMapParams>& photonmap_method() {
+    static const DescribedMethod<P> method([] {
+        MethodTable<P> table{
+            .facts = {.name = "photonmap",
+                      .summary =
+                          "Jensen 1996: photons aimed at the casters, balanced kd-tree, N nearest",
+                      .serves = "every scene",
+                      .effort = {"photons=60000", "nearest=60"},
+                      .more_effort = {"photons=480000", "nearest=60"}},
+            .parameters = photon_parameters(),
+            .settle = settle,
+            .take_least_work =
+                [](P& params) {
+                    params.photons = std::min<std::uint64_t>(params.photons, 1);
+                    params.emitted = std::min<std::uint64_t>(params.emitted, 1);
+                    params.save.clear();
+                },
+            .make = build_pass,
+            .passes = &P::passes};
+        for (Parameter<P>& row : estimate_parameters()) table.parameters.push_back(std::move(row));
+        return table;
+    }());
+    return method;
+}
+
+void read(const JsonNode& node, PhotonMapParams& params) { params = photonmap_method().read(node); }
+
+}  // namespace caustics
