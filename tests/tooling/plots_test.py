@@ -39,7 +39,7 @@ def product(seeds=(1, 2, 3), photons=(1000, 10000), nearest=(25, 50), alpha=(0.1
 
 class Columns(unittest.TestCase):
     def test_no_column_of_every_trial_is_taken_for_a_swept_parameter(self):
-        text = (TOOL.parents[1] / "experiments" / "plan" / "record.cpp").read_text(encoding="utf-8")
+        text = (TOOL.parents[1] / "experiments" / "plan" / "record_columns.cpp").read_text(encoding="utf-8")
         names = re.findall(r'^    \{"(\w+)", "/', text, re.MULTILINE)
         sys.path.insert(0, str(TOOL.parent))
         from report import records
