@@ -97,8 +97,9 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                 (factor * exact->weight * left).template cast<double>() * exact->density * cosine;
             continue;
         }
-        double density = refined_density(set, hit, point.position)
-                             .value_or(hit.flux_share / std::max(hit.area, least_area));  // [CC95 (11)]
+        double density =
+            refined_density(set, hit, point.position)
+                .value_or(hit.flux_share / std::max(hit.area, least_area));  // [CC95 (11)]
         density *= hit.coverage;
         // The caustic polygon lies on the test's plane; the receiver's is turned against it.
         density *= cosine / std::abs(static_cast<double>(hit.plane_normal.dot(ray.direction)));

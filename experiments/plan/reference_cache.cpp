@@ -39,11 +39,14 @@ Film reference_film(const Film& rendered) {
 int reference_version(const Scene& scene) { return is_black(eye_medium(scene).absorption) ? 1 : 2; }
 
 std::string reference_key(const RunRequest& request, const SceneFile& file, const Scene& scene) {
-    const nlohmann::json configuration = {
-        {"reference_version", reference_version(scene)}, {"scene", file.hash},
-        {"method", request.method.name},                 {"parameters", identity(request.method)},
-        {"spp", request.samples_per_pixel},              {"seed", request.seed},
-        {"width", file.desc.camera.width},               {"height", file.desc.camera.height}};
+    const nlohmann::json configuration = {{"reference_version", reference_version(scene)},
+                                          {"scene", file.hash},
+                                          {"method", request.method.name},
+                                          {"parameters", identity(request.method)},
+                                          {"spp", request.samples_per_pixel},
+                                          {"seed", request.seed},
+                                          {"width", file.desc.camera.width},
+                                          {"height", file.desc.camera.height}};
     return hex(fnv1a(configuration.dump()));
 }
 

@@ -1,5 +1,5 @@
-#include "photonmap/photon_map.h"
 #include "photonmap/photons/photon_source.h"
+#include "photonmap/photon_map.h"
 
 #include <gtest/gtest.h>
 
