@@ -132,6 +132,12 @@ private:
     std::vector<BoundingSphere> caster_bounds_;
 };
 
+// nullptr for a light that has area.
+const char* kind_without_area(const Light& light) {
+    if (const auto* point = std::get_if<PointLight>(&light)) return point->spot ? "spot" : "point";
+    return std::holds_alternative<DirectionalLight>(light) ? "directional" : nullptr;
+}
+
 }  // namespace
 
 const DescribedMethod<PathTraceParams>& pathtrace_method() {
@@ -157,10 +163,9 @@ const DescribedMethod<PathTraceParams>& pathtrace_method() {
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PathTraceParams& params,
                                               const RunOptions& options) {
     for (const Light& light : scene.lights())
-        if (!std::holds_alternative<AreaLight>(light))
+        if (const char* const kind = kind_without_area(light))
             throw UnsupportedScene(
-                std::string("pathtrace cannot serve a scene with a ") +
-                (std::holds_alternative<PointLight>(light) ? "point or spot" : "directional") +
+                std::string("pathtrace cannot serve a scene with a ") + kind +
                 " light: a path from the receiver hits it with probability zero, so its caustic "
                 "would be black; use lighttrace, or give the light area");
     return std::make_unique<PathTrace>(scene, params, options);

@@ -179,9 +179,9 @@ void read_directional_light(const JsonNode& node, SceneDesc& desc) {
 void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     const std::string type = node.at("type").as_string();
     std::vector<std::string> known{"perspective", "point", "spot", "directional"};
-    std::vector<std::string> later{"constant",        "spot",   "envmap",       "projector",
-                                   "directionalarea", "sunsky", "thinlens",     "orthographic",
-                                   "homogeneous",     "ref",    "heterogeneous"};
+    std::vector<std::string> later{"constant", "envmap",       "projector",    "directionalarea",
+                                   "sunsky",   "thinlens",     "orthographic", "homogeneous",
+                                   "ref",      "heterogeneous"};
     const std::vector<std::string> integrators{"path",   "volpath", "direct", "ptracer",
                                                "moment", "aov",     "depth",  "photonmapper"};
     if (std::ranges::find(integrators, type) != integrators.end())

@@ -71,9 +71,10 @@ int run_verb(const std::vector<Verb>& verbs) {
 
 int parse_and_run(int argc, char** argv) {
     CLI::App app(
-        "Caustics by photon maps and their rivals: pictures, probes, sweeps with errors "
+        "Caustic rendering methods compared: pictures, probes, sweeps with errors "
         "against references.",
         "causticbench");
+    app.require_subcommand(0, 1);  // a topic, a file or a folder may be named like a verb
     app.set_version_flag("--version", "causticbench " + code_version());
     app.footer(
         "Exit codes: 0 done, 1 some trials failed, 2 bad input or usage, 3 the method cannot "

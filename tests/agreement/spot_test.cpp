@@ -17,7 +17,7 @@ constexpr double height = 1.5;
 constexpr double intensity = 5;
 constexpr double beam_width = 15;
 constexpr double cutoff = 30;
-constexpr double distances[] = {0, 0.2, 0.38, 0.45, 0.55, 0.65, 0.75, 0.9, 1.2};
+constexpr double distances[] = {0.05, 0.2, 0.38, 0.45, 0.55, 0.65, 0.75, 0.9, 1.2};
 
 double truth(double r) {
     const double angle = std::atan(r / height) * 180 / pi_d;

@@ -37,6 +37,16 @@ TEST(Program, TellsItsVersionAndHelp) {
     }
 }
 
+TEST(Program, TakesWordsAfterAVerbForItsArguments) {
+    for (const std::string topic : {"scene", "sweep", "records", "beamtree"}) {
+        const ProgramResult help = causticbench({"help", topic});
+        EXPECT_EQ(help.exit_code, 0) << topic << ": " << help.err;
+        EXPECT_GT(std::ranges::count(help.out, '\n'), 15) << topic;
+    }
+    EXPECT_EQ(causticbench({"help", "verbs"}).exit_code, 2);
+    EXPECT_EQ(causticbench({"info", "sweep"}).err.find("causticbench: error: sweep:"), 0U);
+}
+
 TEST(Render, GivesTheSameBytesOnAnyNumberOfThreads) {
     const support::TemporaryFolder folder;
     const auto render = [&](const std::string& name, const std::string& threads,

@@ -63,7 +63,6 @@ std::vector<Broken> broken_scenes() {
         {"root_area", with(R"({"type": "area"})"), {"/it", "nested in the shape"}},
         // What later versions or other programs have.
         {"constant", with(R"({"type": "constant"})"), {"/it", "not supported (yet)", "point"}},
-        {"spot", with(R"({"type": "spot"})"), {"/it", "not supported (yet)", "directional"}},
         {"lathe", with(R"({"type": "lathe"})"), {"/it", "not supported (yet)", "heightfield"}},
         {"instance", with(R"({"type": "instance"})"), {"/it", "not supported (yet)"}},
         {"shapegroup", with(R"({"type": "shapegroup"})"), {"/it", "not supported (yet)"}},
