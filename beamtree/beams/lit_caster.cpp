@@ -6,6 +6,11 @@
 
 namespace caustics {
 
+bool is_flat_between(const Vec3& normal, const Vec3& other) {
+    constexpr float flat = 1e-3F;
+    return (normal - other).norm() < flat;
+}
+
 bool sends_on(const MeshPoint& point, const Facing& facing, Event event) {
     const SpecularVertex& bent = point.bent;
     const bool leaves_front = facing.normal.dot(bent.direction[event]) > 0;

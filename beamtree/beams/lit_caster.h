@@ -19,6 +19,9 @@ struct Facing {
 /// to the same side of both normals, and leave on the right side of both.
 bool sends_on(const MeshPoint& point, const Facing& facing, Event event);
 
+/// Whether a surface is flat from one point to another, by its unit normals there.
+bool is_flat_between(const Vec3& normal, const Vec3& other);
+
 /// A caster's mesh in the light of one sample.
 class LitCaster {
 public:

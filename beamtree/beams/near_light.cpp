@@ -11,7 +11,6 @@ namespace {
 // plane mirror reflects comes from a point, what a plane refracts does not.
 constexpr double widest = pi_d / 6;
 constexpr double widest_in_flat_glass = pi_d / 24;
-constexpr float flat = 1e-3F;  // between unit normals
 // How many edges span half of a spot light's cone.
 constexpr double spot_parts = 8;
 // How much longer than those of an even mesh edges may be.
@@ -40,7 +39,7 @@ bool NearLight::is_wide(const MeshPoint& a, const MeshPoint& b) const {
     const Vec3d u = (a.position - light_.position).cast<double>();
     const Vec3d v = (b.position - light_.position).cast<double>();
     const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
-    const bool is_flat_glass = is_glass_mesh_ && (a.normal - b.normal).norm() < flat;
+    const bool is_flat_glass = is_glass_mesh_ && is_flat_between(a.normal, b.normal);
     if (angle > (is_flat_glass ? widest_in_flat_glass : widest)) return true;
     if (light_.spot && angle > static_cast<double>(light_.spot->cutoff) / spot_parts) {
         const Vec3d middle = u.normalized() + v.normalized();

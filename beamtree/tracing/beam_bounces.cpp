@@ -47,12 +47,12 @@ void keep_only(BeamSet& set, const std::vector<bool>& kept) {
 /// Follows one level after the other, as far as it is worth it.
 class Follower {
 public:
-    Follower(const Scene& scene, const LitCaster& surface, const MeshNeighbours* neighbours,
-             const std::vector<Box>& receivers, std::size_t max_bounces, TracedBeams& traced)
+    Follower(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
+             const MeshNeighbours* neighbours, std::size_t max_bounces, TracedBeams& traced)
         : scene_(scene),
+          boxes_(boxes),
           surface_(surface),
           neighbours_(neighbours),
-          receivers_(receivers),
           max_bounces_(max_bounces),
           traced_(traced) {}
 
@@ -61,7 +61,7 @@ public:
         const std::size_t place = traced_.sets.size();
         traced_.sets.emplace_back();
         if (level.bounces() < max_bounces_) {
-            NextSets next = next_sets(scene_, surface_, level, least_beam_share * mean_flux,
+            NextSets next = next_sets(scene_, boxes_, surface_, level, least_beam_share * mean_flux,
                                       traced_.balance, part.of(own));
             const double beams = count_of(next.sets);
             for (Level& one : next.sets) {
@@ -97,26 +97,27 @@ private:
         // Surfaces bulge from the beam's triangles by about its own width.
         const Vec3 margin = Vec3::Constant(0.05F * box.diagonal().norm() + beam.offset);
         const Box wide(box.min() - margin, box.max() + margin);
-        return std::ranges::any_of(receivers_,
+        return std::ranges::any_of(boxes_.receivers,
                                    [&](const Box& receiver) { return wide.intersects(receiver); });
     }
 
     const Scene& scene_;
+    const SceneBoxes& boxes_;
     const LitCaster& surface_;
     const MeshNeighbours* neighbours_;
-    const std::vector<Box>& receivers_;
     std::size_t max_bounces_;
     TracedBeams& traced_;
 };
 
 }  // namespace
 
-BeamBounces::BeamBounces(const Scene& scene, const LitCaster& surface,
+BeamBounces::BeamBounces(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
                          const MeshNeighbours* neighbours, int max_bounces)
-    : scene_(scene), surface_(surface), neighbours_(neighbours), max_bounces_(max_bounces) {
-    for (const Shape& shape : scene.shapes())
-        if (is_receiver(shape.bsdf)) receivers_.push_back(bounds(shape));
-}
+    : scene_(scene),
+      boxes_(boxes),
+      surface_(surface),
+      neighbours_(neighbours),
+      max_bounces_(max_bounces) {}
 
 void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& part) {
     double flux = 0;
@@ -131,7 +132,7 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
         level.event = event;
         level.traced = std::move(first[event]);
         level.departures = first_departures(level.traced);
-        Follower(scene_, surface_, neighbours_, receivers_, static_cast<std::size_t>(max_bounces_),
+        Follower(scene_, boxes_, surface_, neighbours_, static_cast<std::size_t>(max_bounces_),
                  traced_)
             .follow(level, flux, flux / static_cast<double>(beams),
                     part.of(static_cast<double>(level.traced.set.beams.size()) /

@@ -10,6 +10,7 @@
 #include "beamtree/beams/ray_origin.h"
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/tracing/ray_arrival.h"
+#include "beamtree/tracing/scene_boxes.h"
 
 namespace caustics {
 
@@ -37,8 +38,8 @@ struct TracedBeams {
 class BeamBounces {
 public:
     /// With `neighbours` the sets are refined by them.
-    BeamBounces(const Scene& scene, const LitCaster& surface, const MeshNeighbours* neighbours,
-                int max_bounces);
+    BeamBounces(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
+                const MeshNeighbours* neighbours, int max_bounces);
 
     /// Keeps the sets of the first events and those of all events after them.
     void follow(std::array<TracedSet, 2> first, const ProgressPart& part);
@@ -49,10 +50,10 @@ private:
     std::vector<Departure> first_departures(const TracedSet& first) const;
 
     const Scene& scene_;
+    const SceneBoxes& boxes_;
     const LitCaster& surface_;
     const MeshNeighbours* neighbours_;
     int max_bounces_;
-    std::vector<Box> receivers_;
     TracedBeams traced_;
 };
 

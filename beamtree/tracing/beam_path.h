@@ -29,7 +29,7 @@ struct Level {
     std::vector<std::uint32_t>
         ray_of_parent;  ///< for rays of the parent: the one that goes on here
 
-    /// One a beam, or none where all are 1: what division for detail (PieceDetail) has left of the polygon.
+    /// One a beam, or none where all are 1: what division for detail (piece_detail.h) has left of the polygon.
     std::vector<float> shares;
     /// Of its beams, were the media clear and they not divided: what they are worth following for [W].
     double worth = 0;

@@ -217,7 +217,7 @@ private:
     std::array<TracedSet, 2> traced_;
 };
 
-TracedBeams trace_one(const Scene& scene, const CasterMesh& caster,
+TracedBeams trace_one(const Scene& scene, const SceneBoxes& boxes, const CasterMesh& caster,
                       const MeshNeighbours* neighbours, const LightSample& light, int max_bounces,
                       const ProgressPart& part) {
     const LitCaster surface(scene, caster, light);
@@ -225,7 +225,7 @@ TracedBeams trace_one(const Scene& scene, const CasterMesh& caster,
     std::array<TracedSet, 2> first = BeamTracer(surface).run(part.of(follows ? 0.1 : 0.9));
     TracedBeams traced;
     if (follows) {
-        BeamBounces follower(scene, surface, neighbours, max_bounces);
+        BeamBounces follower(scene, boxes, surface, neighbours, max_bounces);
         follower.follow(std::move(first), part.of(0.9));
         traced = follower.take();
     } else {
@@ -254,14 +254,15 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
     std::vector<MeshNeighbours> neighbours;
     if (settings.intensity == Intensity::refined)
         for (const CasterMesh& caster : casters) neighbours.emplace_back(caster);
+    const SceneBoxes boxes = settings.max_bounces > 1 ? scene_boxes(scene) : SceneBoxes{};
     std::vector<TracedBeams> parts(lights.size() * casters.size());
     TraceProgress progress(options);
     const ProgressPart one{progress, 1 / static_cast<double>(parts.size())};
     parallel_for(options.threads, parts.size(), [&](std::size_t i, std::size_t) {
         const std::size_t caster = i % casters.size();
-        parts[i] =
-            trace_one(scene, casters[caster], neighbours.empty() ? nullptr : &neighbours[caster],
-                      lights[i / casters.size()], settings.max_bounces, one);
+        parts[i] = trace_one(scene, boxes, casters[caster],
+                             neighbours.empty() ? nullptr : &neighbours[caster],
+                             lights[i / casters.size()], settings.max_bounces, one);
     });
     TracedBeams all;
     for (TracedBeams& part : parts) {

@@ -29,16 +29,16 @@ using Corners = std::array<Corner, 3>;
 /// What one set's light does next: the sets of all casters it meets, after each event.
 class NextBounce {
 public:
-    NextBounce(const Scene& scene, const LitCaster& surface, Level& level, double least_flux,
-               FluxBalance& balance, const ProgressPart& part)
+    NextBounce(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface, Level& level,
+               double least_flux, FluxBalance& balance, const ProgressPart& part)
         : scene_(scene),
+          boxes_(boxes),
           surface_(surface),
           level_(level),
           set_(level.traced.set),
           least_flux_(least_flux),
           balance_(balance),
           part_(part),
-          detail_(scene),
           stays_(set_.beams.size(), false) {
         land_all();
     }
@@ -92,29 +92,24 @@ private:
             return;
         }
         stays_[beam] = stays_[beam] || !alike;
-        Piece piece;
-        for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
-        cut(beam, Path(scene_, surface_, level_, beam), piece, share_of(beam), most_splits);
+        cut_triangle(beam, rays);
     }
 
     bool is_coarse(const std::array<std::uint32_t, 3>& rays) const {
         const auto coarse = [this](std::uint32_t i, std::uint32_t j) {
-            return PieceDetail::is_coarse(level_.traced.origins[i], level_.arrivals[i],
-                                          level_.traced.origins[j], level_.arrivals[j]);
+            return caustics::is_coarse(level_.traced.origins[i], level_.arrivals[i],
+                                       level_.traced.origins[j], level_.arrivals[j]);
         };
         return coarse(rays[0], rays[1]) || coarse(rays[1], rays[2]) || coarse(rays[2], rays[0]);
     }
     static bool is_coarse(const PathPoint& a, const PathPoint& b) {
-        return goes_on(a) && goes_on(b) &&
-               PieceDetail::is_coarse(a.origin, a.next, b.origin, b.next);
+        return goes_on(a) && goes_on(b) && caustics::is_coarse(a.origin, a.next, b.origin, b.next);
     }
 
     // Where no corner goes on.
     bool hides_a_caster(const Piece& piece) const {
         const auto& [a, b, c] = piece;
-        return a.alive && b.alive && c.alive && PieceDetail::is_flat(a.origin, b.origin) &&
-               PieceDetail::is_flat(b.origin, c.origin) &&
-               detail_.may_pass_round_caster({&a.ray, &b.ray, &c.ray});
+        return a.alive && b.alive && c.alive && may_pass_round_caster(boxes_, piece);
     }
 
     float share_of(std::uint32_t beam) const {
@@ -159,12 +154,9 @@ private:
             if (!sees(scene_, middle, surface_.light())) return;
             count_lit(parent);
         }
-        Piece piece;
-        for (std::size_t i = 0; i < 3; ++i) piece[i] = corner(rays[i]);
-        if (!land(scene_, ray, {from.shape, from.normal, parent.offset}).goes_on() &&
-            !hides_a_caster(piece))
-            return;
-        cut(beam, Path(scene_, surface_, level_, beam), piece, share_of(beam), most_splits);
+        if (land(scene_, ray, {from.shape, from.normal, parent.offset}).goes_on() ||
+            hides_a_caster(piece_of(rays)))
+            cut_triangle(beam, rays);
     }
 
     void count_lit(const Beam& beam) {
@@ -183,6 +175,10 @@ private:
         return point;
     }
 
+    Piece piece_of(const std::array<std::uint32_t, 3>& rays) const {
+        return {corner(rays[0]), corner(rays[1]), corner(rays[2])};
+    }
+
     void quarter(std::uint32_t beam, const Path& path, const Piece& piece, float share,
                  int splits) {
         const auto between = [&path](const PathPoint& p, const PathPoint& q, float t) {
@@ -190,11 +186,11 @@ private:
         };
         for (const Piece& part : quarters(piece, between)) cut(beam, path, part, share, splits);
     }
-    void quarter_for_detail(std::uint32_t beam, const Path& path, const Piece& piece, float share,
-                            int splits) {
-        quarter(beam, path, piece, share / 4, splits);
-    }
 
+    void cut_triangle(std::uint32_t beam, const std::array<std::uint32_t, 3>& rays) {
+        cut(beam, Path(scene_, surface_, level_, beam), piece_of(rays), share_of(beam),
+            most_splits);
+    }
     // What becomes of a piece whose corners do different things. It has `share` of its polygon.
     void cut(std::uint32_t beam, const Path& path, const Piece& piece, float share, int splits) {
         const auto& [a, b, c] = piece;
@@ -210,7 +206,7 @@ private:
         }
         bool coarse = one && (is_coarse(a, b) || is_coarse(b, c) || is_coarse(c, a));
         if (coarse && share > least_share) {
-            quarter_for_detail(beam, path, piece, share, splits);
+            quarter(beam, path, piece, share / 4, splits);
             return;
         }
         const std::array<CutEdge, 3> edges = {cut_edge(path, a, b), cut_edge(path, b, c),
@@ -221,7 +217,7 @@ private:
                                                     is_coarse(edges[i].first, piece[(i + 1) % 3])));
         }
         if (coarse && share > least_share) {
-            quarter_for_detail(beam, path, piece, share, splits);
+            quarter(beam, path, piece, share / 4, splits);
             return;
         }
         if (splits > 0 && more) {
@@ -236,7 +232,7 @@ private:
     void cut_dark(std::uint32_t beam, const Path& path, const Piece& piece, float share,
                   int splits) {
         if (share > least_share && hides_a_caster(piece)) {
-            quarter_for_detail(beam, path, piece, share, splits);
+            quarter(beam, path, piece, share / 4, splits);
             return;
         }
         if (!goes_on(path.middle(piece))) return;
@@ -407,22 +403,23 @@ private:
     }
 
     const Scene& scene_;
+    const SceneBoxes& boxes_;
     const LitCaster& surface_;
     Level& level_;
     BeamSet& set_;
     double least_flux_;
     FluxBalance& balance_;
     ProgressPart part_;
-    PieceDetail detail_;
     std::vector<bool> stays_;
     std::vector<Level> next_;
 };
 
 }  // namespace
 
-NextSets next_sets(const Scene& scene, const LitCaster& surface, Level& level, double least_flux,
-                   FluxBalance& balance, const ProgressPart& part) {
-    return NextBounce(scene, surface, level, least_flux, balance, part).run();
+NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
+                   Level& level, double least_flux, FluxBalance& balance,
+                   const ProgressPart& part) {
+    return NextBounce(scene, boxes, surface, level, least_flux, balance, part).run();
 }
 
 }  // namespace caustics

@@ -5,6 +5,7 @@
 #include "beamtree/beams/flux_balance.h"
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/tracing/beam_path.h"
+#include "beamtree/tracing/scene_boxes.h"
 
 namespace caustics {
 
@@ -18,7 +19,7 @@ struct NextSets {
 
 /// Follows a level's rays to the next surfaces (its `arrivals`) and makes the beams that go on from there; those that
 /// had less than `least_flux` if media were clear are left out and counted by `balance`.
-NextSets next_sets(const Scene& scene, const LitCaster& surface, Level& level, double least_flux,
-                   FluxBalance& balance, const ProgressPart& part);
+NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
+                   Level& level, double least_flux, FluxBalance& balance, const ProgressPart& part);
 
 }  // namespace caustics
