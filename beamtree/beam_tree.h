@@ -4,12 +4,8 @@
 
 #include "beamtree/beam_tree_params.h"
 #include "core/caustic_estimator.h"
-#include "core/scene_file/json_reader.h"
 
 namespace caustics {
-
-/// Throws InputError for what cannot be used or is not built yet.
-void read(const JsonNode& node, BeamTreeParams& params);
 
 /// Phases "beams" and "tree". Counters: polygons, beams, trees, nodes, height (of the highest
 /// tree), cone_point_tests, beam_point_tests, beam_point_hits. Throws UnsupportedScene where beams

@@ -82,29 +82,22 @@ void settle_tree(const JsonNode& node, P& params) {
 }  // namespace
 
 const DescribedMethod<BeamTreeParams>& beamtree_method() {
-    static const DescribedMethod<P> method([] {
-        MethodTable<P> table{
-            .facts = {.name = "beamtree",
-                      .summary =
-                          "Chuang and Cheng 1995: beams of specular polygons, found through a "
-                          "tree of cones",
-                      .serves = "every scene; beams of polygons that are coarse for what they meet "
-                                "lose light, and the record says how much",
-                      .effort = {"mesh_resolution=64"},
-                      .more_effort = {"mesh_resolution=128"}},
-            .parameters = tree_parameters(),
-            .settle =
-                [](const JsonNode& node, P& params) {
-                    settle_bound(node, params);
-                    settle_tree(node, params);
-                },
-            .take_least_work = [](P& params) { params.light_samples = 1; }};
-        for (Parameter<P>& row : beam_parameters<P>()) table.parameters.push_back(std::move(row));
-        return table;
-    }());
+    static const DescribedMethod<P> method(
+        {.facts = {.name = "beamtree",
+                   .summary = "Chuang and Cheng 1995: beams of specular polygons, found through a "
+                              "tree of cones",
+                   .serves = "every scene; beams of polygons that are coarse for what they meet "
+                             "lose light, and the record says how much",
+                   .effort = {"mesh_resolution=64"},
+                   .more_effort = {"mesh_resolution=128"}},
+         .parameters = joined(tree_parameters(), beam_parameters<P>()),
+         .settle =
+             [](const JsonNode& node, P& params) {
+                 settle_bound(node, params);
+                 settle_tree(node, params);
+             },
+         .take_least_work = [](P& params) { params.light_samples = 1; }});
     return method;
 }
-
-void read(const JsonNode& node, BeamTreeParams& params) { params = beamtree_method().read(node); }
 
 }  // namespace caustics

@@ -130,27 +130,26 @@ private:
 
 const DescribedMethod<CausticPolygonsParams>& causticpolygons_method() {
     using P = CausticPolygonsParams;
-    static const DescribedMethod<P> method([] {
-        MethodTable<P> table{
-            .facts = {.name = "causticpolygons",
-                      .summary = "Watt 1990: the same beams, kept by the polygons of the receivers",
-                      .serves = "as `beamtree`",
-                      .effort = {"mesh_resolution=32"},
-                      .more_effort = {"mesh_resolution=64"}},
-            .parameters = beam_parameters<P>(),
-            .take_least_work = [](P& params) {
-                params.light_samples = 1;
-                params.receiver_resolution = 2;
-            }};
-        table.parameters.push_back(parameter::whole_number<P>(
-            &P::receiver_resolution, 2, 4096,
-            {.key = "receiver_resolution",
-             .meaning =
-                 "Polygons along each parameter of exact receivers; meshes are taken as they are.",
-             .unit = "polygons",
-             .source = "[Watt 1990]"}));
-        return table;
-    }());
+    static const DescribedMethod<P> method(
+        {.facts = {.name = "causticpolygons",
+                   .summary = "Watt 1990: the same beams, kept by the polygons of the receivers",
+                   .serves = "as `beamtree`",
+                   .effort = {"mesh_resolution=32"},
+                   .more_effort = {"mesh_resolution=64"}},
+         .parameters = joined(
+             beam_parameters<P>(),
+             {parameter::whole_number<P>(
+                 &P::receiver_resolution, 2, 4096,
+                 {.key = "receiver_resolution",
+                  .meaning =
+                      "Polygons along each parameter of exact receivers; meshes are taken as they "
+                      "are.",
+                  .unit = "polygons",
+                  .source = "[Watt 1990]"})}),
+         .take_least_work = [](P& params) {
+             params.light_samples = 1;
+             params.receiver_resolution = 2;
+         }});
     return method;
 }
 

@@ -3,14 +3,9 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
-#include "core/scene_file/json_reader.h"
 #include "photonmap/photons/photon_map_params.h"
 
 namespace caustics {
-
-/// Relative names of files start at the folder of the file that names them (a sweep file), or at
-/// the working folder. Throws InputError for what cannot be used or is not built yet.
-void read(const JsonNode& node, PhotonMapParams& params);
 
 /// Builds the map of pass 0, 1, ..., passes - 1; the passes' radiance is to be averaged.
 std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,

@@ -168,30 +168,24 @@ void settle(const JsonNode& node, P& params) {
 }  // namespace
 
 const DescribedMethod<PhotonMapParams>& photonmap_method() {
-    static const DescribedMethod<P> method([] {
-        MethodTable<P> table{
-            .facts = {.name = "photonmap",
-                      .summary =
-                          "Jensen 1996: photons aimed at the casters, balanced kd-tree, N nearest",
-                      .serves = "every scene",
-                      .effort = {"photons=60000", "nearest=60"},
-                      .more_effort = {"photons=480000", "nearest=60"}},
-            .parameters = photon_parameters(),
-            .settle = settle,
-            .take_least_work =
-                [](P& params) {
-                    params.photons = std::min<std::uint64_t>(params.photons, 1);
-                    params.emitted = std::min<std::uint64_t>(params.emitted, 1);
-                    params.save.clear();
-                },
-            .make = build_pass,
-            .passes = &P::passes};
-        for (Parameter<P>& row : estimate_parameters()) table.parameters.push_back(std::move(row));
-        return table;
-    }());
+    static const DescribedMethod<P> method(
+        {.facts = {.name = "photonmap",
+                   .summary =
+                       "Jensen 1996: photons aimed at the casters, balanced kd-tree, N nearest",
+                   .serves = "every scene",
+                   .effort = {"photons=60000", "nearest=60"},
+                   .more_effort = {"photons=480000", "nearest=60"}},
+         .parameters = joined(photon_parameters(), estimate_parameters()),
+         .settle = settle,
+         .take_least_work =
+             [](P& params) {
+                 params.photons = std::min<std::uint64_t>(params.photons, 1);
+                 params.emitted = std::min<std::uint64_t>(params.emitted, 1);
+                 params.save.clear();
+             },
+         .make = build_pass,
+         .passes = &P::passes});
     return method;
 }
-
-void read(const JsonNode& node, PhotonMapParams& params) { params = photonmap_method().read(node); }
 
 }  // namespace caustics

@@ -5,6 +5,8 @@
 
 namespace caustics {
 
+/// Relative names of files start at the folder of the file that names them (a sweep file), or at the
+/// working folder.
 const DescribedMethod<PhotonMapParams>& photonmap_method();
 
 }  // namespace caustics

@@ -26,7 +26,6 @@ LAYERS = {
 # The one file that names all methods, what tells of a photon map's file, and what draws beams.
 EXCEPTIONS = {
     "experiments/run/methods.cpp": ["photonmap", "beamtree"],
-    "experiments/picture/beam_picture.h": ["beamtree"],
     "experiments/picture/beam_picture.cpp": ["beamtree"],
     "experiments/cli/map_info.h": ["photonmap"],
     "experiments/cli/map_info.cpp": ["photonmap"],

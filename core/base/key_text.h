@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace caustics {
@@ -15,6 +16,13 @@ struct KeyText {
     std::string usual = {};    ///< the default; empty: the key must be given
     std::string choices = {};  ///< range or words; empty: any
 };
+
+/// The rows of two tables, one after the other.
+template <class Row>
+std::vector<Row> joined(std::vector<Row> first, std::vector<Row> second) {
+    for (Row& row : second) first.push_back(std::move(row));
+    return first;
+}
 
 /// The keys of one kind of object of a file.
 struct ObjectText {

@@ -189,6 +189,10 @@ const DescribedMethod<LightTraceParams>& lighttrace_method() {
                    .meaning =
                        "In probe: radius of the disc round points that have none of their own."})
                   .usually("none")},
+         .settle =
+             [](const JsonNode& node, P&) {
+                 if (const auto radius = node.find("radius")) radius->as_number_in(0, 1e12);
+             },
          .disc_radius = &P::radius});
     return method;
 }

@@ -9,11 +9,6 @@ namespace {
 using Keys = std::vector<KeyText>;
 using Objects = std::vector<ObjectText>;
 
-Keys joined(Keys first, const Keys& second) {
-    first.insert(first.end(), second.begin(), second.end());
-    return first;
-}
-
 KeyText type_key() {
     return {.key = "type", .meaning = "Says what the object is: the name above.", .type = "word"};
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "beamtree/beam_tree.h"
+#include "beamtree/beam_tree_method.h"
 #include "beamtree/caustic_edges.h"
 #include "core/render/renderer.h"
 
@@ -77,7 +79,8 @@ private:
 
 }  // namespace
 
-Picture draw_beams(const Scene& scene, const BeamTreeParams& params, const RunOptions& options) {
+Picture draw_beams(const Scene& scene, const JsonNode& node, const RunOptions& options) {
+    const BeamTreeParams params = beamtree_method().read(node);
     const Film film = render(scene, *build(scene, params, options), options).film;
     Picture picture = tone_map(film, "", auto_exposure(film, "") + dimmed);
     const TracedScene traced = trace_scene(scene, "beams", params, options);
@@ -91,12 +94,6 @@ Picture draw_beams(const Scene& scene, const BeamTreeParams& params, const RunOp
             if (from && to) draw_line(picture, *from, *to, pen);
         }
     return picture;
-}
-
-Picture draw_beams(const Scene& scene, const JsonNode& params, const RunOptions& options) {
-    BeamTreeParams given;
-    read(params, given);
-    return draw_beams(scene, given, options);
 }
 
 }  // namespace caustics

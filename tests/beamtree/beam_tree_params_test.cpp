@@ -1,15 +1,13 @@
 #include <gtest/gtest.h>
 
-#include "beamtree/beam_tree.h"
+#include "beamtree/beam_tree_method.h"
 #include "core/base/error.h"
 
 namespace caustics {
 namespace {
 
 BeamTreeParams params(const std::string& text) {
-    BeamTreeParams read_params;
-    read(JsonNode::parse_text(text, "test"), read_params);
-    return read_params;
+    return beamtree_method().read(JsonNode::parse_text(text, "test"));
 }
 
 std::string error(const std::string& text) {

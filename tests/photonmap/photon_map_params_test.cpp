@@ -3,15 +3,13 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "photonmap/photon_map.h"
+#include "photonmap/photon_map_method.h"
 
 namespace caustics {
 namespace {
 
 PhotonMapParams params_of(const std::string& json) {
-    PhotonMapParams params;
-    read(JsonNode::parse_text(json, "params"), params);
-    return params;
+    return photonmap_method().read(JsonNode::parse_text(json, "params"));
 }
 
 /// The one line that refuses these parameters, or "" where they are taken.
@@ -88,8 +86,8 @@ TEST(PhotonMapParams, SaveAndLoadNameFilesBesideTheFileThatNamesThem) {
     const PhotonMapParams given = params_of(R"({"load": "a.photons", "nearest": 20})");
     EXPECT_EQ(given.load, "a.photons");
     EXPECT_EQ(given.photons + given.emitted, 0U);
-    PhotonMapParams beside;
-    read(JsonNode::parse_text(R"({"load": "../a.photons"})", "params", "sweeps/b.json"), beside);
+    const PhotonMapParams beside = photonmap_method().read(
+        JsonNode::parse_text(R"({"load": "../a.photons"})", "params", "sweeps/b.json"));
     EXPECT_EQ(beside.load, "a.photons");
     EXPECT_NE(refusal(R"({"save": ""})").find("/save"), std::string::npos);
 }

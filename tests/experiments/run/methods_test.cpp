@@ -140,6 +140,7 @@ TEST(Methods, NameTheAlternatives) {
     EXPECT_NE(unknown.find("photns"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("photons"), std::string::npos) << unknown;
     EXPECT_EQ(error("none", {"photons"}), "--param \"photons\": expected key=value");
+    EXPECT_NE(error("lighttrace", {"radius=2e12"}).find("out of range"), std::string::npos);
     EXPECT_EQ(error("lighttrace", {"paths=1", "paths=2"}), "--param \"paths\": given twice");
 }
 
