@@ -18,21 +18,34 @@ constexpr float least_sine = 0.17F;  // between an edge and the surface it cross
 
 using Crossing = std::pair<std::uint32_t, std::uint32_t>;
 
-class EdgeWalk {
+bool is_dielectric(const Shape& shape) {
+    return std::holds_alternative<Dielectric>(shape.bsdf.model);
+}
+
+class CrossingSearch {
 public:
-    EdgeWalk(const Scene& scene, std::uint32_t shape, std::vector<Crossing>& found)
-        : scene_(scene), shape_(shape), found_(found) {
-        for (std::uint32_t i = 0; i < scene.shapes().size(); ++i) {
-            const Shape& other = scene.shapes()[i];
-            if (i != shape && std::holds_alternative<Dielectric>(other.bsdf.model))
-                others_.emplace_back(i, bounds(other));
-        }
+    explicit CrossingSearch(const Scene& scene) : scene_(scene) {
+        for (std::uint32_t i = 0; i < scene.shapes().size(); ++i)
+            if (is_dielectric(scene.shapes()[i])) boxes_.emplace_back(i, bounds(scene.shapes()[i]));
     }
 
-    void run() {
-        const Shape& shape = scene_.shapes()[shape_];
-        const TriangleMesh mesh =
-            shape.primitive == Primitive::mesh ? shape.mesh : tessellate_shape(shape, resolution);
+    std::vector<Crossing> run() {
+        if (boxes_.size() > 1)
+            for (const auto& [shape, box] : boxes_) walk_edges(shape);
+        std::ranges::sort(found_);
+        return std::move(found_);
+    }
+
+private:
+    void walk_edges(std::uint32_t index) {
+        shape_ = index;
+        const Shape& shape = scene_.shapes()[index];
+        if (shape.primitive == Primitive::mesh)
+            walk_edges(shape.mesh);
+        else
+            walk_edges(tessellate_shape(shape, resolution));
+    }
+    void walk_edges(const TriangleMesh& mesh) {
         const std::size_t stride = 1 + 3 * mesh.triangles.size() / most_edges;
         for (std::size_t i = 0; i < mesh.triangles.size(); i += stride)
             for (std::size_t k = 0; k < 3; ++k)
@@ -40,11 +53,11 @@ public:
                           mesh.positions[mesh.triangles[i][(k + 1) % 3]]);
     }
 
-private:
     bool comes_near_another(const Vec3& a, const Vec3& b) const {
         const Box edge(a.cwiseMin(b), a.cwiseMax(b));
-        return std::ranges::any_of(
-            others_, [&edge](const auto& other) { return other.second.intersects(edge); });
+        return std::ranges::any_of(boxes_, [&](const auto& other) {
+            return other.first != shape_ && other.second.intersects(edge);
+        });
     }
 
     // Calls `visit` with the surfaces on the way, one after the other, until it returns false.
@@ -75,8 +88,7 @@ private:
     }
 
     bool crosses(const SurfacePoint& hit, const Vec3& direction, float room) const {
-        if (hit.shape == shape_ ||
-            !std::holds_alternative<Dielectric>(scene_.shape_at(hit).bsdf.model) ||
+        if (hit.shape == shape_ || !is_dielectric(scene_.shape_at(hit)) ||
             std::abs(hit.geometric_normal.dot(direction)) < least_sine)
             return false;
         const Vec3 side = direction.unitOrthogonal();
@@ -99,20 +111,15 @@ private:
     }
 
     const Scene& scene_;
-    std::uint32_t shape_;
-    std::vector<std::pair<std::uint32_t, Box>> others_;
-    std::vector<Crossing>& found_;
+    std::vector<std::pair<std::uint32_t, Box>> boxes_;  ///< of the dielectrics
+    std::uint32_t shape_ = 0;                           ///< whose edges are walked
+    std::vector<Crossing> found_;
 };
 
 }  // namespace
 
 std::vector<Crossing> crossing_dielectrics(const Scene& scene) {
-    std::vector<Crossing> found;
-    for (std::uint32_t i = 0; i < scene.shapes().size(); ++i)
-        if (std::holds_alternative<Dielectric>(scene.shapes()[i].bsdf.model))
-            EdgeWalk(scene, i, found).run();
-    std::ranges::sort(found);
-    return found;
+    return CrossingSearch(scene).run();
 }
 
 }  // namespace caustics
