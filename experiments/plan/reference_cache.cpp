@@ -38,15 +38,12 @@ Film reference_film(const Film& rendered) {
 
 int reference_version(const Scene& scene) { return is_black(eye_medium(scene).absorption) ? 1 : 2; }
 
-std::string reference_key(const RunRequest& request, const SceneFile& file, const Scene& scene) {
-    const nlohmann::json configuration = {{"reference_version", reference_version(scene)},
-                                          {"scene", file.hash},
-                                          {"method", request.method.name},
-                                          {"parameters", identity(request.method)},
-                                          {"spp", request.samples_per_pixel},
-                                          {"seed", request.seed},
-                                          {"width", file.desc.camera.width},
-                                          {"height", file.desc.camera.height}};
+std::string reference_key(const RunRequest& request, const SceneFile& scene, int version) {
+    const nlohmann::json configuration = {
+        {"reference_version", version},     {"scene", scene.hash},
+        {"method", request.method.name},    {"parameters", identity(request.method)},
+        {"spp", request.samples_per_pixel}, {"seed", request.seed},
+        {"width", scene.desc.camera.width}, {"height", scene.desc.camera.height}};
     return hex(fnv1a(configuration.dump()));
 }
 
@@ -67,13 +64,13 @@ bool ReferenceCache::must_render(const ReferenceRequest& request) const {
 void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& options) const {
     const SceneFile file = load_scene(request.request.scene_file, request.request.overrides);
     const Scene scene(file.desc);
-    if (reference_key(request.request, file, scene) != request.key)
+    const int version = reference_version(scene);
+    if (reference_key(request.request, file, version) != request.key)
         throw InputError(
             fmt::format("{}: changed while the sweep runs", request.request.scene_file.string()));
     std::optional<SmallerReference> begun;
     if (policy_ == ReferencePolicy::extend)
-        begun = find_smaller({request.kept_folder, own_folder_}, request.request, file,
-                             reference_version(scene));
+        begun = find_smaller({request.kept_folder, own_folder_}, request.request, file, version);
     Stopwatch stopwatch;
     const RunResult result = run(
         scene, begun ? remainder(request.request, *begun) : request.request, options, stopwatch);
@@ -85,8 +82,7 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
     // file depends on neither.
     film.metadata.erase("command");
     film.metadata["reference_key"] = request.key;
-    if (const int version = reference_version(scene); version > 1)
-        film.metadata["reference_version"] = fmt::format("{}", version);
+    if (version > 1) film.metadata["reference_version"] = fmt::format("{}", version);
     if (begun) film.metadata["extends"] = begun->file.filename().string();
     if (result.why_empty) film.metadata["why_empty"] = *result.why_empty;
     const std::filesystem::path target = file_of(request);

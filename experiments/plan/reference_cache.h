@@ -18,8 +18,8 @@ namespace caustics {
 int reference_version(const Scene& scene);
 
 /// Hash of everything a reference picture depends on: scene (film and sampler included), method,
-/// parameters in force, samples a pixel, seed, version. `scene` is that of the file.
-std::string reference_key(const RunRequest& request, const SceneFile& file, const Scene& scene);
+/// parameters in force, samples a pixel, seed, reference_version().
+std::string reference_key(const RunRequest& request, const SceneFile& scene, int version);
 
 /// A picture that trials are judged by: layers caustic, R G B (beauty), stderr.Y (root mean square
 /// over the channels) and, where it applies, unreached.

@@ -90,7 +90,7 @@ json examine(const SweepFile& sweep, const SceneVariant& variant) {
     if (const auto reason = why_unsupported(scene, request.method))
         throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),
                                            variant.file.string(), *reason));
-    facts["reference_key"] = reference_key(request, file, scene);
+    facts["reference_key"] = reference_key(request, file, reference_version(scene));
     return facts;
 }
 

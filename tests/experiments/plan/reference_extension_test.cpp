@@ -23,7 +23,7 @@ ReferenceRequest request(std::uint64_t paths, std::uint64_t seed = 1) {
         seed,
         4};
     const SceneFile file = load_scene(scene_file, {});
-    wanted.key = reference_key(wanted.request, file, Scene(file.desc));
+    wanted.key = reference_key(wanted.request, file, reference_version(Scene(file.desc)));
     return wanted;
 }
 
