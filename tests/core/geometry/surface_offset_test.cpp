@@ -7,18 +7,16 @@
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
 #include "tests/support/build_scene.h"
+#include "tests/support/random_direction.h"
 
 namespace caustics {
 namespace {
 
+using support::random_direction;
+
 Vec3d random_point(Rng& rng, double half) {
     const double x = rng.next_fine(), y = rng.next_fine(), z = rng.next_fine();
     return half * (2 * Vec3d(x, y, z) - Vec3d::Ones());
-}
-
-Vec3 random_direction(Rng& rng) {
-    const float u0 = rng.next();
-    return uniform_cap(2, u0, rng.next()).normalized();
 }
 
 // Sizes and distances over seven powers of ten.

@@ -8,16 +8,14 @@
 #include "core/math/sampling.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/fresnel.h"
+#include "tests/support/random_direction.h"
 
 namespace caustics {
 namespace {
 
-Vec3 at_angle(double angle) { return Vec3d(std::sin(angle), 0, std::cos(angle)).cast<float>(); }
+using support::random_direction;
 
-Vec3 random_direction(Rng& rng) {
-    const float u0 = rng.next();
-    return uniform_cap(2, u0, rng.next()).normalized();
-}
+Vec3 at_angle(double angle) { return Vec3d(std::sin(angle), 0, std::cos(angle)).cast<float>(); }
 
 TEST(Optics, ReflectionMirrorsAboutTheNormal) {
     EXPECT_LT((reflect(at_angle(0.4), Vec3::UnitZ()) - at_angle(-0.4)).norm(), 1e-6F);

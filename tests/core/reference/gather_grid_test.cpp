@@ -7,18 +7,16 @@
 
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
+#include "tests/support/random_direction.h"
 
 namespace caustics {
 namespace {
 
+using support::random_direction;
+
 Vec3 random_vector(Rng& rng, float half) {
     const float x = rng.next(), y = rng.next(), z = rng.next();
     return half * (2 * Vec3(x, y, z) - Vec3::Ones());
-}
-
-Vec3 random_direction(Rng& rng) {
-    const float u0 = rng.next();
-    return uniform_cap(2, u0, rng.next()).normalized();
 }
 
 // The definition: in the tangent plane within the radius, not farther from the plane than it, on a

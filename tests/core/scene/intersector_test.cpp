@@ -10,9 +10,12 @@
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
 #include "tests/support/build_scene.h"
+#include "tests/support/random_direction.h"
 
 namespace caustics {
 namespace {
+
+using support::random_direction;
 
 Scene scene_of(std::vector<Shape> shapes) {
     SceneDesc desc;
@@ -41,11 +44,6 @@ Transform turned() {
 Vec3 random_point(Rng& rng, float half) {
     const float x = rng.next(), y = rng.next(), z = rng.next();
     return half * (2 * Vec3(x, y, z) - Vec3::Ones());
-}
-
-Vec3 random_direction(Rng& rng) {
-    const float u0 = rng.next();
-    return uniform_cap(2, u0, rng.next()).normalized();
 }
 
 // World-frame hits against the local solver, by every transform that scene files can make.

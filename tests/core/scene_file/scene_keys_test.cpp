@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/scene_file/scene_reader.h"
+#include "tests/support/known_words.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {
@@ -99,14 +100,8 @@ protected:
     Words asked(const Place& place) const { return known(refusal_of(place, "no_such_key", "1")); }
 
     static Words known(const std::string& message) {
-        const std::size_t start = message.rfind("(known: ");
-        EXPECT_NE(start, std::string::npos) << message;
-        if (start == std::string::npos) return {};
-        std::string list = message.substr(start + 8, message.size() - start - 9);
-        std::ranges::replace(list, ',', ' ');
-        std::erase(list, '"');
-        std::istringstream words(list);
-        return {std::istream_iterator<std::string>(words), {}};
+        EXPECT_NE(message.find("(known: "), std::string::npos) << message;
+        return support::known_words(message);
     }
 
     support::TemporaryFolder folder_;

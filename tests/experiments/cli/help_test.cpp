@@ -13,6 +13,7 @@
 #include "experiments/plan/record_columns.h"
 #include "experiments/plan/sweep_file.h"
 #include "experiments/plan/sweep_keys.h"
+#include "tests/support/known_words.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {
@@ -78,14 +79,8 @@ Words asked(const std::string& sweep) {
         read_sweep_file(file);
     } catch (const InputError& error) {
         const std::string message = error.what();
-        const std::size_t start = message.rfind("(known: ");
-        EXPECT_NE(start, std::string::npos) << message;
-        if (start == std::string::npos) return {};
-        std::string list = message.substr(start + 8, message.size() - start - 9);
-        std::ranges::replace(list, ',', ' ');
-        std::erase(list, '"');
-        std::istringstream words(list);
-        return {std::istream_iterator<std::string>(words), {}};
+        EXPECT_NE(message.find("(known: "), std::string::npos) << message;
+        return support::known_words(message);
     }
     return {};
 }
