@@ -27,7 +27,18 @@ std::vector<Parameter<Params>> beam_parameters() {
              .meaning =
                  "Polygons along each parameter of exact casters; meshes are taken as they are.",
              .unit = "polygons"}),
-        parameter::max_bounces<Params>()};
+        parameter::max_bounces<Params>(),
+        parameter::whole_number<Params>(
+            &BeamParams::wavelengths, 1, 4096,
+            {.key = "wavelengths",
+             .meaning =
+                 "Parts of equal power that each light is divided into, by wavelength, where a "
+                 "caster is dispersive.",
+             .unit = "wavelengths",
+             .source = "[C11 sec. 4]"})
+            .only_if([](const Params& params) {
+                return params.wavelengths != BeamParams{}.wavelengths;
+            })};
 }
 
 }  // namespace caustics

@@ -10,6 +10,7 @@ struct BeamParams {
     int light_samples = 16;    ///< for each area light
     int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
     int max_bounces = 16;      ///< specular events between light and receiver
+    int wavelengths = 16;      ///< that white light is divided into where glass disperses it
 };
 
 }  // namespace caustics

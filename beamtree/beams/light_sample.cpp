@@ -5,6 +5,7 @@
 
 #include "beamtree/beams/area_light_sampler.h"
 #include "beamtree/beams/solid_angle.h"
+#include "core/material/wavelength.h"
 #include "core/math/rng.h"
 
 namespace caustics {
@@ -58,6 +59,18 @@ std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, s
         }
     }
     return samples;
+}
+
+std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths) {
+    std::vector<LightSample> parts;
+    const std::vector<WavelengthBin> bins = wavelength_bins(wavelengths);
+    for (const LightSample& sample : samples)
+        for (const WavelengthBin& bin : bins) {
+            parts.push_back(sample);
+            parts.back().nm = bin.nm;
+            parts.back().strength *= bin.weight;
+        }
+    return parts;
 }
 
 Vec3 to_light(const LightSample& light, const Vec3& point) {

@@ -39,9 +39,9 @@ double feature_size(const Shape& shape) {
 }
 
 // Refractive index on the far side over that on the side of arrival.
-double relative_index(const Bsdf& bsdf, bool from_front) {
+double relative_index(const Bsdf& bsdf, bool from_front, float nm) {
     const auto& glass = std::get<Dielectric>(bsdf.model);
-    const double ratio = static_cast<double>(glass.int_ior) / static_cast<double>(glass.ext_ior);
+    const double ratio = glass.int_ior.at(nm) / glass.ext_ior.at(nm);
     return from_front ? ratio : 1 / ratio;
 }
 
@@ -138,7 +138,7 @@ std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const Vec3d& local) 
         exit.direction = 2 * cosine * n - w;
         return exit;
     }
-    const double eta = relative_index(shape_.bsdf, exit.from_front());
+    const double eta = relative_index(shape_.bsdf, exit.from_front(), light_.nm);
     const double inner = 1 - (1 - cosine * cosine) / (eta * eta);
     if (!(inner > 0)) return {};
     exit.direction = (cosine * n - w) / eta - std::sqrt(inner) * n;

@@ -63,7 +63,8 @@ private:
             const Departure& from = level_.departures[i];
             const bool blocked = is_first && !sees(scene_, {ray.position, from.normal, from.offset},
                                                    surface_.light());
-            level_.arrivals.push_back(blocked ? RayArrival{} : land(scene_, ray, from));
+            level_.arrivals.push_back(blocked ? RayArrival{}
+                                              : land(scene_, ray, from, set_.light.nm));
         }
     }
 
@@ -154,7 +155,7 @@ private:
             if (!sees(scene_, middle, surface_.light())) return;
             count_lit(parent);
         }
-        if (land(scene_, ray, {from.shape, from.normal, parent.offset}).goes_on() ||
+        if (land(scene_, ray, {from.shape, from.normal, parent.offset}, set_.light.nm).goes_on() ||
             hides_a_caster(piece_of(rays)))
             cut_triangle(beam, rays);
     }

@@ -15,7 +15,7 @@ constexpr float most_step = 0.3F;       // sine of the way from one ray to the o
 
 }  // namespace
 
-RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from) {
+RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from, float nm) {
     RayArrival arrival;
     const SegmentEnd start{ray.position, from.normal, from.offset};
     const std::optional<SurfacePoint> hit = scene.intersect(spawn_ray(start, ray.direction));
@@ -30,7 +30,8 @@ RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from)
     arrival.offset = hit->offset;
     arrival.flat = scene.shape_at(*hit).primitive == Primitive::mesh &&
                    (hit->geometric_normal - hit->shading_normal).norm() < flat_turn;
-    const SpecularSplit split = split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w);
+    const SpecularSplit split =
+        split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w, nm);
     const Spectrum left = segment_transmittance(
         medium_absorption(scene.shapes()[from.shape].bsdf, from.normal, ray.direction),
         medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);

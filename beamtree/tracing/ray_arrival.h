@@ -34,8 +34,8 @@ struct RayArrival {
     bool goes_on() const { return shape != nothing; }
 };
 
-/// Sends a ray on.
-RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from);
+/// Sends a ray of light of a wavelength [nm], or of all (0), on.
+RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from, float nm);
 
 /// Whether two rays have met one side of one piece of a surface, without a crease or a step between:
 /// facets that are shaded flat are one piece if they lie in one plane, and elsewhere normals of one

@@ -11,6 +11,12 @@ namespace {
 // With most of the light missing it would be another picture.
 constexpr double least_captured = 0.5;
 
+bool disperses(const Scene& scene) {
+    return std::ranges::any_of(scene.casters(), [&scene](std::uint32_t caster) {
+        return is_dispersive(scene.shapes()[caster].bsdf);
+    });
+}
+
 void refuse_what_is_lost(const std::string& method, const FluxBalance& balance) {
     if (balance.captured() >= least_captured) return;
     const auto percent = std::to_string(std::lround(100 * (1 - balance.captured())));
@@ -53,6 +59,7 @@ BuildReport TracedScene::report() const {
     for (const BeamSet& set : sets)
         bounces = std::max(bounces, static_cast<double>(set.path.size()));
     report.resolved["most_bounces"] = bounces;
+    if (wavelengths > 0) report.resolved["wavelengths"] = wavelengths;
     return report;
 }
 
@@ -67,8 +74,11 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     options.phase("beams");
     TracedScene traced;
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);
-    const std::vector<LightSample> lights =
-        sample_lights(scene, params.light_samples, options.seed);
+    std::vector<LightSample> lights = sample_lights(scene, params.light_samples, options.seed);
+    if (disperses(scene)) {
+        lights = dispersed(lights, params.wavelengths);
+        traced.wavelengths = params.wavelengths;
+    }
     TracedBeams beams =
         trace_all_beams(scene, traced.casters, lights, {intensity, params.max_bounces}, options);
     traced.sets = std::move(beams.sets);

@@ -66,6 +66,7 @@ struct Flight {
     Spectrum flux;
     const Spectrum* start_medium = nullptr;  // absorption where the ray starts, if in a medium
     int bounces = 0;
+    PathWavelength wavelength = {};
 };
 
 void add_deposit(const Scene& scene, const SurfacePoint& hit, const Vec3& wi, const Spectrum& flux,
@@ -141,9 +142,12 @@ void leave(const Scene& scene, const SurfacePoint& hit, const Vec3& direction, F
     ++flight.bounces;
 }
 
-SpecularSplit split_at(const Scene& scene, const SurfacePoint& hit, const Flight& flight) {
-    return split_specular(scene.shape_at(hit).bsdf, hit.geometric_normal, hit.shading_normal,
-                          -flight.ray.direction);
+// What a caster does with a flight, which gets a wavelength at its first dispersive one.
+SpecularSplit split_at(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng) {
+    const Bsdf& bsdf = scene.shape_at(hit).bsdf;
+    if (is_dispersive(bsdf)) flight.flux *= flight.wavelength.arrive_at(bsdf, rng);
+    return split_specular(bsdf, hit.geometric_normal, hit.shading_normal, -flight.ray.direction,
+                          flight.wavelength.nm);
 }
 
 // One decision for reflection, refraction or an end, which is counted; the survivor's channels are
@@ -176,7 +180,7 @@ const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux,
 // The event at a caster; false when it ends the flight.
 bool goes_on_from(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng,
                   LightPathCounts& counts) {
-    const SpecularSplit split = split_at(scene, hit, flight);
+    const SpecularSplit split = split_at(scene, hit, flight, rng);
     const Vec3* const direction = roulette(split, rng, flight.flux, counts);
     if (direction == nullptr) return false;
     ++(direction == &split.reflected ? counts.reflected : counts.refracted);
@@ -266,7 +270,7 @@ public:
     void follow(Flight flight) {
         std::optional<Deposit> deposit;
         while (const auto hit = reach_caster(scene_, settings_, flight, counts_, deposit)) {
-            const SpecularSplit split = split_at(scene_, *hit, flight);
+            const SpecularSplit split = split_at(scene_, *hit, flight, rng_);
             Flight reflected = flight;
             const bool reflects = goes_on(split.reflected_weight, reflected);
             const bool refracts = goes_on(split.refracted_weight, flight);

@@ -42,6 +42,21 @@ const Texture* reflectance_texture(const Bsdf& bsdf) {
 
 }  // namespace
 
+float Dielectric::relative_ior(bool front, float nm) const {
+    if (is_dispersive()) {
+        const double ratio = int_ior.at(nm) / ext_ior.at(nm);
+        return static_cast<float>(front ? ratio : 1 / ratio);
+    }
+    const auto inside = static_cast<float>(int_ior.n());
+    const auto outside = static_cast<float>(ext_ior.n());
+    return front ? inside / outside : outside / inside;
+}
+
+bool is_dispersive(const Bsdf& bsdf) {
+    const auto* glass = std::get_if<Dielectric>(&bsdf.model);
+    return glass != nullptr && glass->is_dispersive();
+}
+
 bool is_caster(const Bsdf& bsdf) {
     return std::holds_alternative<Dielectric>(bsdf.model) ||
            std::holds_alternative<Conductor>(bsdf.model);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <variant>
 
+#include "core/material/ior.h"
 #include "core/material/texture.h"
 #include "core/math/spectrum.h"
 #include "core/math/vec.h"
@@ -26,12 +27,17 @@ struct Schlick {
 /// A smooth interface between two lossless or absorbing media. The inside is the side away from
 /// the geometric normal.
 struct Dielectric {
-    float int_ior = 1.5046F;
-    float ext_ior = 1.000277F;
+    Ior int_ior = 1.5046F;
+    Ior ext_ior = 1.000277F;
     Spectrum absorption = Spectrum::Zero();      ///< Beer's law inside [1/m]
     Spectrum ext_absorption = Spectrum::Zero();  ///< Beer's law outside [1/m]
     Spectrum specular_reflectance = Spectrum::Ones();
     Spectrum specular_transmittance = Spectrum::Ones();
+
+    bool is_dispersive() const { return int_ior.is_dispersive() || ext_ior.is_dispersive(); }
+    /// Index of refraction behind the interface over that before it, for light that comes to its front or
+    /// back, at a wavelength [nm]; 0: as Ior::at.
+    float relative_ior(bool front, float nm) const;
 };
 
 /// A perfect mirror (Mitsuba's `conductor` of material `none`).
@@ -49,6 +55,8 @@ struct Bsdf {
 /// Casters are the surfaces with a perfectly specular part; receivers are all others.
 bool is_caster(const Bsdf& bsdf);
 bool is_receiver(const Bsdf& bsdf);
+/// Whether light of different wavelengths goes on from the surface in different ways.
+bool is_dispersive(const Bsdf& bsdf);
 /// Whether light arriving from the front (or the back) of the surface is scattered at all.
 bool scatters_from(const Bsdf& bsdf, bool front);
 

@@ -37,9 +37,9 @@ Spectrum transmittance(const Spectrum& absorption, float distance) {
 namespace {
 
 SpecularSplit split_dielectric(const Dielectric& d, bool front, const Vec3& ng, const Vec3& n,
-                               const Vec3& w) {
+                               const Vec3& w, float nm) {
     SpecularSplit split;
-    split.eta = front ? d.int_ior / d.ext_ior : d.ext_ior / d.int_ior;
+    split.eta = d.relative_ior(front, nm);
     const float cos_i = std::min(n.dot(w), 1.0F);
     split.reflected = reflect(w, n);
     const float inverse_eta = 1 / split.eta;
@@ -64,7 +64,8 @@ SpecularSplit split_dielectric(const Dielectric& d, bool front, const Vec3& ng, 
 
 }  // namespace
 
-SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w) {
+SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w,
+                             float nm) {
     const bool front = ng.dot(w) > 0;
     if ((ns.dot(w) > 0) != front) {
         SpecularSplit nothing;
@@ -73,7 +74,7 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
     }
     const Vec3 n = front ? ns : Vec3(-ns);
     if (const auto* dielectric = std::get_if<Dielectric>(&bsdf.model))
-        return split_dielectric(*dielectric, front, ng, n, w);
+        return split_dielectric(*dielectric, front, ng, n, w, nm);
     SpecularSplit split;
     const auto* mirror = std::get_if<Conductor>(&bsdf.model);
     if (mirror == nullptr || !scatters_from(bsdf, front)) return split;
@@ -81,6 +82,13 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
     ((ng.dot(split.reflected) > 0) == front ? split.reflected_weight : split.lost_weight) =
         mirror->specular_reflectance;
     return split;
+}
+
+Spectrum PathWavelength::arrive_at(const Bsdf& bsdf, Rng& rng) {
+    if (nm != 0 || !is_dispersive(bsdf)) return Spectrum::Ones();
+    const SampledWavelength sampled = sample_wavelength(rng.next_fine());
+    nm = sampled.nm;
+    return sampled.weight;
 }
 
 const Spectrum* medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& w) {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/material/bsdf.h"
+#include "core/math/rng.h"
 #include "core/math/spectrum.h"
 #include "core/math/vec.h"
 
@@ -35,8 +36,19 @@ struct SpecularSplit {
     Spectrum lost_weight = black();  ///< of what was dropped
     float eta = 1;                   ///< ior on the far side / ior on w's side
 };
-/// `ng`, `ns`: the surface's geometric and shading normals as stored (not turned towards w).
-SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w);
+/// `ng`, `ns`: the surface's geometric and shading normals as stored (not turned towards w). `nm` is
+/// the light's wavelength, for a dispersive dielectric; 0: as Ior::at.
+SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w,
+                             float nm = 0);
+
+/// The light of a path that may have come to have one wavelength.
+struct PathWavelength {
+    float nm = 0;  ///< 0: all of them
+
+    /// Draws one at the path's first dispersive interface, and returns the factor of its light from there
+    /// on: SampledWavelength::weight, else 1.
+    Spectrum arrive_at(const Bsdf& bsdf, Rng& rng);
+};
 
 /// Absorption [1/m] on the side of the surface that `w` points into; nullptr for surfaces that bound
 /// no medium (all but dielectrics).

@@ -29,6 +29,7 @@ Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, Rng& rng) 
     Spectrum weight = Spectrum::Ones();
     Spectrum result = black();
     const Spectrum* start_absorption = nullptr;
+    PathWavelength wavelength;
     for (int bounces = 0;; ++bounces) {
         const std::optional<SurfacePoint> hit = scene.intersect(ray);
         if (!hit) return result;
@@ -40,8 +41,9 @@ Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, Rng& rng) 
         if (light != nullptr && bounces > 0 && hit->geometric_normal.dot(w) > 0)
             result += weight * light->radiance;
         if (!is_caster(bsdf) || bounces == max_bounces) return result;
+        if (is_dispersive(bsdf)) weight *= wavelength.arrive_at(bsdf, rng);
         const SpecularSplit split =
-            split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w);
+            split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w, wavelength.nm);
         const float reflect_share = (split.reflected_weight * weight).mean() / weight.mean();
         const float refract_share = (split.refracted_weight * weight).mean() / weight.mean();
         const float u = rng.next();

@@ -16,6 +16,7 @@ struct Branch {
     Spectrum weight = Spectrum::Ones();
     const Spectrum* start_absorption = nullptr;
     int bounces = 0;
+    PathWavelength wavelength = {};
 };
 
 // Depth-first: each pop pushes at most two branches, and weights bound how many are pending.
@@ -28,15 +29,17 @@ struct BranchStack {
 };
 
 Branch continued(const SurfacePoint& hit, const Bsdf& bsdf, const Vec3& direction,
-                 const Spectrum& weight, int bounces) {
+                 const Spectrum& weight, const Branch& before) {
     return {spawn_ray({hit.position, hit.geometric_normal, hit.offset}, direction), weight,
-            medium_absorption(bsdf, hit.geometric_normal, direction), bounces};
+            medium_absorption(bsdf, hit.geometric_normal, direction), before.bounces + 1,
+            before.wavelength};
 }
 
-void scatter(const SurfacePoint& hit, const Bsdf& bsdf, const Branch& branch, Rng& rng,
+void scatter(const SurfacePoint& hit, const Bsdf& bsdf, Branch& branch, Rng& rng,
              BranchStack& stack) {
-    const SpecularSplit split =
-        split_specular(bsdf, hit.geometric_normal, hit.shading_normal, -branch.ray.direction);
+    if (is_dispersive(bsdf)) branch.weight *= branch.wavelength.arrive_at(bsdf, rng);
+    const SpecularSplit split = split_specular(bsdf, hit.geometric_normal, hit.shading_normal,
+                                               -branch.ray.direction, branch.wavelength.nm);
     Spectrum reflected = branch.weight * split.reflected_weight;
     Spectrum refracted = branch.weight * split.refracted_weight / (split.eta * split.eta);
     const float reflected_share = (branch.weight * split.reflected_weight).mean();
@@ -54,11 +57,10 @@ void scatter(const SurfacePoint& hit, const Bsdf& bsdf, const Branch& branch, Rn
             reflected = black();
         }
     }
-    const int bounces = branch.bounces + 1;
     if (reflected.maxCoeff() > 0)
-        stack.push(continued(hit, bsdf, split.reflected, reflected, bounces));
+        stack.push(continued(hit, bsdf, split.reflected, reflected, branch));
     if (refracted.maxCoeff() > 0)
-        stack.push(continued(hit, bsdf, split.refracted, refracted, bounces));
+        stack.push(continued(hit, bsdf, split.refracted, refracted, branch));
 }
 
 FirstHit first_hit(const SurfacePoint& hit, const Bsdf& bsdf) {

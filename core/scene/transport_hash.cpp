@@ -47,8 +47,11 @@ void add_bsdf(const Bsdf& bsdf, Digest& digest) {
         digest.add(scatters_from(bsdf, false));
     }
     if (const auto* glass = std::get_if<Dielectric>(&bsdf.model)) {
-        digest.add(glass->int_ior);
-        digest.add(glass->ext_ior);
+        for (const Ior* ior : {&glass->int_ior, &glass->ext_ior})
+            if (ior->is_dispersive())
+                digest.add(ior->numbers());
+            else
+                digest.add(static_cast<float>(ior->n()));
         for (const Spectrum& s : {glass->absorption, glass->ext_absorption,
                                   glass->specular_reflectance, glass->specular_transmittance})
             digest.add(s);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <utility>
 
 namespace caustics::scene_file {
@@ -26,10 +27,61 @@ constexpr std::array<std::pair<const char*, float>, 23> named_iors{{
     {"pet", 1.5750F},      {"diamond", 2.419F},
 }};
 
-float read_ior(const JsonNode& parent, const std::string& key, float fallback) {
+Ior read_named_glass(const JsonNode& node) {
+    const auto lower = [](std::string text) {
+        std::ranges::transform(text, text.begin(),
+                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return text;
+    };
+    std::string known;
+    for (const NamedGlass& glass : named_glasses()) {
+        if (lower(node.as_string()) == glass.name) return Ior::sellmeier(glass.terms);
+        known += (known.empty() ? "" : ", ") + std::string(glass.name);
+    }
+    node.fail("unknown glass \"" + node.as_string() + "\" (known: " + known + ")");
+}
+
+Ior read_sellmeier(const JsonNode& node) {
+    const auto material = node.find("material");
+    const auto b_node = node.find("B");
+    const auto c_node = node.find("C");
+    if (material) {
+        if (b_node || c_node) material->fail("give either a material or B and C");
+        return read_named_glass(*material);
+    }
+    const std::vector<JsonNode> b = node.at("B").as_array();
+    const std::vector<JsonNode> c = node.at("C").as_array();
+    if (b.empty() || b.size() != c.size())
+        node.fail("B and C of sellmeier's law are lists of equal length, at least 1");
+    std::vector<Ior::SellmeierTerm> terms;
+    for (std::size_t i = 0; i < b.size(); ++i)
+        terms.push_back({b[i].as_number_in(-1e6, 1e6), c[i].as_number_in(-1e6, 1e6)});
+    return Ior::sellmeier(std::move(terms));
+}
+
+Ior read_law(const JsonNode& node) {
+    const std::string type = read_type(node, "law of dispersion", {"cauchy", "sellmeier", "abbe"});
+    Ior ior = 1;
+    if (type == "cauchy")
+        ior =
+            Ior::cauchy(node.at("A").as_number_in(-1e6, 1e6), node.at("B").as_number_in(-1e6, 1e6));
+    if (type == "sellmeier") ior = read_sellmeier(node);
+    if (type == "abbe") {
+        const JsonNode v_d = node.at("V_d");
+        if (v_d.as_number_in(0, 1e6) == 0) v_d.fail("must be above 0");
+        ior = Ior::abbe(node.at("n_d").as_number_in(1, 10), v_d.as_number());
+    }
+    node.finish();
+    if (const auto why = ior.why_unusable())
+        node.fail(*why + " (between 380 and 730 nm a law gives numbers from 1 to 10)");
+    return ior;
+}
+
+// A number, a name or a law of the wavelength.
+Ior read_ior(const JsonNode& parent, const std::string& key, const Ior& fallback) {
     const auto node = parent.find(key);
     if (!node) return fallback;
-    if (node->is_object()) node->fail("dispersion is not supported (yet); give a number or a name");
+    if (node->is_object()) return read_law(*node);
     if (node->is_number()) return static_cast<float>(node->as_number_in(0.1, 10));
     std::vector<std::string> names;
     for (const auto& [name, ior] : named_iors) names.emplace_back(name);

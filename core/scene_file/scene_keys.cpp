@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/material/ior.h"
+
 namespace caustics::scene_file {
 
 namespace {
@@ -63,6 +65,13 @@ KeyText texture(const std::string& key, const std::string& meaning, const std::s
 KeyText choice(const std::string& key, const std::string& meaning, const std::string& usual,
                const std::string& choices) {
     return {.key = key, .meaning = meaning, .type = "choice", .usual = usual, .choices = choices};
+}
+
+std::string named_glass_list() {
+    std::string list;
+    for (const NamedGlass& glass : named_glasses())
+        list += (list.empty() ? "" : ", ") + std::string(glass.name);
+    return list;
 }
 
 KeyText file(const std::string& meaning) {
@@ -194,7 +203,7 @@ Objects bsdfs() {
                         const std::string& usual) {
         return KeyText{.key = key,
                        .meaning = meaning,
-                       .type = "number or Mitsuba's name",
+                       .type = "number, Mitsuba's name or law",
                        .usual = usual,
                        .choices = "0.1 to 10"};
     };
@@ -225,6 +234,32 @@ Objects bsdfs() {
             {"twosided",
              "A bsdf, in a shape: the diffuse, schlick or conductor that it holds, on both sides.",
              {type_key()}}};
+}
+
+Objects laws() {
+    const auto law = [](const std::string& key, const std::string& meaning, const std::string& type,
+                        const std::string& unit = {}, const std::string& range = {}) {
+        return KeyText{
+            .key = key, .meaning = meaning, .unit = unit, .type = type, .choices = range};
+    };
+    KeyText material = law("material", "A glass by its name, in place of B and C.", "word");
+    material.usual = "none";
+    material.choices = named_glass_list();
+    return {
+        {"cauchy",
+         "A law of dispersion, for an index of refraction: n = A + B / l^2, l the wavelength in "
+         "um.",
+         {type_key(), law("A", "n of very long waves.", "number", "", "-1000000 to 1000000"),
+          law("B", "How it grows to shorter ones.", "number", "um^2", "-1000000 to 1000000")}},
+        {"sellmeier",
+         "A law of dispersion: n^2 = 1 + sum of B l^2 / (l^2 - C), as glass catalogues give it.",
+         {type_key(), material, law("B", "One for each term.", "list of numbers"),
+          law("C", "As many.", "list of numbers", "um^2")}},
+        {"abbe",
+         "A law of dispersion: Cauchy's through n_d, with Abbe's number.",
+         {type_key(), law("n_d", "n at 587.6 nm.", "number", "", "1 to 10"),
+          law("V_d", "(n_d - 1) / (n_F - n_C): small where colours part widely.", "number", "",
+              "above 0, to 1000000")}}};
 }
 
 Objects textures() {
@@ -281,7 +316,7 @@ const std::vector<ObjectText>& scene_keys() {
     static const Objects all = [] {
         Objects made;
         for (Objects family :
-             {files(), sensors(), lights(), shapes(), bsdfs(), textures(), transforms()})
+             {files(), sensors(), lights(), shapes(), bsdfs(), laws(), textures(), transforms()})
             for (ObjectText& object : family) made.push_back(std::move(object));
         return made;
     }();

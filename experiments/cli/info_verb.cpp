@@ -32,6 +32,16 @@ const char* primitive_name(Primitive primitive) {
     return "";
 }
 
+// What a glass catalogue says of the inside.
+std::string dispersion(const Bsdf& bsdf) {
+    const auto* glass = std::get_if<Dielectric>(&bsdf.model);
+    if (glass == nullptr || !glass->int_ior.is_dispersive()) return "";
+    const double n_f = glass->int_ior.at(486.1327F);
+    const double n_c = glass->int_ior.at(656.2725F);
+    return fmt::format(", n_d {:.5f}, V_d {:.2f}", glass->int_ior.at(d_line),
+                       (glass->int_ior.at(d_line) - 1) / (n_f - n_c));
+}
+
 std::string shape_line(const Shape& shape) {
     std::string kind = primitive_name(shape.primitive);
     if (shape.primitive == Primitive::mesh)
@@ -42,7 +52,7 @@ std::string shape_line(const Shape& shape) {
                        caster && receiver ? "caster and receiver"
                        : caster           ? "caster"
                                           : "receiver",
-                       shape.radiance ? ", area light" : "");
+                       (shape.radiance ? ", area light" : "") + dispersion(shape.bsdf));
 }
 
 std::string rgb(const Spectrum& s) { return fmt::format("{:.6g} {:.6g} {:.6g}", s[0], s[1], s[2]); }

@@ -206,9 +206,12 @@ private:
                    "Mitsuba's dielectric does not absorb; set absorption and ext_absorption of the "
                    "dielectric to 0, such as --set " +
                        place(i) + "/bsdf/absorption=0");
+        if (glass.is_dispersive())
+            refuse(i, "Mitsuba's dielectric has no dispersion; give it one index, such as --set " +
+                          place(i) + fmt::format("/bsdf/int_ior={:.6g}", glass.int_ior.n()));
         xml_.open("bsdf", {{"type", "dielectric"}});
-        number("int_ior", static_cast<double>(glass.int_ior));
-        number("ext_ior", static_cast<double>(glass.ext_ior));
+        number("int_ior", glass.int_ior.n());
+        number("ext_ior", glass.ext_ior.n());
         value("rgb", "specular_reflectance", three(glass.specular_reflectance));
         value("rgb", "specular_transmittance", three(glass.specular_transmittance));
         xml_.close();

@@ -258,8 +258,18 @@ private:
         text_ +=
             "  texture { pigment { rgbt 1 } finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel "
             "on } conserve_energy } }\n";
-        text_ += fmt::format("  interior {{ ior {}", static_cast<double>(dielectric.int_ior) /
-                                                         static_cast<double>(dielectric.ext_ior));
+        const auto ior = [&](double nm) {
+            const auto at = static_cast<float>(nm);
+            return dielectric.int_ior.at(at) / dielectric.ext_ior.at(at);
+        };
+        text_ += fmt::format("  interior {{ ior {}", ior(0));
+        if (dielectric.is_dispersive()) {
+            text_ += fmt::format(" dispersion {} dispersion_samples 16", ior(400) / ior(700));
+            out_.notes.push_back(
+                "/" + shape.name +
+                ": POV-Ray spreads colours evenly between violet and red: where light "
+                "falls compares, its colours do not");
+        }
         // Fading of power 1000 and above is exp(-(1 - fade_color) d / fade_distance).
         if (const float most = dielectric.absorption.maxCoeff(); most > 0)
             text_ += fmt::format(" fade_distance {} fade_power 1001 fade_color rgb {}", 1 / most,
@@ -290,7 +300,7 @@ private:
     const SceneDesc& scene_;
     const ExportSettings& settings_;
     Scene world_;
-    std::optional<float> ext_ior_;
+    std::optional<Ior> ext_ior_;
     std::string text_;
     ExportedScene out_;
 };

@@ -49,7 +49,10 @@ Place place_of(const std::string& kind) {
         {"rgb", {"/floor/bsdf/reflectance", R"({"type": "rgb", "value": 0.5})"}},
         {"bitmap",
          {"/floor/bsdf/reflectance", R"({"type": "bitmap", "filename": ")" + texture + R"("})"}},
-        {"checkerboard", {"/floor/bsdf/reflectance", plain("checkerboard")}}};
+        {"checkerboard", {"/floor/bsdf/reflectance", plain("checkerboard")}},
+        {"cauchy", {"/glass/bsdf/int_ior", R"({"type": "cauchy", "A": 1.5, "B": 0.005})"}},
+        {"sellmeier", {"/glass/bsdf/int_ior", R"({"type": "sellmeier", "material": "bk7"})"}},
+        {"abbe", {"/glass/bsdf/int_ior", R"({"type": "abbe", "n_d": 1.5, "V_d": 60})"}}};
     if (const auto found = places.find(kind); found != places.end()) return found->second;
     for (const std::string sampler : {"independent", "stratified", "adaptive"})
         if (kind == sampler) return {"/sensor/sampler", plain(kind)};
@@ -66,6 +69,7 @@ protected:
         std::ofstream(folder_ / "scene.json") << R"({"sensor": {"type": "perspective",
                               "film": {"type": "hdrfilm", "filter": {"type": "box"}}},
                    "floor": {"type": "rectangle", "bsdf": {"type": "diffuse"}},
+                   "glass": {"type": "sphere", "bsdf": {"type": "dielectric", "int_ior": 1.5}},
                    "water": )" << waves << "}";
         std::ofstream(folder_ / "one.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
         std::ofstream(folder_ / "one.ply")
@@ -162,7 +166,7 @@ TEST_F(SceneKeys, AreToldOfEveryType) {
     Words told;
     for (const ObjectText& object : scene_file::scene_keys()) told.insert(object.name);
     for (const std::string place : {"/thing", "/sensor/film", "/sensor/film/filter", "/floor/bsdf",
-                                    "/floor/bsdf/reflectance"})
+                                    "/floor/bsdf/reflectance", "/glass/bsdf/int_ior"})
         for (const std::string& type : known(refusal({{place, plain("no_such_type")}})))
             EXPECT_TRUE(told.contains(type)) << place << " " << type;
 }

@@ -1,0 +1,127 @@
+#include "core/material/wavelength.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace caustics {
+namespace {
+
+// A lobe with one width below its middle and another above.
+double lobe(double nm, double middle, double below, double above) {
+    const double t = (nm - middle) / (nm < middle ? below : above);
+    return std::exp(-0.5 * t * t);
+}
+
+// The densities but for their integrals.
+SpectrumSum unscaled_density(double nm) {
+    const double x = 1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
+                     0.065 * lobe(nm, 501.1, 20.4, 26.2);
+    const double y = 0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1);
+    const double z = 1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8);
+    const SpectrumSum rgb(3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
+                          -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
+                          0.0556434 * x - 0.2040259 * y + 1.0572252 * z);
+    return rgb.max(0);
+}
+
+/// Integrals of the densities over cells of wavelengths.
+class SpectralTable {
+public:
+    static constexpr std::size_t cells = 1400;
+    static constexpr double width = (longest_wavelength - shortest_wavelength) / cells;
+
+    SpectralTable() {
+        cumulative_[0] = SpectrumSum::Zero();
+        for (std::size_t i = 0; i < cells; ++i) cumulative_[i + 1] = cumulative_[i] + integral(i);
+        scale_ = 1 / cumulative_.back();
+        for (std::size_t i = 0; i <= cells; ++i) {
+            cumulative_[i] *= scale_;
+            power_[i] = cumulative_[i].mean();
+            const SpectrumSum density = unscaled_density(edge(i)) * scale_;
+            weight_[i] = density / density.mean();
+        }
+        power_.back() = 1;
+    }
+
+    static double edge(std::size_t i) {
+        return shortest_wavelength + width * static_cast<double>(i);
+    }
+    const SpectrumSum& scale() const { return scale_; }
+
+    // The wavelength below which lies this share of the power.
+    double wavelength_at(double power) const {
+        const auto above = std::upper_bound(power_.begin() + 1, power_.end() - 1, power);
+        const auto cell = static_cast<std::size_t>(above - power_.begin()) - 1;
+        const double share = (power - power_[cell]) / (power_[cell + 1] - power_[cell]);
+        return edge(cell) + width * share;
+    }
+    // c_k over their mean.
+    SpectrumSum weight_at(double nm) const {
+        const Place p = place(nm);
+        return (1 - p.share) * weight_[p.cell] + p.share * weight_[p.cell + 1];
+    }
+    // Integrals of c_k from the shortest wavelength on.
+    SpectrumSum cumulative_at(double nm) const {
+        const Place p = place(nm);
+        return (1 - p.share) * cumulative_[p.cell] + p.share * cumulative_[p.cell + 1];
+    }
+
+private:
+    struct Place {
+        std::size_t cell;
+        double share;
+    };
+    static Place place(double nm) {
+        const double at = std::clamp((nm - shortest_wavelength) / width, 0.0, double{cells});
+        const auto cell = std::min(static_cast<std::size_t>(at), cells - 1);
+        return {cell, at - static_cast<double>(cell)};
+    }
+    // Simpson's rule.
+    static SpectrumSum integral(std::size_t i) {
+        const double from = edge(i);
+        return width / 6 *
+               (unscaled_density(from) + 4 * unscaled_density(from + width / 2) +
+                unscaled_density(from + width));
+    }
+
+    std::array<SpectrumSum, cells + 1> cumulative_;
+    std::array<double, cells + 1> power_;
+    std::array<SpectrumSum, cells + 1> weight_;
+    SpectrumSum scale_;
+};
+
+const SpectralTable& table() {
+    static const SpectralTable made;
+    return made;
+}
+
+}  // namespace
+
+SpectrumSum channel_density(double nm) {
+    if (nm < shortest_wavelength || nm > longest_wavelength) return SpectrumSum::Zero();
+    return unscaled_density(nm) * table().scale();
+}
+
+SampledWavelength sample_wavelength(double u) {
+    const double nm = table().wavelength_at(u);
+    return {static_cast<float>(nm), table().weight_at(nm).cast<float>()};
+}
+
+std::vector<WavelengthBin> wavelength_bins(int count) {
+    constexpr int parts = 64;  // of a bin, for its mean
+    std::vector<WavelengthBin> bins;
+    SpectrumSum before = SpectrumSum::Zero();
+    for (int i = 0; i < count; ++i) {
+        const auto share = [count](double at) { return at / count; };
+        double mean = 0;
+        for (int j = 0; j < parts; ++j)
+            mean += table().wavelength_at(share(i + (j + 0.5) / parts)) / parts;
+        const SpectrumSum to_here = table().cumulative_at(table().wavelength_at(share(i + 1.0)));
+        bins.push_back({static_cast<float>(mean), (to_here - before).cast<float>()});
+        before = to_here;
+    }
+    return bins;
+}
+
+}  // namespace caustics
