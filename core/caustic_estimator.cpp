@@ -7,6 +7,9 @@ namespace {
 
 class NoCaustic : public CausticEstimator {
 public:
+    explicit NoCaustic(const NoneParams& params) : params_(params) {}
+
+    Shadows shadows() const override { return params_.shadows; }
     void radiance(std::span<const ReceiverPoint>, std::span<Estimate> out,
                   QueryContext&) const override {
         std::fill(out.begin(), out.end(), Estimate{});
@@ -15,12 +18,16 @@ public:
                     QueryContext&) const override {
         std::fill(out.begin(), out.end(), Estimate{});
     }
+
+private:
+    NoneParams params_;
 };
 
 }  // namespace
 
-std::unique_ptr<const CausticEstimator> build(const Scene&, const NoneParams&, const RunOptions&) {
-    return std::make_unique<NoCaustic>();
+std::unique_ptr<const CausticEstimator> build(const Scene&, const NoneParams& params,
+                                              const RunOptions&) {
+    return std::make_unique<NoCaustic>(params);
 }
 
 std::optional<ReceiverPoint> receiver_point(const Scene& scene, const SurfacePoint& point,

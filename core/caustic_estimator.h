@@ -27,6 +27,7 @@ struct ReceiverPoint {
     const Bsdf* bsdf = nullptr;  ///< of the receiver; not read by irradiance()
     std::uint32_t shape = 0;     ///< index into Scene::shapes
     bool front = true;           ///< whether the viewer is on the front side of the surface
+    float nm = 0;                ///< wavelength that glass before the viewer has chosen; 0: none
     std::uint64_t id = 0;        ///< names the point's random numbers
     float radius = 0;            ///< of the disc that `lighttrace` gathers over [m]
 };
@@ -50,6 +51,12 @@ class QueryContext {
 public:
     virtual ~QueryContext() = default;
     virtual void add_to(Counters&) const {}
+};
+
+/// What stops light on its straight way from a light to a receiver.
+enum class Shadows {
+    opaque,      ///< every surface
+    transparent  ///< all but dielectrics, which weaken it: ray tracing without caustics [C11], [CC95]
 };
 
 /// What a built method holds.
@@ -110,10 +117,14 @@ public:
     /// Whether its values are unbiased samples, so that their scatter tells a standard error.
     virtual bool is_statistical() const { return false; }
     virtual BuildReport build_report() const { return {}; }
+    /// Of the direct light in its pictures.
+    virtual Shadows shadows() const { return Shadows::opaque; }
 };
 
 /// `none`: no caustic.
-struct NoneParams {};
+struct NoneParams {
+    Shadows shadows = Shadows::opaque;
+};
 std::unique_ptr<const CausticEstimator> build(const Scene&, const NoneParams&, const RunOptions&);
 
 }  // namespace caustics

@@ -151,7 +151,7 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     TracedPhotons& photons = kept.photons;
     RadianceEstimate::Settings settings;
     settings.estimator = params.estimator;
-    settings.filter = params.filter;
+    settings.filter = {params.filter, params.filter_k, params.filter_beta, params.filter_alpha};
     settings.adaptive = params.adaptive;
     settings.share = params.radius > 0 ? 1 : pass_share(pass);
     settings.limits = limits(params, scene, photons.store, pass);

@@ -96,6 +96,23 @@ std::vector<Parameter<P>> estimate_parameters() {
                              {.key = "filter",
                               .meaning = "How photons weigh by their distance.",
                               .source = "[Jensen 2001]"}),
+        parameter::number<P>(&P::filter_k, 1, 1000,
+                             {.key = "filter_k",
+                              .meaning = "Of the filter cone: its weight is 0 at so many radii.",
+                              .source = "[Jensen 2001]"})
+            .only_if([](const P& p) { return p.filter_k != P{}.filter_k; }),
+        parameter::number<P>(&P::filter_beta, 0.1, 8,
+                             {.key = "filter_beta",
+                              .meaning = "Of the filter gaussian: how steeply it falls off.",
+                              .source = "[Jensen 2001]"})
+            .only_if([](const P& p) { return p.filter_beta != P{}.filter_beta; }),
+        parameter::number<P>(
+            &P::filter_alpha, 0, 100,
+            {.key = "filter_alpha",
+             .meaning = "Of the filter gaussian as printed, whose mean is not 1: 0.918 there.",
+             .source = "[Jensen 2001]"})
+            .only_if([](const P& p) { return p.filter_alpha > 0; })
+            .usually("normalised"),
         parameter::choice<P>(&P::estimator,
                              {{"unbiased", P::Estimator::unbiased}, {"raw", P::Estimator::raw}},
                              {.key = "estimator",
@@ -144,6 +161,16 @@ void settle_nearest(const JsonNode& node, P& params) {
         nearest->as_integer_in(P::least_adaptive_nearest, P::most_adaptive_nearest);
 }
 
+void settle_filter(const JsonNode& node, const P& params) {
+    if (const auto k = node.find("filter_k"); k && params.filter != FilterKind::cone)
+        k->fail("belongs to the filter cone");
+    for (const char* const key : {"filter_beta", "filter_alpha"})
+        if (const auto given = node.find(key); given && params.filter != FilterKind::gaussian)
+            given->fail("belongs to the filter gaussian");
+    if (const auto alpha = node.find("filter_alpha"); alpha && !(params.filter_alpha > 0))
+        alpha->fail("must be above 0 (leave it out for a filter whose mean is 1)");
+}
+
 void settle_radius(const JsonNode& node, P& params) {
     const auto radius = node.find("radius");
     if (!radius) return;
@@ -162,6 +189,7 @@ void settle(const JsonNode& node, P& params) {
     }
     settle_nearest(node, params);
     settle_radius(node, params);
+    settle_filter(node, params);
     settle_files(node, params);
 }
 

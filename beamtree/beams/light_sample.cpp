@@ -5,7 +5,6 @@
 
 #include "beamtree/beams/area_light_sampler.h"
 #include "beamtree/beams/solid_angle.h"
-#include "core/material/wavelength.h"
 #include "core/math/rng.h"
 
 namespace caustics {
@@ -53,9 +52,9 @@ std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, s
             sample.strength = far->irradiance;
             sample.bounds = scene.bounds();
             samples.push_back(sample);
-        } else {
-            sample_area_light(scene, std::get<AreaLight>(light), sample, per_area_light,
-                              Rng(seed, Stage::beams, i), samples);
+        } else if (const auto* area = std::get_if<AreaLight>(&light)) {
+            sample_area_light(scene, *area, sample, per_area_light, Rng(seed, Stage::beams, i),
+                              samples);
         }
     }
     return samples;
@@ -68,9 +67,18 @@ std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int 
         for (const WavelengthBin& bin : bins) {
             parts.push_back(sample);
             parts.back().nm = bin.nm;
+            parts.back().bin = bin;
             parts.back().strength *= bin.weight;
         }
     return parts;
+}
+
+Spectrum share_of_wavelength(const LightSample& light, float nm) {
+    if (nm == 0 || light.nm == 0) return Spectrum::Ones();
+    const bool is_last = light.bin.to >= float{longest_wavelength};
+    if (nm < light.bin.from || (nm >= light.bin.to && !is_last)) return black();
+    // The light of one wavelength that the picture without dispersion has: the bin's, but for its colour.
+    return (light.bin.weight > 0).select(1 / light.bin.weight, black());
 }
 
 Vec3 to_light(const LightSample& light, const Vec3& point) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/material/wavelength.h"
 #include "core/scene/scene.h"
 
 namespace caustics {
@@ -22,14 +23,19 @@ struct LightSample {
     std::optional<SpotCone> spot;  ///< of a point light that is one
     std::uint32_t light = 0;       ///< index into Scene::lights
     float nm = 0;                  ///< wavelength where glass disperses it; 0: all of them
+    WavelengthBin bin = {};        ///< of light of one wavelength
 };
 
-/// One sample a point or directional light, `per_area_light` samples an area light: a rank-1 lattice
+/// For all lights but constant ones: one sample a point or directional light, `per_area_light` samples an area light: a rank-1 lattice
 /// over the part of it that can shine on casters (AreaLightSampler), shifted at random by the seed.
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
 /// The same light in parts: each sample once a bin of wavelengths (WavelengthBin), with its share of the
 /// strength.
 std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths);
+
+/// What the sample's light counts for a viewer behind glass that has chosen the wavelength nm, for which
+/// light of all others is black; 1 where one of the two has all wavelengths.
+Spectrum share_of_wavelength(const LightSample& light, float nm);
 
 /// Unit direction from a point to the light.
 Vec3 to_light(const LightSample& light, const Vec3& point);

@@ -78,12 +78,14 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
     SpectrumSum sum = SpectrumSum::Zero();
     for (const BeamHit& hit : hits) {
         const BeamSet& set = sets_[hit.set];
+        const Spectrum share = share_of_wavelength(set.light, point.nm);
+        if (is_black(share)) continue;
         const Beam& beam = set.beams[hit.beam];
         ArrivingRay ray = arriving_ray(set, hit);
         const auto exact = specular_point(hit, {ray.start.position, ray.direction}, point.position);
         if (exact) ray = {{exact->position, exact->normal, beam.offset}, exact->direction};
         if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
-        const Spectrum factor = weight(Vec3(-ray.direction));
+        const Spectrum factor = share * weight(Vec3(-ray.direction));
         if (is_black(factor)) continue;
         if (scene_.occluded(receiver, ray.start)) continue;
         // Of light after several events the earlier legs were seen to be free when it was traced.

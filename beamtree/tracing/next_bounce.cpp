@@ -81,6 +81,7 @@ private:
             return;
         }
         count_lit(parent);
+        stays_[beam] = stays_[beam] || (a.goes_on() && is_receiver(scene_.shapes()[a.shape].bsdf));
         if (alike && goes_plainly(a, b, c) && !is_coarse(rays)) {
             for (const Event event : events)
                 if (!is_black(a.weight[event])) {

@@ -108,7 +108,7 @@ std::optional<LightParticle> AimedEmission::send(const Aim& aim, Rng& rng) const
     const std::uint32_t region = aim.cone - first_cone_[aim.source];
     std::optional<Ray> ray;
     if (source.cones.empty()) {
-        ray = send_through(source, source.discs[region], aim.disc, rng);
+        ray = send_through(source, source.discs[region], across(source, rng), aim.disc, rng);
     } else if (kept_in_union(source, source.cones[region], aim.direction, rng)) {
         if (const auto* light = std::get_if<PointLight>(&scene_.lights()[source.light]))
             ray = send_from_point(*light, aim.direction, rng);
@@ -143,17 +143,25 @@ std::optional<Ray> AimedEmission::send_from_area(const AimedSource& source, cons
     return spawn_ray({sample.position, sample.normal, sample.offset}, direction);
 }
 
+// Round the direction of a light from far away: any, of a constant one.
+Frame AimedEmission::across(const AimedSource& source, Rng& rng) const {
+    if (!std::holds_alternative<ConstantLight>(scene_.lights()[source.light])) return source.across;
+    const float u0 = rng.next();
+    const float u1 = rng.next();
+    return Frame(uniform_cap(2, u0, u1));
+}
+
 std::optional<Ray> AimedEmission::send_through(const AimedSource& source, const AimedDisc& disc,
-                                               const Vec2& at, Rng& rng) const {
-    const Vec3& along = std::get<DirectionalLight>(scene_.lights()[source.light]).direction;
-    const Vec3 point =
-        disc.centre + disc.radius * (source.across.s * at.x() + source.across.t * at.y());
+                                               const Frame& across, const Vec2& at,
+                                               Rng& rng) const {
+    const Vec3& along = across.n;
+    const Vec3 point = disc.centre + disc.radius * (across.s * at.x() + across.t * at.y());
     if (source.discs.size() > 1) {
         int holding = 0;
         for (const AimedDisc& other : source.discs) {
             const Vec3 offset = point - other.centre;
-            const Vec3 across = offset - offset.dot(along) * along;
-            holding += &other == &disc || across.norm() <= other.radius ? 1 : 0;
+            const float aside = Vec3(offset - offset.dot(along) * along).norm();
+            holding += &other == &disc || aside <= other.radius ? 1 : 0;
         }
         if (holding > 1 && rng.next() * static_cast<float>(holding) >= 1) return {};
     }

@@ -43,10 +43,11 @@ private:
         Vec2 disc;
         Vec3 direction;  ///< where the region is a cone
     };
+    Frame across(const AimedSource& source, Rng& rng) const;
     std::uint32_t choose(double& x, std::uint32_t& cone) const;
     std::optional<LightParticle> send(const Aim& aim, Rng& rng) const;
-    std::optional<Ray> send_through(const AimedSource&, const AimedDisc&, const Vec2& at,
-                                    Rng&) const;
+    std::optional<Ray> send_through(const AimedSource&, const AimedDisc&, const Frame& across,
+                                    const Vec2& at, Rng&) const;
     static std::optional<Ray> send_from_point(const PointLight& light, const Vec3& direction,
                                               Rng& rng);
     std::optional<Ray> send_from_area(const AimedSource&, const Vec3& direction, Rng&) const;

@@ -147,9 +147,8 @@ double narrowed(const SpotCone& spot, double solid_angle, AimedSource& source) {
     return own.solid_angle();
 }
 
-// Fills the discs of a directional light; returns their area [m^2].
-double aim_discs(const Scene& scene, const Vec3& direction, AimedSource& source) {
-    source.across = Frame(direction);
+// Fills the discs of a light from far away; returns their area [m^2].
+double aim_discs(const Scene& scene, AimedSource& source) {
     double total = 0;
     for (const std::uint32_t caster : scene.casters()) {
         const BoundingSphere sphere = bounding_sphere(scene.shapes()[caster]);
@@ -252,8 +251,12 @@ std::vector<AimedSource> aimed_sources(const Scene& scene) {
         AimedSource source;
         source.light = i;
         if (const auto* directional = std::get_if<DirectionalLight>(&light)) {
-            const double area = aim_discs(scene, directional->direction, source);
+            source.across = Frame(directional->direction);
+            const double area = aim_discs(scene, source);
             source.power = directional->irradiance * static_cast<float>(area);
+        } else if (const auto* constant = std::get_if<ConstantLight>(&light)) {
+            const double area = aim_discs(scene, source);
+            source.power = constant->radiance * static_cast<float>(4 * pi_d * area);
         } else {
             const auto& point = std::get<PointLight>(light);
             double solid_angle = aim_cones(scene, {point.position, 0}, source);

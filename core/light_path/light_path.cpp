@@ -69,69 +69,67 @@ struct Flight {
     PathWavelength wavelength = {};
 };
 
-void add_deposit(const Scene& scene, const SurfacePoint& hit, const Vec3& wi, const Spectrum& flux,
-                 int bounces, std::optional<Deposit>& added) {
+// What a flight leaves where it has come to; nothing on a black side.
+std::optional<Deposit> deposit_of(const Scene& scene, const SurfacePoint& hit,
+                                  const Flight& flight) {
+    const Vec3 wi = -flight.ray.direction;
     const bool front = hit.geometric_normal.dot(wi) > 0;
-    if (!scatters_from(scene.shape_at(hit).bsdf, front)) return;
-    Deposit& deposit = added.emplace();
+    if (!scatters_from(scene.shape_at(hit).bsdf, front)) return {};
+    Deposit deposit;
     deposit.position = hit.position;
     deposit.geometric_normal = front ? hit.geometric_normal : Vec3(-hit.geometric_normal);
     deposit.shading_normal = front ? hit.shading_normal : Vec3(-hit.shading_normal);
     deposit.wi = wi;
     deposit.uv = hit.uv;
     deposit.offset = hit.offset;
-    deposit.flux = flux;
+    deposit.flux = flight.flux;
     deposit.shape = hit.shape;
-    deposit.bounces = bounces;
+    deposit.bounces = flight.bounces;
     deposit.front = front;
+    return deposit;
 }
 
-// Whether a flight has come to a caster that it goes on from. Otherwise it has ended, perhaps with a
-// deposit.
-bool reaches_caster(const Scene& scene, const LightPathSettings& settings,
-                    const std::optional<SurfacePoint>& hit, Flight& flight, LightPathCounts& counts,
-                    std::optional<Deposit>& deposit) {
+// What a flight finds at the end of a segment.
+struct Stop {
+    std::optional<Deposit> deposit;
+    bool at_caster = false;  ///< from which it may go on
+};
+
+Stop stop_at(const Scene& scene, const LightPathSettings& settings,
+             const std::optional<SurfacePoint>& hit, Flight& flight, LightPathCounts& counts) {
+    Stop stop;
     if (!hit) {
         ++(flight.bounces == 0 ? counts.missed : counts.escaped);
-        return false;
+        return stop;
     }
     const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
-    const bool arrived = is_receiver(bsdf);
-    if (flight.bounces == 0 && arrived) {
+    stop.at_caster = is_caster(bsdf);
+    if (flight.bounces == 0 && !stop.at_caster) {
         ++counts.missed;
-        return false;
+        return stop;
     }
-    const Vec3 w = -flight.ray.direction;
     flight.flux *= segment_transmittance(
-        flight.start_medium, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
-    if (arrived && is_black(flight.flux)) {
-        ++counts.absorbed;
-        return false;
+        flight.start_medium, medium_absorption(bsdf, hit->geometric_normal, -flight.ray.direction),
+        hit->distance);
+    if (is_receiver(bsdf) && flight.bounces > 0) {
+        if (is_black(flight.flux)) {
+            ++counts.absorbed;
+            return {};
+        }
+        stop.deposit = deposit_of(scene, *hit, flight);
+        ++(stop.deposit ? counts.stored : counts.on_black_side);
+        // A mirror that is black on that side as well sends nothing on.
+        stop.at_caster = stop.at_caster && stop.deposit;
     }
-    if (arrived) {
-        add_deposit(scene, *hit, w, flight.flux, flight.bounces, deposit);
-        ++(deposit ? counts.stored : counts.on_black_side);
-        return false;
+    if (stop.at_caster && flight.bounces == settings.max_bounces) {
+        if (!stop.deposit) ++counts.depth_limited;
+        stop.at_caster = false;
     }
-    if (flight.bounces == settings.max_bounces) {
-        ++counts.depth_limited;
-        return false;
-    }
-    return true;
+    return stop;
 }
 
 void record(const LightPathSettings& settings, const Ray& ray) {
     if (settings.traced != nullptr) settings.traced->push_back(ray);
-}
-
-// Moves a flight to its next caster. Empty when it has ended before, perhaps with a deposit.
-std::optional<SurfacePoint> reach_caster(const Scene& scene, const LightPathSettings& settings,
-                                         Flight& flight, LightPathCounts& counts,
-                                         std::optional<Deposit>& deposit) {
-    record(settings, flight.ray);
-    std::optional<SurfacePoint> hit = scene.intersect(flight.ray);
-    if (!reaches_caster(scene, settings, hit, flight, counts, deposit)) hit.reset();
-    return hit;
 }
 
 // Turns a flight to where it leaves a caster.
@@ -177,12 +175,15 @@ const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux,
     return nullptr;
 }
 
-// The event at a caster; false when it ends the flight.
-bool goes_on_from(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng,
-                  LightPathCounts& counts) {
+// The event at a caster; false when it ends the flight, whose end a deposit there has counted already.
+bool goes_on_from(const Scene& scene, const SurfacePoint& hit, bool has_deposit, Flight& flight,
+                  Rng& rng, LightPathCounts& counts) {
     const SpecularSplit split = split_at(scene, hit, flight, rng);
-    const Vec3* const direction = roulette(split, rng, flight.flux, counts);
+    LightPathCounts uncounted;
+    const Vec3* const direction =
+        roulette(split, rng, flight.flux, has_deposit ? uncounted : counts);
     if (direction == nullptr) return false;
+    counts.branched += has_deposit ? 1 : 0;
     ++(direction == &split.reflected ? counts.reflected : counts.refracted);
     leave(scene, hit, *direction, flight);
     return true;
@@ -190,14 +191,19 @@ bool goes_on_from(const Scene& scene, const SurfacePoint& hit, Flight& flight, R
 
 }  // namespace
 
-std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle& particle,
-                                        const LightPathSettings& settings, Rng& rng,
-                                        LightPathCounts& counts) {
+void trace_light_path(const Scene& scene, const LightParticle& particle,
+                      const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
+                      std::vector<Deposit>& deposits) {
     Flight flight{particle.ray, particle.flux};
-    std::optional<Deposit> deposit;
-    while (const auto hit = reach_caster(scene, settings, flight, counts, deposit))
-        if (!goes_on_from(scene, *hit, flight, rng, counts)) break;
-    return deposit;
+    for (;;) {
+        record(settings, flight.ray);
+        const std::optional<SurfacePoint> hit = scene.intersect(flight.ray);
+        const Stop stop = stop_at(scene, settings, hit, flight, counts);
+        if (stop.deposit) deposits.push_back(*stop.deposit);
+        if (!stop.at_caster ||
+            !goes_on_from(scene, *hit, stop.deposit.has_value(), flight, rng, counts))
+            return;
+    }
 }
 
 namespace {
@@ -210,7 +216,7 @@ struct OneOfMany : Flight {
 // Moves up to Scene::most_together flights along one segment; those that go on are kept in front.
 std::size_t advance(const Scene& scene, std::span<OneOfMany> flights,
                     std::span<LightPathStart> starts, const LightPathSettings& settings,
-                    LightPathCounts& counts, std::span<std::optional<Deposit>> deposits) {
+                    LightPathCounts& counts, std::vector<DepositOfMany>& deposits) {
     std::array<Ray, Scene::most_together> rays;
     std::array<std::optional<SurfacePoint>, Scene::most_together> hits;
     for (std::size_t i = 0; i < flights.size(); ++i) {
@@ -221,8 +227,10 @@ std::size_t advance(const Scene& scene, std::span<OneOfMany> flights,
     std::size_t kept = 0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         OneOfMany& flight = flights[i];
-        if (reaches_caster(scene, settings, hits[i], flight, counts, deposits[flight.number]) &&
-            goes_on_from(scene, *hits[i], flight, starts[flight.number].rng, counts))
+        const Stop stop = stop_at(scene, settings, hits[i], flight, counts);
+        if (stop.deposit) deposits.push_back({flight.number, *stop.deposit});
+        if (stop.at_caster && goes_on_from(scene, *hits[i], stop.deposit.has_value(), flight,
+                                           starts[flight.number].rng, counts))
             flights[kept++] = flight;
     }
     return kept;
@@ -232,13 +240,12 @@ std::size_t advance(const Scene& scene, std::span<OneOfMany> flights,
 
 void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
                        const LightPathSettings& settings, LightPathCounts& counts,
-                       std::span<std::optional<Deposit>> deposits) {
+                       std::vector<DepositOfMany>& deposits) {
+    const std::size_t before = deposits.size();
     std::vector<OneOfMany> flights;
     flights.reserve(starts.size());
-    for (std::size_t i = 0; i < starts.size(); ++i) {
-        deposits[i].reset();
+    for (std::size_t i = 0; i < starts.size(); ++i)
         flights.push_back({{starts[i].particle.ray, starts[i].particle.flux}, i});
-    }
     while (!flights.empty()) {
         std::size_t kept = 0;
         for (std::size_t first = 0; first < flights.size(); first += Scene::most_together) {
@@ -250,6 +257,8 @@ void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
         }
         flights.resize(kept);
     }
+    std::ranges::stable_sort(deposits.begin() + static_cast<std::ptrdiff_t>(before), deposits.end(),
+                             {}, &DepositOfMany::start);
 }
 
 namespace {
@@ -268,27 +277,31 @@ public:
     // Follows a flight along its refractions; calls itself for the reflections, so no deeper than
     // max_bounces.
     void follow(Flight flight) {
-        std::optional<Deposit> deposit;
-        while (const auto hit = reach_caster(scene_, settings_, flight, counts_, deposit)) {
+        for (;;) {
+            record(settings_, flight.ray);
+            const std::optional<SurfacePoint> hit = scene_.intersect(flight.ray);
+            const Stop stop = stop_at(scene_, settings_, hit, flight, counts_);
+            const bool has_deposit = stop.deposit.has_value();
+            if (has_deposit) deposits_.push_back(*stop.deposit);
+            if (!stop.at_caster) return;
             const SpecularSplit split = split_at(scene_, *hit, flight, rng_);
             Flight reflected = flight;
             const bool reflects = goes_on(split.reflected_weight, reflected);
             const bool refracts = goes_on(split.refracted_weight, flight);
             if (reflects) {
                 ++counts_.reflected;
-                counts_.branched += refracts ? 1 : 0;
+                counts_.branched += refracts || has_deposit ? 1 : 0;
                 leave(scene_, *hit, split.reflected, reflected);
                 follow(reflected);
             }
             if (!refracts) {
-                if (!reflects)
+                if (!reflects && !has_deposit)
                     ++(is_black(split.lost_weight) ? counts_.absorbed : counts_.misdirected);
                 return;
             }
             ++counts_.refracted;
             leave(scene_, *hit, split.refracted, flight);
         }
-        if (deposit) deposits_.push_back(*deposit);
     }
 
 private:

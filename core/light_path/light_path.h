@@ -35,9 +35,10 @@ struct Deposit {
 /// What became of emitted particles. Each branch of a split path has its own end: the ends (missed
 /// to dropped) add up to `aimed` + `branched`.
 struct LightPathCounts {
-    std::uint64_t emitted = 0;    ///< drawn, including those thinned out at the light
-    std::uint64_t aimed = 0;      ///< sent on their way
-    std::uint64_t branched = 0;   ///< second branches begun by splitting
+    std::uint64_t emitted = 0;  ///< drawn, including those thinned out at the light
+    std::uint64_t aimed = 0;    ///< sent on their way
+    /// Second branches begun by splitting, or by leaving light on a mirror and going on.
+    std::uint64_t branched = 0;
     std::uint64_t reflected = 0;  ///< specular events that went on by reflection
     std::uint64_t refracted = 0;  ///< and by refraction
     std::uint64_t missed = 0;     ///< met no caster first
@@ -74,12 +75,13 @@ struct LightPathSettings {
     std::vector<Ray>* traced = nullptr;  ///< gets every ray that is traced; for measuring
 };
 
-/// Follows a particle through specular surfaces to its first receiver, with reflection or
-/// refraction decided by Russian roulette whose probabilities weigh the channels. At most
-/// `max_bounces` specular events. Rows J3, J9.
-std::optional<Deposit> trace_light_path(const Scene& scene, const LightParticle& particle,
-                                        const LightPathSettings& settings, Rng& rng,
-                                        LightPathCounts& counts);
+/// Follows a particle through specular surfaces to the first that is a receiver alone, with reflection
+/// or refraction decided by Russian roulette whose probabilities weigh the channels. At most
+/// `max_bounces` specular events. Appends what it leaves there, and before that on each surface that is
+/// a receiver and a caster, in the order of the path. Rows J3, J9.
+void trace_light_path(const Scene& scene, const LightParticle& particle,
+                      const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
+                      std::vector<Deposit>& deposits);
 
 /// A particle on its start, with the random numbers of its path.
 struct LightPathStart {
@@ -88,12 +90,18 @@ struct LightPathStart {
     std::uint64_t path = 0;  ///< its number
 };
 
+/// A deposit, and the start in a span of them that brought it.
+struct DepositOfMany {
+    std::size_t start;
+    Deposit deposit;
+};
+
 /// trace_light_path for many particles side by side, one segment of all of them after the other.
 /// Made for particles that leave near each other: their rays share the way through the scene
-/// (Scene::intersect_together). `deposits` gets one, or none, for each start.
+/// (Scene::intersect_together). `deposits` gets those of all starts, in their order.
 void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
                        const LightPathSettings& settings, LightPathCounts& counts,
-                       std::span<std::optional<Deposit>> deposits);
+                       std::vector<DepositOfMany>& deposits);
 
 /// Follows a particle and all its branches; appends their deposits, in a fixed order.
 void trace_split_path(const Scene& scene, const LightParticle& particle,

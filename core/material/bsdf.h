@@ -3,56 +3,31 @@
 #include <optional>
 #include <variant>
 
-#include "core/material/ior.h"
-#include "core/material/texture.h"
-#include "core/math/spectrum.h"
-#include "core/math/vec.h"
+#include "core/material/conductor.h"
+#include "core/material/dielectric.h"
+#include "core/material/diffuse.h"
+#include "core/material/phong.h"
+#include "core/material/schlick.h"
 
 namespace caustics {
 
-/// Lambert's law: f_r = reflectance / pi.
-struct Diffuse {
-    Texture reflectance = Spectrum(Spectrum::Constant(0.5F));
-};
-
-/// Schlick's model as [J96 (5)], [J96 (6)] print it, times `reflectance`, without anisotropy and
-/// without Fresnel; alpha = 1 is broad, alpha -> 0 a mirror-like lobe. The printed t is always
-/// +-1; here t = n.h with the normalised half vector. Not Lambertian at alpha = 1: the albedo
-/// there is 5/4 - 2v/3, v = n.wo.
-struct Schlick {
-    Texture reflectance = Spectrum(Spectrum::Constant(0.5F));
-    float alpha = 1;  ///< (0, 1]
-};
-
-/// A smooth interface between two lossless or absorbing media. The inside is the side away from
-/// the geometric normal.
-struct Dielectric {
-    Ior int_ior = 1.5046F;
-    Ior ext_ior = 1.000277F;
-    Spectrum absorption = Spectrum::Zero();      ///< Beer's law inside [1/m]
-    Spectrum ext_absorption = Spectrum::Zero();  ///< Beer's law outside [1/m]
-    Spectrum specular_reflectance = Spectrum::Ones();
-    Spectrum specular_transmittance = Spectrum::Ones();
-
-    bool is_dispersive() const { return int_ior.is_dispersive() || ext_ior.is_dispersive(); }
-    /// Index of refraction behind the interface over that before it, for light that comes to its front or
-    /// back, at a wavelength [nm]; 0: as Ior::at.
-    float relative_ior(bool front, float nm) const;
-};
-
-/// A perfect mirror (Mitsuba's `conductor` of material `none`).
-struct Conductor {
-    Spectrum specular_reflectance = Spectrum::Ones();
+/// The mirror in a blend of a receiver's model with a conductor (Mitsuba's `blendbsdf`).
+struct MirrorPart {
+    float weight = 0;  ///< (0, 1): the conductor's share; the receiver's model has the rest
+    Spectrum reflectance = Spectrum::Ones();
 };
 
 /// A surface's scattering. One-sided models (all but Dielectric) are black from behind unless
-/// `twosided`, as in Mitsuba.
+/// `twosided`, as in Mitsuba. The models of receivers share four functions, which the functions below
+/// ask for: f_r, albedo, sample and pdf.
 struct Bsdf {
-    std::variant<Diffuse, Schlick, Dielectric, Conductor> model = Diffuse{};
+    std::variant<Diffuse, Schlick, Phong, Dielectric, Conductor> model = Diffuse{};
     bool twosided = false;
+    std::optional<MirrorPart> mirror = {};  ///< of a receiver's model alone
 };
 
-/// Casters are the surfaces with a perfectly specular part; receivers are all others.
+/// Casters are the surfaces with a perfectly specular part, receivers those that scatter light: a surface
+/// with a mirror part is both.
 bool is_caster(const Bsdf& bsdf);
 bool is_receiver(const Bsdf& bsdf);
 /// Whether light of different wavelengths goes on from the surface in different ways.
@@ -64,12 +39,12 @@ bool scatters_from(const Bsdf& bsdf, bool front);
 /// side; `wo`, `wi` are unit and point away from the surface. 0 when either is below n.
 Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi);
 
-/// Directional-hemispherical reflectance of a receiver's texture, for the albedo layer; 1 for
-/// casters.
+/// Directional-hemispherical reflectance of a receiver's texture (without a mirror part), for the albedo
+/// layer; 1 for what is a caster alone.
 Spectrum albedo(const Bsdf& bsdf, const Vec2& uv);
 
-/// Importance sampling of f_r * cos for a receiver (cosine lobe, and for Schlick half of the
-/// samples from the half-vector lobe Z(t)). Unit `wi`, or none when the sample falls below n.
+/// Importance sampling of f_r * cos for a receiver, by three numbers of [0, 1). Unit `wi`, or none when
+/// the sample falls below n.
 std::optional<Vec3> sample_direction(const Bsdf& bsdf, const Vec3& n, const Vec3& wo, float u0,
                                      float u1, float u2);
 /// Solid-angle density of sample_direction [1/sr].

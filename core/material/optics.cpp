@@ -64,6 +64,16 @@ SpecularSplit split_dielectric(const Dielectric& d, bool front, const Vec3& ng, 
 
 }  // namespace
 
+namespace {
+
+// Of a conductor or a mirror part.
+Spectrum mirror_reflectance(const Bsdf& bsdf) {
+    if (bsdf.mirror) return bsdf.mirror->weight * bsdf.mirror->reflectance;
+    return std::get<Conductor>(bsdf.model).specular_reflectance;
+}
+
+}  // namespace
+
 SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w,
                              float nm) {
     const bool front = ng.dot(w) > 0;
@@ -76,11 +86,10 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
     if (const auto* dielectric = std::get_if<Dielectric>(&bsdf.model))
         return split_dielectric(*dielectric, front, ng, n, w, nm);
     SpecularSplit split;
-    const auto* mirror = std::get_if<Conductor>(&bsdf.model);
-    if (mirror == nullptr || !scatters_from(bsdf, front)) return split;
+    if (!is_caster(bsdf) || !scatters_from(bsdf, front)) return split;
     split.reflected = reflect(w, n);
     ((ng.dot(split.reflected) > 0) == front ? split.reflected_weight : split.lost_weight) =
-        mirror->specular_reflectance;
+        mirror_reflectance(bsdf);
     return split;
 }
 

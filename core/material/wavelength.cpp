@@ -117,8 +117,11 @@ std::vector<WavelengthBin> wavelength_bins(int count) {
         double mean = 0;
         for (int j = 0; j < parts; ++j)
             mean += table().wavelength_at(share(i + (j + 0.5) / parts)) / parts;
-        const SpectrumSum to_here = table().cumulative_at(table().wavelength_at(share(i + 1.0)));
-        bins.push_back({static_cast<float>(mean), (to_here - before).cast<float>()});
+        const double to = table().wavelength_at(share(i + 1.0));
+        const SpectrumSum to_here = table().cumulative_at(to);
+        bins.push_back({static_cast<float>(mean),
+                        bins.empty() ? float{shortest_wavelength} : bins.back().to,
+                        static_cast<float>(to), (to_here - before).cast<float>()});
         before = to_here;
     }
     return bins;

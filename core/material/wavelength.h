@@ -35,6 +35,8 @@ SampledWavelength sample_wavelength(double u);
 /// A part of all wavelengths that goes one way: with the index of refraction at `nm`.
 struct WavelengthBin {
     float nm = 0;                        ///< the mean of the bin, by the channels' mean density
+    float from = 0;                      ///< [nm]
+    float to = 0;                        ///< [nm]; the next bin's `from`
     Spectrum weight = Spectrum::Ones();  ///< integral of c_k; those of all bins add up to 1
 };
 /// `count` >= 1 bins of equal power of white light, from the shortest wavelength on.

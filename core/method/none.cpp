@@ -3,11 +3,20 @@
 namespace caustics {
 
 const DescribedMethod<NoneParams>& none_method() {
-    static const DescribedMethod<NoneParams> method(
+    using P = NoneParams;
+    static const DescribedMethod<P> method(
         {.facts = {.name = "none",
                    .summary = "no caustic: plain ray tracing",
                    .serves = "every scene",
-                   .has_caustic = false}});
+                   .has_caustic = false},
+         .parameters = {
+             parameter::choice<P>(
+                 &P::shadows, {{"opaque", Shadows::opaque}, {"transparent", Shadows::transparent}},
+                 {.key = "shadows",
+                  .meaning = "Of glass in direct light: dark, or weakened light that goes "
+                             "straight through, as POV-Ray has it without photons.",
+                  .source = "[C11 sec. 3]"})
+                 .only_if([](const P& p) { return p.shadows != Shadows::opaque; })}});
     return method;
 }
 

@@ -26,14 +26,16 @@ struct OrderedPaths {
     template <typename Sink>
     void trace_chunk(std::uint64_t index, LightPathCounts& counts, const Sink& sink) const {
         const std::uint64_t end = std::min((index + 1) * chunk, paths);
+        std::vector<Deposit> deposits;
         for (std::uint64_t path = index * chunk; path < end; ++path) {
             Rng rng(seed, stage, path);
             ++counts.emitted;
             const std::optional<LightParticle> particle = emission.emit(rng);
             if (!particle) continue;
             ++counts.aimed;
-            if (const auto deposit = trace_light_path(scene, *particle, {max_bounces}, rng, counts))
-                sink(*deposit);
+            deposits.clear();
+            trace_light_path(scene, *particle, {max_bounces}, rng, counts, deposits);
+            for (const Deposit& deposit : deposits) sink(deposit);
         }
     }
 };

@@ -25,14 +25,19 @@ float flux_correction(const SurfacePoint& p, const Vec3& towards_receiver,
 
 // Radiance arriving along a ray from L S+ by one random chain; 0 when its first surface is no
 // caster.
-Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, Rng& rng) {
+Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, PathWavelength wavelength,
+                        Rng& rng) {
     Spectrum weight = Spectrum::Ones();
     Spectrum result = black();
     const Spectrum* start_absorption = nullptr;
-    PathWavelength wavelength;
     for (int bounces = 0;; ++bounces) {
         const std::optional<SurfacePoint> hit = scene.intersect(ray);
-        if (!hit) return result;
+        if (!hit) {
+            // An absorbing medium without end leaves nothing.
+            const bool clear = start_absorption == nullptr || is_black(*start_absorption);
+            if (bounces > 0 && clear) result += weight * scene.background();
+            return result;
+        }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
         const Vec3 w = -ray.direction;
         weight *= segment_transmittance(
@@ -124,7 +129,7 @@ private:
         if (is_black(scattering)) return black();
         const Ray ray = spawn_ray({point.position, point.geometric_normal, point.offset}, *wi);
         const float weight = cosine / mixture.pdf_w(*wi);
-        return scattering * chain_radiance(scene_, ray, max_bounces_, rng) * weight;
+        return scattering * chain_radiance(scene_, ray, max_bounces_, {point.nm}, rng) * weight;
     }
 
     const Scene& scene_;

@@ -1,11 +1,13 @@
 #include "core/render/direct_light.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "core/material/optics.h"
 
 namespace caustics {
 namespace {
-
-SegmentEnd end_of(const ReceiverPoint& p) { return {p.position, p.geometric_normal, p.offset}; }
 
 // f_r times the cosine of a direction on the lit side; 0 below the geometric surface.
 Spectrum scattering(const ReceiverPoint& p, const Vec3& wi) {
@@ -13,78 +15,166 @@ Spectrum scattering(const ReceiverPoint& p, const Vec3& wi) {
     return evaluate(*p.bsdf, p.uv, p.shading_normal, p.wo, wi) * p.shading_normal.dot(wi);
 }
 
-Spectrum from_point(const Scene& scene, const ReceiverPoint& p, const PointLight& light) {
-    const Vec3 towards = light.position - p.position;
-    const float distance2 = towards.squaredNorm();
-    const Vec3 wi = towards / std::sqrt(distance2);
-    const Spectrum f = scattering(p, wi) * light.intensity_along(-wi);
-    if (is_black(f) || scene.occluded(end_of(p), SegmentEnd{light.position})) return black();
-    return f / distance2;
-}
-
-Spectrum from_directional(const Scene& scene, const ReceiverPoint& p,
-                          const DirectionalLight& light) {
-    const Vec3 wi = -light.direction;
-    const Spectrum f = scattering(p, wi);
-    if (is_black(f) || scene.occluded_along(end_of(p), wi)) return black();
-    return f * light.irradiance;
-}
-
 // Solid-angle density at the receiver of a point drawn uniformly by area on the light.
 float light_pdf_w(const AreaLight& light, float distance2, float cos_light) {
     return distance2 / (cos_light * static_cast<float>(light.sampler.area()));
 }
 
-Spectrum by_light_sample(const Scene& scene, const ReceiverPoint& p, const AreaLight& light,
-                         Rng& rng) {
-    const float u0 = rng.next();
-    const float u1 = rng.next();
-    const auto sample = light.sampler.sample(scene.shapes()[light.shape], u0, u1);
-    const Vec3 towards = sample.position - p.position;
-    const float distance2 = towards.squaredNorm();
-    if (distance2 == 0) return black();
-    const Vec3 wi = towards / std::sqrt(distance2);
-    const float cos_light = -sample.normal.dot(wi);
-    const Spectrum f = scattering(p, wi);
-    if (cos_light <= 0 || is_black(f)) return black();
-    if (scene.occluded(end_of(p), {sample.position, sample.normal, sample.offset})) return black();
-    const float pdf = light_pdf_w(light, distance2, cos_light);
-    return f * light.radiance / (pdf + direction_pdf(*p.bsdf, p.shading_normal, p.wo, wi));
+constexpr int most_crossings = 256;
+
+/// The straight way along a ray, through dielectrics.
+struct StraightWay {
+    std::optional<SurfacePoint> end;   ///< on the first other surface
+    float distance = 0;                ///< to there [m]
+    Spectrum left = Spectrum::Ones();  ///< of light along it
+};
+
+// At the angle of the thinner side, whose light always passes.
+Spectrum passed(const Dielectric& glass, float cosine) {
+    const float ratio = glass.relative_ior(true, 0);
+    return glass.specular_transmittance *
+           (1 - fresnel_dielectric(std::abs(cosine), std::max(ratio, 1 / ratio)));
 }
 
-Spectrum by_bsdf_sample(const Scene& scene, const ReceiverPoint& p, Rng& rng) {
-    const float u0 = rng.next();
-    const float u1 = rng.next();
-    const float u2 = rng.next();
-    const auto wi = sample_direction(*p.bsdf, p.shading_normal, p.wo, u0, u1, u2);
-    if (!wi) return black();
-    const Spectrum f = scattering(p, *wi);
-    if (is_black(f)) return black();
-    const auto hit = scene.intersect(spawn_ray(end_of(p), *wi));
-    if (!hit) return black();
-    const AreaLight* light = scene.area_light(hit->shape);
-    const float cos_light = -hit->geometric_normal.dot(*wi);
-    if (light == nullptr || cos_light <= 0) return black();
-    const float pdf = light_pdf_w(*light, hit->distance * hit->distance, cos_light);
-    return f * light->radiance / (pdf + direction_pdf(*p.bsdf, p.shading_normal, p.wo, *wi));
+StraightWay straight_way(const Scene& scene, Ray ray) {
+    StraightWay way;
+    const Spectrum* medium = nullptr;
+    for (int crossing = 0; crossing < most_crossings; ++crossing) {
+        const std::optional<SurfacePoint> hit = scene.intersect(ray);
+        if (!hit) {
+            way.left *= segment_transmittance(
+                medium, nullptr, std::isfinite(ray.max_distance) ? ray.max_distance : 0);
+            return way;
+        }
+        const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
+        way.distance += hit->distance;
+        way.left *= segment_transmittance(
+            medium, medium_absorption(bsdf, hit->geometric_normal, -ray.direction), hit->distance);
+        const auto* const glass = std::get_if<Dielectric>(&bsdf.model);
+        if (glass == nullptr) {
+            way.end = hit;
+            return way;
+        }
+        way.left *= passed(*glass, hit->shading_normal.dot(ray.direction));
+        medium = medium_absorption(bsdf, hit->geometric_normal, ray.direction);
+        const float left = ray.max_distance - hit->distance;
+        ray = spawn_ray({hit->position, hit->geometric_normal, hit->offset}, ray.direction);
+        ray.max_distance = left;
+    }
+    way.left = black();
+    return way;
 }
+
+/// What reaches a receiver point straight from lights.
+class DirectLight {
+public:
+    DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows)
+        : scene_(scene), p_(point), opaque_(shadows == Shadows::opaque) {}
+
+    Spectrum from(const PointLight& light) const {
+        const Vec3 towards = light.position - p_.position;
+        const float distance2 = towards.squaredNorm();
+        const Vec3 wi = towards / std::sqrt(distance2);
+        const Spectrum f = scattering(p_, wi) * light.intensity_along(-wi);
+        if (is_black(f)) return black();
+        return f * seen_of({light.position}) / distance2;
+    }
+
+    Spectrum from(const DirectionalLight& light) const {
+        const Vec3 wi = -light.direction;
+        const Spectrum f = scattering(p_, wi);
+        if (is_black(f)) return black();
+        return f * seen_along(wi) * light.irradiance;
+    }
+
+    Spectrum by_light_sample(const AreaLight& light, Rng& rng) const {
+        const float u0 = rng.next();
+        const float u1 = rng.next();
+        const auto sample = light.sampler.sample(scene_.shapes()[light.shape], u0, u1);
+        const Vec3 towards = sample.position - p_.position;
+        const float distance2 = towards.squaredNorm();
+        if (distance2 == 0) return black();
+        const Vec3 wi = towards / std::sqrt(distance2);
+        const float cos_light = -sample.normal.dot(wi);
+        const Spectrum f = scattering(p_, wi);
+        if (cos_light <= 0 || is_black(f)) return black();
+        const Spectrum seen = seen_of({sample.position, sample.normal, sample.offset});
+        return f * seen * light.radiance / (light_pdf_w(light, distance2, cos_light) + pdf(wi));
+    }
+
+    Spectrum by_bsdf_sample(Rng& rng) const {
+        const float u0 = rng.next();
+        const float u1 = rng.next();
+        const float u2 = rng.next();
+        const auto wi = sample_direction(*p_.bsdf, p_.shading_normal, p_.wo, u0, u1, u2);
+        if (!wi) return black();
+        const Spectrum f = scattering(p_, *wi);
+        if (is_black(f)) return black();
+        const StraightWay way = way_along(*wi);
+        // Light from all around is found in this way alone.
+        if (!way.end)
+            return is_black(scene_.background())
+                       ? black()
+                       : Spectrum(f * way.left * scene_.background() / pdf(*wi));
+        const AreaLight* light = scene_.area_light(way.end->shape);
+        const float cos_light = -way.end->geometric_normal.dot(*wi);
+        if (light == nullptr || cos_light <= 0) return black();
+        const float light_pdf = light_pdf_w(*light, way.distance * way.distance, cos_light);
+        return f * way.left * light->radiance / (light_pdf + pdf(*wi));
+    }
+
+private:
+    SegmentEnd start() const { return {p_.position, p_.geometric_normal, p_.offset}; }
+    float pdf(const Vec3& wi) const {
+        return direction_pdf(*p_.bsdf, p_.shading_normal, p_.wo, wi);
+    }
+
+    // Shares of light that come here.
+    Spectrum seen_of(const SegmentEnd& end) const {
+        if (opaque_) return scene_.occluded(start(), end) ? black() : Spectrum(Spectrum::Ones());
+        const Ray ray = segment_between(start(), end);
+        return ray.max_distance > 0 ? left(straight_way(scene_, ray)) : Spectrum(Spectrum::Ones());
+    }
+    Spectrum seen_along(const Vec3& wi) const {
+        if (opaque_)
+            return scene_.occluded_along(start(), wi) ? black() : Spectrum(Spectrum::Ones());
+        return left(straight_way(scene_, spawn_ray(start(), wi)));
+    }
+    static Spectrum left(const StraightWay& way) { return way.end ? black() : way.left; }
+
+    StraightWay way_along(const Vec3& wi) const {
+        const Ray ray = spawn_ray(start(), wi);
+        if (!opaque_) return straight_way(scene_, ray);
+        StraightWay way;
+        way.end = scene_.intersect(ray);
+        if (way.end) way.distance = way.end->distance;
+        return way;
+    }
+
+    const Scene& scene_;
+    const ReceiverPoint& p_;
+    bool opaque_;
+};
 
 }  // namespace
 
-Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng) {
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         Shadows shadows) {
+    const DirectLight direct(scene, point, shadows);
     Spectrum sum = black();
-    bool has_area_light = false;
+    bool has_wide_light = false;
     for (const Light& light : scene.lights()) {
         if (const auto* at_point = std::get_if<PointLight>(&light)) {
-            sum += from_point(scene, point, *at_point);
+            sum += direct.from(*at_point);
         } else if (const auto* directional = std::get_if<DirectionalLight>(&light)) {
-            sum += from_directional(scene, point, *directional);
+            sum += direct.from(*directional);
         } else {
-            has_area_light = true;
-            sum += by_light_sample(scene, point, std::get<AreaLight>(light), rng);
+            has_wide_light = true;
+            if (const auto* area = std::get_if<AreaLight>(&light))
+                sum += direct.by_light_sample(*area, rng);
         }
     }
-    if (has_area_light) sum += by_bsdf_sample(scene, point, rng);
+    if (has_wide_light) sum += direct.by_bsdf_sample(rng);
     return sum;
 }
 

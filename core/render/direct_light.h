@@ -8,7 +8,10 @@ namespace caustics {
 
 /// One sample of the radiance that light arriving straight from the lights (L D) leaves along the
 /// point's `wo`. Area lights by multiple importance sampling of light and BSDF (balance
-/// heuristic). Every surface between casts a full shadow, specular ones too.
-Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng);
+/// heuristic). With opaque shadows every surface between casts a full one, specular ones too. With
+/// transparent ones light goes straight through dielectrics, times what Fresnel's formulas let pass at
+/// each (the angle taken on its thinner side) and Beer's law between.
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         Shadows shadows = Shadows::opaque);
 
 }  // namespace caustics

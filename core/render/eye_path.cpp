@@ -35,7 +35,7 @@ Branch continued(const SurfacePoint& hit, const Bsdf& bsdf, const Vec3& directio
             before.wavelength};
 }
 
-void scatter(const SurfacePoint& hit, const Bsdf& bsdf, Branch& branch, Rng& rng,
+void scatter(const SurfacePoint& hit, const Bsdf& bsdf, int split_depth, Branch& branch, Rng& rng,
              BranchStack& stack) {
     if (is_dispersive(bsdf)) branch.weight *= branch.wavelength.arrive_at(bsdf, rng);
     const SpecularSplit split = split_specular(bsdf, hit.geometric_normal, hit.shading_normal,
@@ -46,8 +46,9 @@ void scatter(const SurfacePoint& hit, const Bsdf& bsdf, Branch& branch, Rng& rng
     const float refracted_share = (branch.weight * split.refracted_weight).mean();
     const float both = reflected_share + refracted_share;
     if (both <= 0) return;
-    const bool split_path =
-        reflected_share >= split_threshold && refracted_share >= split_threshold && !stack.full();
+    const bool both_matter =
+        reflected_share >= split_threshold && refracted_share >= split_threshold;
+    const bool split_path = (both_matter || branch.bounces < split_depth) && !stack.full();
     if (!split_path && reflected_share > 0 && refracted_share > 0) {
         if (rng.next() * both < reflected_share) {
             reflected *= both / reflected_share;
@@ -77,7 +78,11 @@ EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum
     while (stack.size > 0) {
         Branch branch = stack.pop();
         const auto hit = scene.intersect(branch.ray);
-        if (!hit) continue;
+        if (!hit) {
+            if (branch.start_absorption == nullptr || is_black(*branch.start_absorption))
+                path.emitted += branch.weight * scene.background();
+            continue;
+        }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
         const Vec3 wo = -branch.ray.direction;
         if (branch.bounces == 0) path.first = first_hit(*hit, bsdf);
@@ -87,10 +92,12 @@ EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum
         const AreaLight* light = scene.area_light(hit->shape);
         if (light != nullptr && hit->geometric_normal.dot(wo) > 0)
             path.emitted += branch.weight * light->radiance;
-        if (const auto point = receiver_point(scene, *hit, wo))
+        if (auto point = receiver_point(scene, *hit, wo)) {
+            point->nm = branch.wavelength.nm;
             points.push_back({*point, branch.weight});
-        else if (is_caster(bsdf) && branch.bounces < max_eye_bounces)
-            scatter(*hit, bsdf, branch, rng, stack);
+        }
+        if (is_caster(bsdf) && branch.bounces < max_eye_bounces)
+            scatter(*hit, bsdf, scene.sampling().split_depth, branch, rng, stack);
     }
     return path;
 }

@@ -22,6 +22,7 @@ FilmLayers::FilmLayers(Film& film, const Extra& extra)
       depth_(film.plane("depth.Z").data()) {
     if (extra.unreached) unreached_ = film.plane("unreached.Y").data();
     if (extra.standard_error) standard_error_ = rgb("stderr");
+    if (extra.ambient) ambient_ = rgb("ambient");
     if (extra.samples) samples_ = film.plane("samples.Y").data();
 }
 
@@ -49,6 +50,7 @@ void FilmLayers::write(std::size_t pixel, const PixelSums& sums) {
     put(direct_, pixel, sums.direct / n);
     put(specular_, pixel, sums.emitted / n);
     put(caustic_, pixel, sums.caustic / n);
+    if (!ambient_.name.empty()) put(ambient_, pixel, sums.ambient / n);
     put(albedo_, pixel, sums.albedo / n);
     const Vec3d normal = sums.normal / n;
     for (int axis = 0; axis < 3; ++axis)
@@ -76,6 +78,10 @@ void FilmLayers::sum_beauty() {
             beauty_.planes[channel][pixel] = direct_.planes[channel][pixel] +
                                              caustic_.planes[channel][pixel] +
                                              specular_.planes[channel][pixel];
+    if (ambient_.name.empty()) return;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        for (std::size_t pixel = 0; pixel < film_.pixel_count(); ++pixel)
+            beauty_.planes[channel][pixel] += ambient_.planes[channel][pixel];
 }
 
 }  // namespace caustics

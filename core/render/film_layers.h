@@ -12,6 +12,7 @@ namespace caustics {
 struct PixelSums {
     SpectrumSum direct = SpectrumSum::Zero();
     SpectrumSum emitted = SpectrumSum::Zero();
+    SpectrumSum ambient = SpectrumSum::Zero();
     SpectrumSum caustic = SpectrumSum::Zero();
     SpectrumSum caustic_squares = SpectrumSum::Zero();
     SpectrumSum own_variance = SpectrumSum::Zero();  ///< as the method tells it of each sample
@@ -23,7 +24,7 @@ struct PixelSums {
     int through_caster = 0;
     int samples = 0;
 
-    SpectrumSum beauty() const { return direct + emitted + caustic; }
+    SpectrumSum beauty() const { return direct + emitted + caustic + ambient; }
     /// Variance of a pixel's mean from its samples' scatter; 0 for a single sample.
     SpectrumSum variance_of_mean(const SpectrumSum& sum, const SpectrumSum& squares) const;
 };
@@ -35,6 +36,7 @@ public:
         bool unreached = false;       ///< share of samples that see a caster first
         bool standard_error = false;  ///< of the caustic layer
         bool samples = false;         ///< number of samples
+        bool ambient = false;         ///< of a scene with ambient light
     };
 
     /// Makes the planes, black. `film` outlives this.
@@ -56,7 +58,7 @@ private:
     void put(const Layer& layer, std::size_t pixel, const SpectrumSum& value) const;
 
     Film& film_;
-    Layer beauty_, direct_, specular_, caustic_, albedo_, standard_error_;
+    Layer beauty_, direct_, specular_, caustic_, albedo_, standard_error_, ambient_;
     std::array<float*, 3> normal_;
     float* depth_;
     float* unreached_ = nullptr;

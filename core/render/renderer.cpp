@@ -59,11 +59,13 @@ public:
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
         estimator_ = &estimator;
+        shadows_ = estimator.shadows();
         const auto layer = estimator.camera_layer(options_);
         with_caustic_ = !layer.has_value();
         FilmLayers layers(rendering.film, {.unreached = layer.has_value(),
                                            .standard_error = layer || estimator.is_statistical(),
-                                           .samples = adaptive_});
+                                           .samples = adaptive_,
+                                           .ambient = !is_black(scene_.ambient())});
         if (adaptive_)
             sample_adaptively(layers);
         else
@@ -90,7 +92,7 @@ public:
                 "how the picture scatters: choose the sampler independent or stratified");
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
-        FilmLayers layers(rendering.film, {});
+        FilmLayers layers(rendering.film, {.ambient = !is_black(scene_.ambient())});
         std::vector<std::vector<PixelSums>> sums(tiles_.size());
         const double share = 1.0 / passes.count;
         for (int pass = 0; pass < passes.count; ++pass) {
@@ -280,10 +282,16 @@ private:
         sums.hits += path.first.depth > 0 ? 1 : 0;
         sums.through_caster += path.first.caster ? 1 : 0;
         SpectrumSum direct = SpectrumSum::Zero();
-        for (const WeightedPoint& found : worker.found)
-            direct += (found.weight * direct_radiance(scene_, found.point, rng)).cast<double>();
+        SpectrumSum ambient = SpectrumSum::Zero();
+        for (const WeightedPoint& found : worker.found) {
+            direct +=
+                (found.weight * direct_radiance(scene_, found.point, rng, shadows_)).cast<double>();
+            ambient += (found.weight * albedo(*found.point.bsdf, found.point.uv) * scene_.ambient())
+                           .cast<double>();
+        }
         sums.direct += direct;
-        return emitted + direct;
+        sums.ambient += ambient;
+        return emitted + direct + ambient;
     }
 
     void add_caustic(Worker& worker, std::vector<PixelSums>& sums) const {
@@ -321,6 +329,7 @@ private:
 
     const Scene& scene_;
     const CausticEstimator* estimator_ = nullptr;
+    Shadows shadows_ = Shadows::opaque;
     RunOptions options_;
     Spectrum eye_absorption_;  ///< of the medium that camera rays start in
     bool adaptive_;

@@ -33,6 +33,11 @@ struct AreaLight {
     AreaSampler sampler;
 };
 
-using Light = std::variant<PointLight, DirectionalLight, AreaLight>;
+/// The same radiance from everywhere, from infinitely far away (Mitsuba's `constant`).
+struct ConstantLight {
+    Spectrum radiance = Spectrum::Ones();  ///< [W m^-2 sr^-1]
+};
+
+using Light = std::variant<PointLight, DirectionalLight, ConstantLight, AreaLight>;
 
 }  // namespace caustics

@@ -11,11 +11,16 @@ namespace caustics {
 Scene::Scene(SceneDesc desc)
     : shapes_(std::move(desc.shapes)),
       light_of_shape_(shapes_.size(), -1),
+      ambient_(desc.ambient),
       camera_(desc.camera),
       sampling_(desc.sampling),
       origin_(desc.origin) {
     for (const PointLight& light : desc.point_lights) lights_.emplace_back(light);
     for (const DirectionalLight& light : desc.directional_lights) lights_.emplace_back(light);
+    if (desc.constant_light) {
+        background_ = desc.constant_light->radiance;
+        lights_.emplace_back(*desc.constant_light);
+    }
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         const Shape& shape = shapes_[i];
         bounds_.extend(caustics::bounds(shape));
@@ -39,17 +44,8 @@ void Scene::intersect_together(std::span<const Ray> rays,
 }
 
 bool Scene::occluded(const SegmentEnd& from, const SegmentEnd& to) const {
-    const Vec3 towards = to.position - from.position;
-    Ray ray;
-    ray.origin = offset_origin(from, towards);
-    const Vec3 segment = offset_origin(to, -towards) - ray.origin;
-    const float distance = segment.norm();
-    if (distance == 0) return false;
-    ray.direction = segment / distance;
-    // The far end is found from here, to some roundings of the distance: ending before it by more than
-    // those, the ray does not meet the surface that it goes to.
-    ray.max_distance = distance * (1 - 0x1p-19F);
-    return intersector_->occluded(ray);
+    const Ray ray = segment_between(from, to);
+    return ray.max_distance > 0 && intersector_->occluded(ray);
 }
 
 bool Scene::occluded_along(const SegmentEnd& from, const Vec3& direction) const {
@@ -79,6 +75,19 @@ float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direct
 Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction) {
     const float side = end.geometric_normal.dot(direction) < 0 ? -end.offset : end.offset;
     return end.position + side * end.geometric_normal;
+}
+
+Ray segment_between(const SegmentEnd& from, const SegmentEnd& to) {
+    const Vec3 towards = to.position - from.position;
+    Ray ray;
+    ray.origin = offset_origin(from, towards);
+    const Vec3 segment = offset_origin(to, -towards) - ray.origin;
+    const float distance = segment.norm();
+    // The far end is found from here, to some roundings of the distance: ending before it by more than
+    // those, the ray does not meet the surface that it goes to.
+    ray.max_distance = distance * (1 - 0x1p-19F);
+    if (distance > 0) ray.direction = segment / distance;
+    return ray;
 }
 
 Ray spawn_ray(const SegmentEnd& end, const Vec3& direction) {

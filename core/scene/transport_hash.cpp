@@ -58,6 +58,10 @@ void add_bsdf(const Bsdf& bsdf, Digest& digest) {
     }
     if (const auto* mirror = std::get_if<Conductor>(&bsdf.model))
         digest.add(mirror->specular_reflectance);
+    if (bsdf.mirror) {
+        digest.add(bsdf.mirror->weight);
+        digest.add(bsdf.mirror->reflectance);
+    }
 }
 
 void add_shape(const Shape& shape, Digest& digest) {
@@ -93,11 +97,19 @@ struct AddLight {
         digest.add(light.direction);
         digest.add(light.irradiance);
     }
+    void operator()(const ConstantLight& light) const { digest.add(light.radiance); }
     void operator()(const AreaLight& light) const {
         digest.add(light.shape);
         digest.add(light.radiance);
     }
 };
+
+// As maps that are kept know the kinds.
+std::size_t kind_number(const Light& light) {
+    if (std::holds_alternative<PointLight>(light)) return 0;
+    if (std::holds_alternative<DirectionalLight>(light)) return 1;
+    return std::holds_alternative<AreaLight>(light) ? 2 : 3;
+}
 
 }  // namespace
 
@@ -107,7 +119,7 @@ std::uint64_t transport_hash(const Scene& scene) {
     for (const Shape& shape : scene.shapes()) add_shape(shape, digest);
     digest.add(scene.lights().size());
     for (const Light& light : scene.lights()) {
-        digest.add(light.index());
+        digest.add(kind_number(light));
         std::visit(AddLight{digest}, light);
     }
     return digest.value();

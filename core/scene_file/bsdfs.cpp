@@ -1,92 +1,16 @@
 #include "core/scene_file/bsdfs.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <utility>
+
+#include "core/scene_file/iors.h"
 
 namespace caustics::scene_file {
 namespace {
 
-const std::vector<std::string> known_types{"diffuse", "schlick", "dielectric", "conductor",
-                                           "twosided"};
+const std::vector<std::string> known_types{"diffuse",   "schlick",   "phong",   "dielectric",
+                                           "conductor", "blendbsdf", "twosided"};
 const std::vector<std::string> later_types{
-    "phong",   "blendbsdf",      "roughconductor", "roughdielectric",
-    "plastic", "thindielectric", "mask",           "principled",
-    "ref"};
-
-// Refractive indices by name, with Mitsuba 3's constants.
-constexpr std::array<std::pair<const char*, float>, 23> named_iors{{
-    {"vacuum", 1.0F},      {"helium", 1.000036F},        {"hydrogen", 1.000132F},
-    {"air", 1.000277F},    {"carbon dioxide", 1.00045F}, {"water", 1.3330F},
-    {"acetone", 1.36F},    {"ethanol", 1.361F},          {"carbon tetrachloride", 1.461F},
-    {"glycerol", 1.4729F}, {"benzene", 1.501F},          {"silicone oil", 1.52045F},
-    {"bromine", 1.661F},   {"water ice", 1.31F},         {"fused quartz", 1.458F},
-    {"pyrex", 1.470F},     {"acrylic glass", 1.49F},     {"polypropylene", 1.49F},
-    {"bk7", 1.5046F},      {"sodium chloride", 1.544F},  {"amber", 1.55F},
-    {"pet", 1.5750F},      {"diamond", 2.419F},
-}};
-
-Ior read_named_glass(const JsonNode& node) {
-    const auto lower = [](std::string text) {
-        std::ranges::transform(text, text.begin(),
-                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return text;
-    };
-    std::string known;
-    for (const NamedGlass& glass : named_glasses()) {
-        if (lower(node.as_string()) == glass.name) return Ior::sellmeier(glass.terms);
-        known += (known.empty() ? "" : ", ") + std::string(glass.name);
-    }
-    node.fail("unknown glass \"" + node.as_string() + "\" (known: " + known + ")");
-}
-
-Ior read_sellmeier(const JsonNode& node) {
-    const auto material = node.find("material");
-    const auto b_node = node.find("B");
-    const auto c_node = node.find("C");
-    if (material) {
-        if (b_node || c_node) material->fail("give either a material or B and C");
-        return read_named_glass(*material);
-    }
-    const std::vector<JsonNode> b = node.at("B").as_array();
-    const std::vector<JsonNode> c = node.at("C").as_array();
-    if (b.empty() || b.size() != c.size())
-        node.fail("B and C of sellmeier's law are lists of equal length, at least 1");
-    std::vector<Ior::SellmeierTerm> terms;
-    for (std::size_t i = 0; i < b.size(); ++i)
-        terms.push_back({b[i].as_number_in(-1e6, 1e6), c[i].as_number_in(-1e6, 1e6)});
-    return Ior::sellmeier(std::move(terms));
-}
-
-Ior read_law(const JsonNode& node) {
-    const std::string type = read_type(node, "law of dispersion", {"cauchy", "sellmeier", "abbe"});
-    Ior ior = 1;
-    if (type == "cauchy")
-        ior =
-            Ior::cauchy(node.at("A").as_number_in(-1e6, 1e6), node.at("B").as_number_in(-1e6, 1e6));
-    if (type == "sellmeier") ior = read_sellmeier(node);
-    if (type == "abbe") {
-        const JsonNode v_d = node.at("V_d");
-        if (v_d.as_number_in(0, 1e6) == 0) v_d.fail("must be above 0");
-        ior = Ior::abbe(node.at("n_d").as_number_in(1, 10), v_d.as_number());
-    }
-    node.finish();
-    if (const auto why = ior.why_unusable())
-        node.fail(*why + " (between 380 and 730 nm a law gives numbers from 1 to 10)");
-    return ior;
-}
-
-// A number, a name or a law of the wavelength.
-Ior read_ior(const JsonNode& parent, const std::string& key, const Ior& fallback) {
-    const auto node = parent.find(key);
-    if (!node) return fallback;
-    if (node->is_object()) return read_law(*node);
-    if (node->is_number()) return static_cast<float>(node->as_number_in(0.1, 10));
-    std::vector<std::string> names;
-    for (const auto& [name, ior] : named_iors) names.emplace_back(name);
-    return named_iors[node->as_choice(names)].second;
-}
+    "roughconductor", "roughdielectric", "plastic", "thindielectric", "mask", "principled", "ref"};
 
 Dielectric read_dielectric(const JsonNode& node) {
     constexpr double unlimited = 1e30;
@@ -119,17 +43,88 @@ Schlick read_schlick(const JsonNode& node, Assets& assets) {
     return schlick;
 }
 
+float brightest(const Texture& texture) {
+    if (const auto* colour = std::get_if<Spectrum>(&texture)) return colour->maxCoeff();
+    if (const auto* board = std::get_if<Checkerboard>(&texture))
+        return std::max(board->color0.maxCoeff(), board->color1.maxCoeff());
+    float most = 0;
+    for (const Spectrum& texel : std::get<Bitmap>(texture).texels)
+        most = std::max(most, texel.maxCoeff());
+    return most;
+}
+
+// Of one colour, whether the two together are at most 1 in each channel; of textures, whether their
+// brightest places are.
+bool keeps_energy(const Texture& diffuse, const Texture& specular) {
+    constexpr float most = 1 + 1e-6F;
+    const auto* d = std::get_if<Spectrum>(&diffuse);
+    const auto* s = std::get_if<Spectrum>(&specular);
+    if (d != nullptr && s != nullptr) return (*d + *s <= most).all();
+    return brightest(diffuse) + brightest(specular) <= most;
+}
+
+Phong read_phong(const JsonNode& node, Assets& assets) {
+    Phong phong;
+    phong.diffuse_reflectance = read_texture(node, "diffuse_reflectance", 0.5, assets);
+    phong.specular_reflectance = read_texture(node, "specular_reflectance", 0.2, assets);
+    if (const auto exponent = node.find("exponent"))
+        phong.exponent = static_cast<float>(exponent->as_number_in(0, 1e6));
+    if (const auto model = node.find("model"))
+        phong.model = static_cast<Phong::Model>(model->as_choice({"normalised", "classic"}));
+    if (phong.model == Phong::Model::normalised &&
+        !keeps_energy(phong.diffuse_reflectance, phong.specular_reflectance))
+        node.fail(
+            "diffuse_reflectance and specular_reflectance together are above 1: more light would "
+            "leave than arrives (the model \"classic\" takes them)");
+    const float d = brightest(phong.diffuse_reflectance);
+    const float s = brightest(phong.specular_reflectance);
+    if (d + s > 0) phong.lobe_share = s / (d + s);
+    return phong;
+}
+
+// Mitsuba's order: weight 0 is the first of the two by the names of their keys, 1 the second.
+Bsdf read_blend(const JsonNode& node, Assets& assets) {
+    float weight = 0.5F;
+    if (const auto given = node.find("weight")) {
+        if (given->is_object())
+            given->fail("a textured weight is not supported (yet); give a number from 0 to 1");
+        weight = static_cast<float>(given->as_number_in(0, 1));
+    }
+    const auto children = node.children();
+    node.finish();
+    if (children.size() != 2)
+        node.fail(
+            "blendbsdf takes exactly two nested bsdfs: one of diffuse, schlick, phong and a "
+            "conductor");
+    const Bsdf first = read_bsdf(children[0].second, assets);
+    const Bsdf second = read_bsdf(children[1].second, assets);
+    const bool is_first = std::holds_alternative<Conductor>(first.model);
+    const Bsdf& mirror = is_first ? first : second;
+    Bsdf blend = is_first ? second : first;
+    if (!std::holds_alternative<Conductor>(mirror.model) || is_caster(blend) || blend.twosided ||
+        mirror.twosided)
+        node.fail(
+            "blendbsdf blends one of diffuse, schlick, phong with a conductor (twosided goes "
+            "around the blend)");
+    if (is_first) weight = 1 - weight;
+    if (weight == 0) return blend;
+    if (weight == 1) return mirror;
+    blend.mirror = MirrorPart{weight, std::get<Conductor>(mirror.model).specular_reflectance};
+    return blend;
+}
+
 Bsdf read_twosided(const JsonNode& node, Assets& assets) {
     const auto children = node.children();
     node.finish();
     if (children.size() != 1)
         node.fail(
             "twosided takes exactly one nested bsdf, the same on both sides (known: diffuse, "
-            "schlick, conductor)");
+            "schlick, phong, conductor, blendbsdf)");
     Bsdf inner = read_bsdf(children.front().second, assets);
     if (inner.twosided || std::holds_alternative<Dielectric>(inner.model))
         children.front().second.fail(
-            "only one-sided bsdfs can be made twosided (diffuse, schlick, conductor)");
+            "only one-sided bsdfs can be made twosided (diffuse, schlick, phong, conductor, "
+            "blendbsdf)");
     inner.twosided = true;
     return inner;
 }
@@ -144,9 +139,11 @@ bool is_bsdf_type(const std::string& type) {
 Bsdf read_bsdf(const JsonNode& node, Assets& assets) {
     const std::string type = read_type(node, "bsdf", known_types, later_types);
     Bsdf bsdf;
-    if (type == "twosided") bsdf = read_twosided(node, assets);
+    if (type == "twosided") return read_twosided(node, assets);
+    if (type == "blendbsdf") return read_blend(node, assets);
     if (type == "diffuse") bsdf.model = Diffuse{read_texture(node, "reflectance", 0.5, assets)};
     if (type == "schlick") bsdf.model = read_schlick(node, assets);
+    if (type == "phong") bsdf.model = read_phong(node, assets);
     if (type == "dielectric") bsdf.model = read_dielectric(node);
     if (type == "conductor") bsdf.model = read_conductor(node);
     node.finish();

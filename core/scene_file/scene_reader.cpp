@@ -54,6 +54,9 @@ PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
                         std::to_string(root * root) + " or " +
                         std::to_string((root + 1) * (root + 1)) + ")");
     }
+    if (const auto depth = node.find("split_depth"))
+        sampling.split_depth =
+            static_cast<int>(depth->as_integer_in(0, PixelSampling::most_split_depth));
     if (type == "adaptive") {
         const auto most = node.find("max_sample_count");
         sampling.max_sample_count =
@@ -175,13 +178,25 @@ void read_directional_light(const JsonNode& node, SceneDesc& desc) {
     desc.directional_lights.push_back(light);
 }
 
+void read_constant_light(const JsonNode& node, SceneDesc& desc) {
+    if (desc.constant_light) node.fail("a scene takes one constant light");
+    desc.constant_light = ConstantLight{read_colour(node, "radiance", 1, unlimited)};
+    node.finish();
+}
+
+void read_ambient_light(const JsonNode& node, SceneDesc& desc) {
+    desc.ambient += read_colour(node, "radiance", 1, unlimited);
+    node.finish();
+}
+
 // The children of the scene are told apart by their types alone.
 void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     const std::string type = node.at("type").as_string();
-    std::vector<std::string> known{"perspective", "point", "spot", "directional"};
-    std::vector<std::string> later{"constant", "envmap",       "projector",    "directionalarea",
-                                   "sunsky",   "thinlens",     "orthographic", "homogeneous",
-                                   "ref",      "heterogeneous"};
+    std::vector<std::string> known{"perspective", "point",    "spot",
+                                   "directional", "constant", "ambient"};
+    std::vector<std::string> later{"envmap",      "projector", "directionalarea",
+                                   "sunsky",      "thinlens",  "orthographic",
+                                   "homogeneous", "ref",       "heterogeneous"};
     const std::vector<std::string> integrators{"path",   "volpath", "direct", "ptracer",
                                                "moment", "aov",     "depth",  "photonmapper"};
     if (std::ranges::find(integrators, type) != integrators.end())
@@ -196,6 +211,8 @@ void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     read_type(node, "scene object", known, later);
     if (type == "point" || type == "spot") return read_point_light(node, type == "spot", draft);
     if (type == "directional") return read_directional_light(node, draft.desc);
+    if (type == "constant") return read_constant_light(node, draft.desc);
+    if (type == "ambient") return read_ambient_light(node, draft.desc);
     if (type != "perspective") {
         draft.desc.shapes.push_back(scene_file::make_for(
             node, [&] { return scene_file::read_shape(key, node, draft.assets); }));

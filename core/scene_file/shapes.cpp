@@ -196,7 +196,8 @@ void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
             continue;
         }
         read_type(child, "bsdf or emitter",
-                  {"area", "diffuse", "schlick", "dielectric", "conductor", "twosided"},
+                  {"area", "diffuse", "schlick", "phong", "dielectric", "conductor", "blendbsdf",
+                   "twosided"},
                   {"homogeneous", "heterogeneous"});
         if (shape.radiance) child.fail("a shape takes one emitter");
         shape.radiance = read_colour(child, "radiance", 1, far_away);

@@ -78,6 +78,9 @@ struct LightLine {
                            light.direction.x(), light.direction.y(), light.direction.z(),
                            rgb(light.irradiance));
     }
+    std::string operator()(const ConstantLight& light) const {
+        return fmt::format("  constant all around, radiance {} W/(m^2 sr)\n", rgb(light.radiance));
+    }
     std::string operator()(const AreaLight& light) const {
         return fmt::format("  area on {}, {:.6g} m^2, radiance {} W/(m^2 sr)\n",
                            scene.shapes()[light.shape].name, light.sampler.area(),
@@ -110,6 +113,8 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     for (const Shape& shape : scene.shapes()) text += shape_line(shape);
     text += "lights\n";
     for (const Light& light : scene.lights()) text += std::visit(LightLine{scene}, light);
+    if (!is_black(scene.ambient()))
+        text += fmt::format("  ambient, radiance {} W/(m^2 sr)\n", rgb(scene.ambient()));
     const AimedEmission emission(scene);
     text += fmt::format("  power aimed at the casters' bounds: {} W\n",
                         rgb(emission.empty() ? black() : emission.total_power()));

@@ -38,6 +38,14 @@ public:
             value("rgb", "irradiance", three(light.irradiance));
             xml_.close();
         }
+        if (scene_.constant_light) {
+            xml_.open("emitter", {{"type", "constant"}});
+            value("rgb", "radiance", three(scene_.constant_light->radiance));
+            xml_.close();
+        }
+        if (!is_black(scene_.ambient))
+            refuse_export(settings_, "an ambient light",
+                          "Mitsuba has none (a constant light it has)");
         for (std::size_t i = 0; i < scene_.shapes.size(); ++i) write_shape(i);
         xml_.close();
         out_.files.front().bytes = xml_.text();
@@ -180,6 +188,10 @@ private:
     void write_bsdf(std::size_t i, const std::string& name) {
         const Bsdf& bsdf = scene_.shapes[i].bsdf;
         if (bsdf.twosided) xml_.open("bsdf", {{"type", "twosided"}});
+        if (bsdf.mirror) {
+            xml_.open("bsdf", {{"type", "blendbsdf"}});
+            number("weight", static_cast<double>(bsdf.mirror->weight));
+        }
         if (const auto* diffuse = std::get_if<Diffuse>(&bsdf.model)) {
             xml_.open("bsdf", {{"type", "diffuse"}});
             write_texture(diffuse->reflectance, name);
@@ -187,17 +199,26 @@ private:
         } else if (const auto* glass = std::get_if<Dielectric>(&bsdf.model)) {
             write_glass(i, *glass);
         } else if (const auto* mirror = std::get_if<Conductor>(&bsdf.model)) {
-            xml_.open("bsdf", {{"type", "conductor"}});
-            value("string", "material", "none");
-            value("rgb", "specular_reflectance", three(mirror->specular_reflectance));
-            xml_.close();
+            write_conductor(mirror->specular_reflectance);
         } else {
-            refuse(i,
-                   "Mitsuba has no schlick bsdf; give the shape one that it has, such as --set "
-                   "'" +
-                       place(i) + "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}'");
+            const std::string kind =
+                std::holds_alternative<Phong>(bsdf.model) ? "phong" : "schlick";
+            refuse(i, "Mitsuba has no " + kind +
+                          " bsdf; give the shape one that it has, such as --set '" + place(i) +
+                          "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}'");
+        }
+        if (bsdf.mirror) {
+            write_conductor(bsdf.mirror->reflectance);
+            xml_.close();
         }
         if (bsdf.twosided) xml_.close();
+    }
+
+    void write_conductor(const Spectrum& reflectance) {
+        xml_.open("bsdf", {{"type", "conductor"}});
+        value("string", "material", "none");
+        value("rgb", "specular_reflectance", three(reflectance));
+        xml_.close();
     }
 
     void write_glass(std::size_t i, const Dielectric& glass) {

@@ -53,6 +53,9 @@ std::string mesh2(const TriangleMesh& mesh, const Checkerboard* board) {
     return text;
 }
 
+constexpr const char* mirror_photons =
+    "photons { target reflection on refraction off collect off }";
+
 class PovrayWriter {
 public:
     PovrayWriter(const SceneDesc& scene, const ExportSettings& settings)
@@ -65,6 +68,11 @@ public:
         write_camera();
         for (const PointLight& light : scene_.point_lights) write_light(light);
         for (const DirectionalLight& light : scene_.directional_lights) write_light(light);
+        if (scene_.constant_light)
+            refuse_export(
+                settings_, "a constant light",
+                "POV-Ray's sky lights nothing without radiosity; take point or directional "
+                "lights");
         for (const Shape& shape : scene_.shapes) write_shape(shape);
         out_.files = {{"scene.ini", ini()}, {"scene.pov", text_}};
         return std::move(out_);
@@ -107,9 +115,9 @@ private:
     void write_settings() {
         const bool casters = !world_.casters().empty();
         text_ += fmt::format(
-            "global_settings {{\n  assumed_gamma 1.0\n  ambient_light rgb 0\n"
+            "global_settings {{\n  assumed_gamma 1.0\n  ambient_light rgb {}\n"
             "  max_trace_level {}\n  adc_bailout 0\n",
-            settings_.max_bounces + 2);
+            is_black(scene_.ambient) ? "0" : three(scene_.ambient), settings_.max_bounces + 2);
         if (casters)
             text_ += fmt::format(
                 "  #ifndef (Photon_Count) #declare Photon_Count = 200000; #end\n"
@@ -172,17 +180,27 @@ private:
                          fmt::format("pigment {{ rgb 0 }} finish {{ ambient 0 diffuse 0 reflection "
                                      "{{ rgb {} }} }}",
                                      three(mirror->specular_reflectance)),
-                         "photons { target reflection on refraction off collect off }");
+                         mirror_photons);
         else if (const auto* diffuse = std::get_if<Diffuse>(&shape.bsdf.model))
-            write_opaque(shape,
-                         pigment(shape, diffuse->reflectance) + " finish { ambient 0 diffuse 1 }",
-                         "");
+            write_opaque(
+                shape, pigment(shape, diffuse->reflectance) + finish(shape.bsdf),
+                shape.bsdf.mirror ? "photons { target reflection on refraction off }" : "");
+        else if (const auto* phong = std::get_if<Phong>(&shape.bsdf.model))
+            write_phong(shape, *phong);
         else
             refuse(shape,
                    "POV-Ray has no schlick bsdf; give the shape one that it has, such as "
                    "--set '/" +
                        shape.name + "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}'");
         text_ += "}\n";
+    }
+
+    // Of a diffuse surface, perhaps with a mirror part.
+    static std::string finish(const Bsdf& bsdf) {
+        if (!bsdf.mirror) return " finish { ambient 1 diffuse 1 }";
+        const float rest = 1 - bsdf.mirror->weight;
+        return fmt::format(" finish {{ ambient {} diffuse {} reflection {{ rgb {} }} }}", rest,
+                           rest, three(Spectrum(bsdf.mirror->weight * bsdf.mirror->reflectance)));
     }
 
     void write_geometry(const Shape& shape) {
@@ -229,6 +247,27 @@ private:
         if (!both)
             text_ += fmt::format("  interior_texture {{ {} }}\n", inverted ? texture : black);
         if (!photons.empty()) text_ += "  " + photons + "\n";
+    }
+
+    // POV-Ray's highlight is the lamp's colour times cos^e a. With lamps of pi times our irradiance
+    // beneath a pigment of 1, `phong` is pi k_s for the same light.
+    void write_phong(const Shape& shape, const Phong& phong) {
+        if (shape.bsdf.mirror)
+            refuse(shape, "a blend of phong and a conductor is not exported to POV-Ray");
+        const auto* specular = std::get_if<Spectrum>(&phong.specular_reflectance);
+        if (phong.model != Phong::Model::classic)
+            refuse(
+                shape,
+                "POV-Ray's highlight is that of the model \"classic\"; the normalised one is not "
+                "exported");
+        if (specular == nullptr || (*specular != (*specular)[0]).any())
+            refuse(shape,
+                   "POV-Ray's highlight has one strength: give specular_reflectance a number");
+        write_opaque(shape,
+                     pigment(shape, phong.diffuse_reflectance) +
+                         fmt::format(" finish {{ ambient 1 diffuse 1 phong {} phong_size {} }}",
+                                     pi * (*specular)[0], phong.exponent),
+                     "");
     }
 
     void check_glass(const Shape& shape, const Dielectric& dielectric) {

@@ -25,6 +25,7 @@ std::vector<OneLight> one_by_one(const SceneDesc& scene) {
     SceneDesc dark = scene;
     dark.point_lights.clear();
     dark.directional_lights.clear();
+    dark.constant_light.reset();
     for (Shape& shape : dark.shapes) shape.radiance.reset();
     std::vector<OneLight> lights;
     for (const PointLight& light : scene.point_lights) {
@@ -34,6 +35,10 @@ std::vector<OneLight> one_by_one(const SceneDesc& scene) {
     for (const DirectionalLight& light : scene.directional_lights) {
         lights.push_back({fmt::format("directional light {}", lights.size() + 1), dark});
         lights.back().scene.directional_lights = {light};
+    }
+    if (scene.constant_light) {
+        lights.push_back({"constant light", dark});
+        lights.back().scene.constant_light = scene.constant_light;
     }
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
         if (!scene.shapes[i].radiance) continue;
@@ -70,20 +75,24 @@ public:
 
     void follow_by_chance(LightAccount& account) const {
         MeanOfPaths arrived;
+        std::vector<Deposit> deposits;
         const double share = 1.0 / static_cast<double>(paths);
         for (std::uint64_t path = 0; path < paths; ++path) {
             Rng rng(1, Stage::survey, path);
             const auto particle = emission_.emit(rng);
             if (!particle) continue;
             LightPathCounts end;
-            const auto deposit = trace_light_path(scene_, *particle, {max_bounces_}, rng, end);
+            deposits.clear();
+            trace_light_path(scene_, *particle, {max_bounces_}, rng, end, deposits);
             const double sent = watts(particle->flux) * share;
             account.sent += sent;
             if (end.missed > 0) account.missed += sent;
             if (end.escaped > 0) account.escaped += sent;
             if (end.on_black_side > 0) account.on_black_side += sent;
             if (end.depth_limited > 0) account.depth_limited += sent;
-            arrived.add(deposit ? watts(deposit->flux) : 0);
+            double sum = 0;
+            for (const Deposit& deposit : deposits) sum += watts(deposit.flux);
+            arrived.add(sum);
         }
         account.arrived = arrived.mean();
         account.arrived_error = arrived.error();

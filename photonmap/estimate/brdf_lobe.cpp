@@ -43,7 +43,10 @@ BrdfLobe reflection_of(const ReceiverPoint& point) {
     } else {
         reflection.model = BrdfLobe::Model::other;
         reflection.scale = SpectrumSum::Ones();
+        return reflection;
     }
+    if (const auto& mirror = point.bsdf->mirror)
+        reflection.scale *= 1 - static_cast<double>(mirror->weight);
     return reflection;
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "photonmap/estimate/density_filter.h"
-
 namespace caustics {
 
 namespace {
@@ -45,10 +43,9 @@ RadianceEstimate::Disc RadianceEstimate::disc(const ReceiverPoint& point,
     }
     disc.photons.photons = photons;
     scratch.used_photons += photons.count;
-    if (settings_.filter != FilterKind::none) {
+    if (settings_.filter.kind != FilterKind::none) {
         scratch.weight.reserve(photons.count + widest_register);
-        shading_.weigh(filter_polynomial(settings_.filter), photons, disc.squared_radius,
-                       scratch.weight.data());
+        shading_.weigh(filter_, photons, disc.squared_radius, scratch.weight.data());
         disc.photons.weight = scratch.weight.data();
     }
     return disc;

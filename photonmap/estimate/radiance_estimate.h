@@ -4,6 +4,7 @@
 
 #include "core/caustic_estimator.h"
 #include "photonmap/estimate/adaptive_n.h"
+#include "photonmap/estimate/density_filter.h"
 #include "photonmap/estimate/shading.h"
 #include "photonmap/kernels/aligned_array.h"
 #include "photonmap/photons/photon_map_params.h"
@@ -44,14 +45,17 @@ public:
     struct Settings {
         GatherLimits limits;
         PhotonMapParams::Estimator estimator = PhotonMapParams::Estimator::unbiased;
-        FilterKind filter = FilterKind::none;
+        DensityFilter filter;
         bool adaptive = false;  ///< whether N is the largest number (AdaptiveN)
         double share = 1;       ///< of the squared radius within which photons count (pass_share)
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1
     };
 
     RadianceEstimate(const Settings& settings, Isa isa)
-        : settings_(settings), shading_(isa), adaptive_(isa) {}
+        : settings_(settings),
+          shading_(isa),
+          adaptive_(isa),
+          filter_(settings.filter.polynomial()) {}
 
     /// [W m^-2 sr^-1] leaving along the point's `wo`, from what a tree gathered at it.
     Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
@@ -74,6 +78,7 @@ private:
     Settings settings_;
     Shading shading_;
     AdaptiveN adaptive_;
+    FilterPolynomial filter_;
 };
 
 }  // namespace caustics

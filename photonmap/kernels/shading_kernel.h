@@ -42,7 +42,7 @@ inline constexpr size_t longest_run = 512;
 
 /// A filter's weight as a polynomial of (d/r)^2, or of d/r where `of_distance`.
 struct FilterPolynomial {
-    static constexpr size_t most_coefficients = 8;
+    static constexpr size_t most_coefficients = 16;
     float coefficient[most_coefficients];  ///< of the powers 0, 1, ..., degree
     size_t degree;
     bool of_distance;

@@ -47,6 +47,9 @@ struct PhotonMapParams {
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
     FilterKind filter = FilterKind::none;
+    double filter_k = 1.1;       ///< of the cone
+    double filter_beta = 1.953;  ///< of the Gaussian
+    double filter_alpha = 0;     ///< of the Gaussian as printed; 0: normalised
     /// Progressive: so many maps of that size, one after another, whose estimates are averaged
     /// (progressive.h).
     int passes = 1;

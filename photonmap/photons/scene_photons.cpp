@@ -53,7 +53,7 @@ private:
     struct Batch {
         EmissionSamples samples;
         std::vector<LightPathStart> starts;
-        std::vector<std::optional<Deposit>> deposits;
+        std::vector<DepositOfMany> deposits;
     };
 
     // Neighbours in the square start side by side.
@@ -76,12 +76,7 @@ private:
         const auto particle = emission_.emit(rng);
         if (!particle) return;
         ++chunk.counts.aimed;
-        if (splits()) {
-            follow_branches(*particle, path, rng, chunk);
-        } else if (const auto deposit =
-                       trace_light_path(scene_, *particle, settings_.path, rng, chunk.counts)) {
-            chunk.add(path, *deposit);
-        }
+        follow_alone(*particle, path, rng, chunk);
     }
 
     void draw(std::uint64_t first, std::size_t count, EmissionSamples& samples) const {
@@ -101,19 +96,20 @@ private:
     void follow(Batch& batch, PhotonChunk& chunk) const {
         if (splits()) {
             for (LightPathStart& start : batch.starts)
-                follow_branches(start.particle, start.path, start.rng, chunk);
+                follow_alone(start.particle, start.path, start.rng, chunk);
             return;
         }
-        batch.deposits.resize(batch.starts.size());
+        batch.deposits.clear();
         trace_light_paths(scene_, batch.starts, settings_.path, chunk.counts, batch.deposits);
-        for (std::size_t i = 0; i < batch.starts.size(); ++i)
-            if (batch.deposits[i]) chunk.add(batch.starts[i].path, *batch.deposits[i]);
+        for (const DepositOfMany& one : batch.deposits)
+            chunk.add(batch.starts[one.start].path, one.deposit);
     }
 
-    void follow_branches(const LightParticle& particle, std::uint64_t path, Rng& rng,
-                         PhotonChunk& chunk) const {
+    void follow_alone(const LightParticle& particle, std::uint64_t path, Rng& rng,
+                      PhotonChunk& chunk) const {
         chunk.deposits.clear();
-        trace_split_path(scene_, particle, settings_.path, rng, chunk.counts, chunk.deposits);
+        (splits() ? trace_split_path : trace_light_path)(scene_, particle, settings_.path, rng,
+                                                         chunk.counts, chunk.deposits);
         for (const Deposit& deposit : chunk.deposits) chunk.add(path, deposit);
     }
 
@@ -178,7 +174,7 @@ public:
             if (stratified()) plan.strata = StratifiedSquare::at_most(plan.emitted);
             return trace_planned(plan);
         }
-        if (stratified() || splits()) return trace_exactly();
+        if (stratified() || most_per_path() > 1) return trace_exactly();
         const PhotonTarget target{
             .stored = params_.photons, .capacity = params_.photons, .certain = params_.photons};
         return trace_photons(ScenePaths(scene_, emission_, settings({})), emission_.total_power(),
@@ -188,6 +184,14 @@ public:
 private:
     bool stratified() const { return params_.emission == PhotonMapParams::Emission::stratified; }
     bool splits() const { return params_.interaction == Interaction::split; }
+
+    // Photons that a path stores; one that splits stores few, as each takes its share of the weight.
+    std::uint64_t most_per_path() const {
+        if (splits()) return static_cast<std::uint64_t>(1 / lightest_branch);
+        const auto is_both = [](const Shape& shape) { return shape.bsdf.mirror.has_value(); };
+        if (std::ranges::none_of(scene_.shapes(), is_both)) return 1;
+        return static_cast<std::uint64_t>(std::clamp(params_.max_bounces, 1, 64));
+    }
 
     ScenePaths::Settings settings(const std::optional<StratifiedSquare>& strata) const {
         return {.path = {params_.max_bounces, params_.interaction, traced_},
@@ -206,9 +210,7 @@ private:
     }
 
     TracedPhotons trace_planned(const Plan& plan) const {
-        // A split path stores few photons: each takes its share of the weight.
-        const std::uint64_t per_path =
-            splits() ? static_cast<std::uint64_t>(1 / lightest_branch) : 1;
+        const std::uint64_t per_path = most_per_path();
         const PhotonTarget target{
             .emitted = plan.emitted,
             .capacity = per_path * std::min(plan.emitted, most_photons / per_path),

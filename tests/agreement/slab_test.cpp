@@ -47,8 +47,9 @@ Spectrum transmitted(const Scene& scene, double degrees, std::uint64_t paths) {
     LightPathCounts counts;
     for (std::uint64_t path = 0; path < paths; ++path) {
         Rng rng(3, Stage::test, path);
-        if (const auto deposit = trace_light_path(scene, particle, {1000}, rng, counts))
-            sum += deposit->flux.cast<double>();
+        std::vector<Deposit> deposits;
+        trace_light_path(scene, particle, {1000}, rng, counts, deposits);
+        for (const Deposit& deposit : deposits) sum += deposit.flux.cast<double>();
     }
     EXPECT_EQ(counts.missed, 0U);
     EXPECT_EQ(counts.absorbed, 0U);
@@ -173,11 +174,12 @@ TEST(Slab, EverySegmentIsInTheMediumItEndsIn) {
         LightPathCounts counts;
         const LightParticle particle{spawn_ray({Vec3(0.1F, 0.2F, 3)}, -Vec3::UnitZ()),
                                      Spectrum::Ones()};
-        const auto deposit = trace_light_path(scene, particle, {16}, rng, counts);
-        if (!deposit || deposit->bounces != 2) continue;
+        std::vector<Deposit> deposits;
+        trace_light_path(scene, particle, {16}, rng, counts, deposits);
+        if (deposits.empty() || deposits[0].bounces != 2) continue;
         ++arrived;
         const Spectrum expected = (-(inside * 0.5F) - outside * (3 + 1.5F)).exp();
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(deposit->flux[c] / expected[c], 1, 2e-5);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(deposits[0].flux[c] / expected[c], 1, 2e-5);
     }
     EXPECT_GT(arrived, 80);  // T = 0.92
 }

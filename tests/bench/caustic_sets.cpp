@@ -89,14 +89,14 @@ Ray aimed_ray(Caustic caustic, const Vec2d& aim) {
 double stored_share(const Scene& scene, Caustic caustic) {
     constexpr std::size_t paths = 20'000;
     LightPathCounts counts;
-    std::size_t stored = 0;
+    std::vector<Deposit> stored;
     for (std::size_t path = 0; path < paths; ++path) {
         Rng rng(seed + 1, Stage::test, path);
         const double u = static_cast<double>(rng.next()), v = static_cast<double>(rng.next());
         const LightParticle particle{aimed_ray(caustic, {u, v}), Spectrum::Ones()};
-        stored += trace_light_path(scene, particle, {16}, rng, counts) ? 1 : 0;
+        trace_light_path(scene, particle, {16}, rng, counts, stored);
     }
-    return static_cast<double>(stored) / paths;
+    return static_cast<double>(stored.size()) / paths;
 }
 
 Photon photon_of(const Deposit& deposit) {
@@ -144,13 +144,15 @@ std::vector<Photon> caustic_photons(Caustic caustic, Arrival arrival, std::size_
     const AimPoints aim(arrival, static_cast<std::size_t>(1.02 * paths + 50 * std::sqrt(paths)));
     std::vector<Photon> photons;
     photons.reserve(count);
+    std::vector<Deposit> deposits;
     LightPathCounts counts;
     for (std::size_t path = 0; photons.size() < count; ++path) {
         if (path == aim.most_paths()) throw std::runtime_error("too few strata for the photons");
         Rng rng(seed, Stage::photons, path);
         const LightParticle particle{aimed_ray(caustic, aim(path, rng)), Spectrum::Ones()};
-        if (const auto deposit = trace_light_path(scene, particle, {16}, rng, counts))
-            photons.push_back(photon_of(*deposit));
+        deposits.clear();
+        trace_light_path(scene, particle, {16}, rng, counts, deposits);
+        for (const Deposit& deposit : deposits) photons.push_back(photon_of(deposit));
     }
     return photons;
 }

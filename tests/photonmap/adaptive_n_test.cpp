@@ -17,7 +17,7 @@ using Settings = RadianceEstimate::Settings;
 
 Settings adaptive(std::size_t nearest, float max_radius = 1) {
     return {.limits = {nearest, max_radius, true},
-            .filter = FilterKind::epanechnikov,
+            .filter = {FilterKind::epanechnikov},
             .adaptive = true};
 }
 
@@ -199,7 +199,7 @@ TEST(AdaptiveN, KeepsDarknessBesideAnEdgeAndEvennessAwayFromIt) {
     };
     const Settings own = adaptive(200);
     for (const std::size_t fixed : {20U, 50U}) {
-        const Settings same{.limits = {fixed, 1}, .filter = FilterKind::epanechnikov};
+        const Settings same{.limits = {fixed, 1}, .filter = {FilterKind::epanechnikov}};
         EXPECT_LT(error(own, -0.03F, -0.004F, 0), 0.4 * error(same, -0.03F, -0.004F, 0));
         EXPECT_LT(error(own, 0.06F, 0.5F, 1), 0.7 * error(same, 0.06F, 0.5F, 1));
     }

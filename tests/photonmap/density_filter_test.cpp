@@ -37,17 +37,41 @@ double polynomial_at(const FilterPolynomial& filter, double u) {
 TEST(DensityFilter, WeightsHaveAMeanOfOneOverTheDisc) {
     for (const FilterKind kind : kinds) {
         SCOPED_TRACE(name(kind));
-        EXPECT_NEAR(integral([&](double u) { return filter_weight(kind, u); }), 1, 1e-7);
-        const FilterPolynomial& polynomial = filter_polynomial(kind);
+        EXPECT_NEAR(integral([&](double u) { return DensityFilter{kind}.weight(u); }), 1, 1e-7);
+        const FilterPolynomial polynomial = DensityFilter{kind}.polynomial();
         EXPECT_NEAR(integral([&](double u) { return polynomial_at(polynomial, u); }), 1, 1e-6);
     }
 }
 
 TEST(DensityFilter, AreThoseOfTheirSources) {
-    EXPECT_NEAR(filter_weight(FilterKind::cone, 0.25), (1 - 0.5 / 1.1) / (1 - 2 / 3.3), 1e-12);
+    EXPECT_NEAR(DensityFilter{FilterKind::cone}.weight(0.25), (1 - 0.5 / 1.1) / (1 - 2 / 3.3),
+                1e-12);
     const double jensen = 0.918 * (1 - (1 - std::exp(-1.953 * 0.3 / 2)) / (1 - std::exp(-1.953)));
-    EXPECT_NEAR(filter_weight(FilterKind::gaussian, 0.3), jensen / 0.5311, 2e-4);
-    EXPECT_NEAR(filter_weight(FilterKind::epanechnikov, 0.25), 1.5, 1e-12);
+    EXPECT_NEAR(DensityFilter{FilterKind::gaussian}.weight(0.3), jensen / 0.5311, 2e-4);
+    EXPECT_NEAR(DensityFilter{FilterKind::epanechnikov}.weight(0.25), 1.5, 1e-12);
+}
+
+TEST(DensityFilter, TakeTheNumbersOfTheLiterature) {
+    for (const double k : {1.0, 2.5}) {
+        const DensityFilter cone{.kind = FilterKind::cone, .k = k};
+        EXPECT_NEAR(cone.weight(0.36), (1 - 0.6 / k) / (1 - 2 / (3 * k)), 1e-12);
+        EXPECT_NEAR(integral([&](double u) { return polynomial_at(cone.polynomial(), u); }), 1,
+                    1e-6);
+    }
+    for (const double beta : {0.1, 1.0, 3.0, 8.0}) {
+        const DensityFilter even{.kind = FilterKind::gaussian, .beta = beta};
+        const FilterPolynomial polynomial = even.polynomial();
+        const DensityFilter printed{.kind = FilterKind::gaussian, .beta = beta, .alpha = 0.918};
+        EXPECT_NEAR(integral([&](double u) { return even.weight(u); }), 1, 1e-7);
+        for (const double u : {0.0, 0.2, 0.7, 1.0}) {
+            EXPECT_NEAR(polynomial_at(polynomial, u), even.weight(u), beta > 3 ? 1e-5 : 1e-6)
+                << beta;
+            EXPECT_NEAR(printed.weight(u),
+                        0.918 * (1 - (1 - std::exp(-beta * u / 2)) / (1 - std::exp(-beta))), 1e-12);
+        }
+    }
+    const DensityFilter jensen{.kind = FilterKind::gaussian, .alpha = 0.918};
+    EXPECT_NEAR(integral([&](double u) { return jensen.weight(u); }), 0.531, 1e-3);
 }
 
 TEST(DensityFilter, KernelsAreTheFormulaAndTheSameBitsOnEveryInstructionSet) {
@@ -58,13 +82,13 @@ TEST(DensityFilter, KernelsAreTheFormulaAndTheSameBitsOnEveryInstructionSet) {
     const GatheredPhotons photons{squared_distance.data(), nullptr, nullptr, count, count - 1};
     for (const FilterKind kind : kinds) {
         std::vector<float> plain(count + 16), weight(count + 16);
-        Shading(Isa::plain).weigh(filter_polynomial(kind), photons, 7, plain.data());
+        Shading(Isa::plain).weigh(DensityFilter{kind}.polynomial(), photons, 7, plain.data());
         for (const Isa isa : supported_isas()) {
-            Shading(isa).weigh(filter_polynomial(kind), photons, 7, weight.data());
+            Shading(isa).weigh(DensityFilter{kind}.polynomial(), photons, 7, weight.data());
             for (std::size_t i = 0; i < count; ++i) {
                 ASSERT_EQ(weight[i], plain[i]) << name(kind) << " " << name(isa) << " " << i;
                 const double u = static_cast<double>(squared_distance[i]) / 7;
-                ASSERT_NEAR(static_cast<double>(weight[i]), filter_weight(kind, u), 1e-6);
+                ASSERT_NEAR(static_cast<double>(weight[i]), DensityFilter{kind}.weight(u), 1e-6);
             }
         }
     }
@@ -118,7 +142,7 @@ TEST_F(UniformField, RawReadsHighByTheWeightAtTheRim) {
         const double unbiased = relative_irradiance(settings).mean();
         settings.estimator = Estimator::raw;
         EXPECT_NEAR(relative_irradiance(settings).mean() - unbiased,
-                    plain * filter_weight(kind, 1) / 9, 2e-6)
+                    plain * DensityFilter{kind}.weight(1) / 9, 2e-6)
             << name(kind);
     }
 }
@@ -130,7 +154,7 @@ TEST_F(UniformField, FiltersScatterByTheirMeanSquareWeight) {
         const auto moments =
             relative_irradiance({.limits = {GatherLimits::all, radius_of(25)}, .filter = kind});
         const double square =
-            integral([&](double u) { return std::pow(filter_weight(kind, u), 2); });
+            integral([&](double u) { return std::pow(DensityFilter{kind}.weight(u), 2); });
         EXPECT_NEAR(moments.deviation() / std::sqrt(square / 25), 1, 0.03) << name(kind);
     }
 }
@@ -141,7 +165,7 @@ double share_beyond(FilterKind kind, double distance) {
         const double r = std::sqrt(u);
         const double angle =
             r <= std::abs(distance) ? (distance > 0 ? 0 : pi_d) : std::acos(distance / r);
-        return filter_weight(kind, u) * angle / pi_d;
+        return DensityFilter{kind}.weight(u) * angle / pi_d;
     };
     return integral(ring);
 }

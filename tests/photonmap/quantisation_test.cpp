@@ -27,8 +27,7 @@ std::vector<Deposit> ball_deposits(std::size_t count) {
         Rng rng(61, Stage::photons, path);
         const std::optional<LightParticle> particle = emission.emit(rng);
         if (!particle) continue;
-        if (const auto deposit = trace_light_path(scene, *particle, {16}, rng, counts))
-            deposits.push_back(*deposit);
+        trace_light_path(scene, *particle, {16}, rng, counts, deposits);
     }
     return deposits;
 }

@@ -121,7 +121,7 @@ TEST(RadianceEstimate, CoincidentPhotonsGiveALargeFiniteValue) {
             for (const Estimator estimator : {Estimator::unbiased, Estimator::raw}) {
                 const Settings settings{.limits = {.nearest = 10, .max_radius = 1},
                                         .estimator = estimator,
-                                        .filter = filter};
+                                        .filter = {filter}};
                 const Spectrum value = map.irradiance(settings, floor_point(x));
                 EXPECT_TRUE(is_finite(value));
                 EXPECT_GT(value[0], 1e9F);

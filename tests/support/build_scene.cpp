@@ -15,6 +15,15 @@ Bsdf schlick(float reflectance, float alpha) {
     return {Schlick{Spectrum(Spectrum::Constant(reflectance)), alpha}, false};
 }
 
+Bsdf phong(float diffuse, float specular, float exponent, Phong::Model model) {
+    return {Phong{.diffuse_reflectance = Spectrum(Spectrum::Constant(diffuse)),
+                  .specular_reflectance = Spectrum(Spectrum::Constant(specular)),
+                  .exponent = exponent,
+                  .model = model,
+                  .lobe_share = specular / (diffuse + specular)},
+            false};
+}
+
 Bsdf mirror(float reflectance) { return {Conductor{Spectrum::Constant(reflectance)}, true}; }
 
 Bsdf glass(float int_ior, float ext_ior, const Spectrum& absorption,

@@ -11,6 +11,8 @@ namespace caustics::support {
 /// Bsdfs by one word.
 Bsdf diffuse(float reflectance, bool twosided = false);
 Bsdf schlick(float reflectance, float alpha);
+Bsdf phong(float diffuse, float specular, float exponent,
+           Phong::Model model = Phong::Model::normalised);
 Bsdf mirror(float reflectance = 1);
 Bsdf glass(float int_ior, float ext_ior = 1, const Spectrum& absorption = black(),
            const Spectrum& ext_absorption = black());

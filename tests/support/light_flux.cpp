@@ -28,17 +28,29 @@ std::optional<LightParticle> emit_unaimed(const Scene& scene, const AreaLight& l
                          light.radiance * pi * area};
 }
 
-std::optional<LightParticle> emit_unaimed(const Scene& scene, const DirectionalLight& light,
-                                          Rng& rng) {
+// Across a direction, over a disc that holds the whole scene.
+LightParticle across(const Scene& scene, const Vec3& direction, const Spectrum& irradiance,
+                     Rng& rng) {
     const float radius = scene.diameter() / 2;
     const float u0 = rng.next();
     const float u1 = rng.next();
     const Vec2 local = radius * uniform_disc(u0, u1);
-    const Frame frame(light.direction);
+    const Frame frame(direction);
     const Vec3 start = scene.bounds().center() + frame.s * local.x() + frame.t * local.y() -
-                       1.01F * radius * light.direction;
-    return LightParticle{spawn_ray({start}, light.direction),
-                         light.irradiance * pi * radius * radius};
+                       1.01F * radius * direction;
+    return {spawn_ray({start}, direction), irradiance * pi * radius * radius};
+}
+
+std::optional<LightParticle> emit_unaimed(const Scene& scene, const DirectionalLight& light,
+                                          Rng& rng) {
+    return across(scene, light.direction, light.irradiance, rng);
+}
+
+std::optional<LightParticle> emit_unaimed(const Scene& scene, const ConstantLight& light,
+                                          Rng& rng) {
+    const float u0 = rng.next();
+    const float u1 = rng.next();
+    return across(scene, uniform_cap(2, u0, u1).normalized(), light.radiance * 4 * pi, rng);
 }
 
 }  // namespace
@@ -65,19 +77,22 @@ ArrivedFlux arrived_flux(const Scene& scene, const Emit& emit, std::uint64_t pat
     std::vector<double> sums(cells, 0);
     std::vector<double> squares(cells, 0);
     ArrivedFlux result;
+    std::vector<Deposit> deposits;
     for (std::uint64_t path = 0; path < paths; ++path) {
         Rng rng(seed, Stage::test, path);
         ++result.counts.emitted;
         const std::optional<LightParticle> particle = emit(rng);
         if (!particle) continue;
         ++result.counts.aimed;
-        const auto deposit = trace_light_path(scene, *particle, {max_bounces}, rng, result.counts);
-        if (!deposit) continue;
-        const int cell = cell_of(*deposit);
-        if (cell < 0) continue;
-        const auto flux = static_cast<double>(deposit->flux.mean());
-        sums[static_cast<std::size_t>(cell)] += flux;
-        squares[static_cast<std::size_t>(cell)] += flux * flux;
+        deposits.clear();
+        trace_light_path(scene, *particle, {max_bounces}, rng, result.counts, deposits);
+        for (const Deposit& deposit : deposits) {
+            const int cell = cell_of(deposit);
+            if (cell < 0) continue;
+            const auto flux = static_cast<double>(deposit.flux.mean());
+            sums[static_cast<std::size_t>(cell)] += flux;
+            squares[static_cast<std::size_t>(cell)] += flux * flux;
+        }
     }
     const auto n = static_cast<double>(paths);
     for (std::size_t i = 0; i < cells; ++i) {

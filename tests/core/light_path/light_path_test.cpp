@@ -16,6 +16,16 @@
 namespace caustics {
 namespace {
 
+// The only deposit of a path where nothing is a receiver and a caster.
+std::optional<Deposit> trace_one(const Scene& scene, const LightParticle& particle,
+                                 const LightPathSettings& settings, Rng& rng,
+                                 LightPathCounts& counts) {
+    std::vector<Deposit> deposits;
+    trace_light_path(scene, particle, settings, rng, counts, deposits);
+    EXPECT_LE(deposits.size(), 1U);
+    return deposits.empty() ? std::nullopt : std::optional<Deposit>(deposits[0]);
+}
+
 constexpr std::uint64_t paths = 40'000;
 
 // Sends every path and calls sent(particle) for those that leave; the mean flux they carry.
@@ -225,7 +235,7 @@ TEST(LightPath, EveryPathHasOneEnd) {
         std::uint64_t deposits = 0;
         send(emission, [&](const LightParticle& particle, Rng& rng) {
             ++counts.aimed;
-            const auto deposit = trace_light_path(scene, particle, {max_bounces}, rng, counts);
+            const auto deposit = trace_one(scene, particle, {max_bounces}, rng, counts);
             if (!deposit) return;
             ++deposits;
             ASSERT_TRUE(is_finite(deposit->flux));
@@ -262,12 +272,14 @@ TEST(LightPath, PathsThatGoTogetherArriveWhereTheyArriveAlone) {
             if (const auto particle = emission.emit(rng)) starts.push_back({*particle, rng});
         }
         std::vector<LightPathStart> side_by_side = starts;
-        std::vector<std::optional<Deposit>> deposits(starts.size());
+        std::vector<DepositOfMany> many;
         LightPathCounts together, alone;
-        trace_light_paths(scene, side_by_side, settings, together, deposits);
+        trace_light_paths(scene, side_by_side, settings, together, many);
+        std::vector<std::optional<Deposit>> deposits(starts.size());
+        for (const DepositOfMany& one : many) deposits[one.start] = one.deposit;
         for (std::size_t i = 0; i < starts.size(); ++i) {
             const auto expected =
-                trace_light_path(scene, starts[i].particle, settings, starts[i].rng, alone);
+                trace_one(scene, starts[i].particle, settings, starts[i].rng, alone);
             ASSERT_EQ(deposits[i].has_value(), expected.has_value()) << i;
             if (!expected) continue;
             EXPECT_EQ(deposits[i]->shape, expected->shape);
@@ -297,7 +309,7 @@ TEST(LightPath, RouletteKeepsTheMeanOfEveryChannel) {
     LightPathCounts counts;
     for (std::uint64_t path = 0; path < paths; ++path) {
         Rng rng(1, Stage::test, path);
-        const auto deposit = trace_light_path(scene, particle, {16}, rng, counts);
+        const auto deposit = trace_one(scene, particle, {16}, rng, counts);
         for (int channel = 0; channel < 3; ++channel)
             flux[static_cast<std::size_t>(channel)].add(
                 deposit ? static_cast<double>(deposit->flux[channel]) : 0.0);
@@ -322,7 +334,7 @@ TEST(LightPath, CountsWhatSmoothNormalsMisdirect) {
         LightPathCounts by_chance, branches;
         std::vector<Deposit> deposits;
         send(AimedEmission(scene), [&](const LightParticle& particle, Rng& rng) {
-            trace_light_path(scene, particle, {100}, rng, by_chance);
+            trace_one(scene, particle, {100}, rng, by_chance);
             trace_split_path(scene, particle, {100, Interaction::split}, rng, branches, deposits);
         });
         EXPECT_GT(by_chance.refracted, 1'000U);
@@ -345,10 +357,10 @@ TEST(LightPath, BlackParticlesAndDeepChainsEnd) {
     Rng rng(1, Stage::test, 0);
     LightPathCounts counts;
     const Ray ray{Vec3(0, 0, 0.5F), Vec3::UnitZ()};
-    EXPECT_FALSE(trace_light_path(scene, {ray, Spectrum(Spectrum::Ones())}, {100}, rng, counts));
+    EXPECT_FALSE(trace_one(scene, {ray, Spectrum(Spectrum::Ones())}, {100}, rng, counts));
     EXPECT_EQ(counts.depth_limited, 1U);
     EXPECT_EQ(counts.reflected, 100U);
-    EXPECT_FALSE(trace_light_path(scene, {ray, black()}, {100}, rng, counts));
+    EXPECT_FALSE(trace_one(scene, {ray, black()}, {100}, rng, counts));
     EXPECT_EQ(counts.absorbed, 1U);
 }
 
@@ -363,7 +375,7 @@ TEST(LightPath, TellsBlackSidesFromBlackWater) {
         const Scene scene(std::move(desc));
         LightPathCounts counts;
         send(AimedEmission(scene), [&](const LightParticle& particle, Rng& rng) {
-            const auto deposit = trace_light_path(scene, particle, {16}, rng, counts);
+            const auto deposit = trace_one(scene, particle, {16}, rng, counts);
             EXPECT_TRUE(!deposit || deposit->front);
         });
         return counts;

@@ -84,6 +84,58 @@ TEST(Bsdf, SamplesFollowTheirDensity) {
         for (const float alpha : {1.0F, 0.5F, 0.1F, 0.01F})
             EXPECT_GT(sampling_p_value(support::schlick(0.5F, alpha), n, wo, seed++), 1e-4)
                 << cosine << " alpha " << alpha;
+        for (const float exponent : {0.0F, 2.5F, 30.0F, 1000.0F})
+            EXPECT_GT(sampling_p_value(support::phong(0.3F, 0.5F, exponent), n, wo, seed++), 1e-4)
+                << cosine << " exponent " << exponent;
+    }
+}
+
+// Reflectance of light from wo, by samples.
+support::Moments albedo_of(const Bsdf& bsdf, const Vec3& wo) {
+    support::Moments moments;
+    Rng rng(11, Stage::test, 0);
+    for (int i = 0; i < 100'000; ++i) {
+        const float u0 = rng.next(), u1 = rng.next(), u2 = rng.next();
+        const auto wi = sample_direction(bsdf, Vec3::UnitZ(), wo, u0, u1, u2);
+        moments.add(
+            wi ? static_cast<double>(evaluate(bsdf, Vec2::Zero(), Vec3::UnitZ(), wo, *wi)[0] *
+                                     wi->z() / direction_pdf(bsdf, Vec3::UnitZ(), wo, *wi))
+               : 0.0);
+    }
+    return moments;
+}
+
+// k_d + k_s straight on, where the lobe's integral is whole, and no more elsewhere.
+TEST(Bsdf, PhongReflectsItsReflectancesStraightOnAndNoMoreElsewhere) {
+    for (const float exponent : {0.0F, 1.0F, 30.0F, 500.0F}) {
+        const Bsdf bsdf = support::phong(0.3F, 0.6F, exponent);
+        for (const double v : {1.0, 0.8, 0.4, 0.05}) {
+            const support::Moments found = albedo_of(bsdf, polar(v, 0.3));
+            EXPECT_LT(found.mean(), 0.9 + 4 * found.standard_error() + 1e-6)
+                << exponent << " " << v;
+            if (v == 1)
+                EXPECT_NEAR(found.mean(), 0.9, 4 * found.standard_error() + 1e-6) << exponent;
+        }
+        EXPECT_NEAR(albedo(bsdf, Vec2::Zero())[1], 0.9F, 1e-6F);
+    }
+}
+
+// The law of 1975: what arrives shines without its cosine, about the mirror direction.
+TEST(Bsdf, ClassicPhongHasNoCosineOfArrival) {
+    const Bsdf bsdf = support::phong(0.3F, 0.6F, 20, Phong::Model::classic);
+    const Vec3 n = Vec3::UnitZ();
+    for (const double v : {0.9, 0.5, 0.2}) {
+        const Vec3 wo = polar(v, 0.4);
+        const Vec3 wi = polar(v, 0.4 + pi_d);
+        EXPECT_NEAR(evaluate(bsdf, Vec2::Zero(), n, wo, wi)[0] * wi.z(),
+                    0.3F / pi * static_cast<float>(v) + 0.6F, 1e-4F);
+        const double away = 0.2;
+        const Vec3 aside = polar(std::cos(std::acos(v) + away), 0.4 + pi_d);
+        if (aside.z() > 0)
+            EXPECT_NEAR(
+                evaluate(bsdf, Vec2::Zero(), n, wo, aside)[0] * aside.z(),
+                0.3F / pi * aside.z() + 0.6F * static_cast<float>(std::pow(std::cos(away), 20)),
+                1e-4F);
     }
 }
 
@@ -109,8 +161,8 @@ TEST(Bsdf, SampledAlbedoOfSchlickAtAlphaOneIsTheClosedForm) {
 TEST(Bsdf, IsReciprocalAndBlackBelow) {
     Rng rng(7, Stage::test, 0);
     const Vec3 n = Vec3::UnitZ();
-    for (const float alpha : {1.0F, 0.3F, 0.01F}) {
-        const Bsdf bsdf = support::schlick(0.8F, alpha);
+    for (const Bsdf& bsdf : {support::schlick(0.8F, 1), support::schlick(0.8F, 0.3F),
+                             support::schlick(0.8F, 0.01F), support::phong(0.4F, 0.5F, 40)}) {
         for (int i = 0; i < 1000; ++i) {
             const float u0 = rng.next(), u1 = rng.next(), u2 = rng.next(), u3 = rng.next();
             const Vec3 a = cosine_hemisphere(u0, u1), b = cosine_hemisphere(u2, u3);
@@ -144,6 +196,7 @@ TEST(Bsdf, GrazingOppositeDirectionsStayFinite) {
 TEST(Bsdf, CastersReceiversAndSides) {
     EXPECT_TRUE(is_caster(support::glass(1.5F)) && is_caster(support::mirror()));
     EXPECT_TRUE(is_receiver(support::diffuse(1)) && is_receiver(support::schlick(1, 0.5F)));
+    EXPECT_TRUE(is_receiver(support::phong(0.5F, 0.5F, 3)));
     EXPECT_TRUE(scatters_from(support::glass(1.5F), false));
     EXPECT_FALSE(scatters_from(support::diffuse(1), false));
     EXPECT_TRUE(scatters_from(support::diffuse(1, true), false));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/build_scene.h"
+#include "tests/support/fresnel.h"
 #include "tests/support/statistics.h"
 
 namespace caustics {
@@ -84,6 +85,77 @@ TEST(DirectLight, OfASkyIsTheAlbedo) {
         const support::Moments value = direct(scene, {0, 0, 0}, wo);
         EXPECT_NEAR(value.mean(), 1.25 - 2 * v / 3, 4 * value.standard_error()) << v;
     }
+}
+
+// A pane of glass between a light and the floor below it.
+SceneDesc under_a_pane(const Spectrum& absorption = black()) {
+    SceneDesc desc = floor_scene();
+    desc.shapes.push_back(
+        support::horizontal("top", 1.2, 5, true, support::glass(1.5F, 1, absorption)));
+    desc.shapes.push_back(
+        support::horizontal("bottom", 1, 5, false, support::glass(1.5F, 1, absorption)));
+    return desc;
+}
+
+Spectrum transparent(const Scene& scene, const Vec3d& at) {
+    Rng rng(1, Stage::test, 0);
+    return direct_radiance(scene, support::probe(scene, 0, at, Vec3d::UnitZ(), 0), rng,
+                           Shadows::transparent);
+}
+
+// (1 - F)^2 / d^2 straight through the pane, F at the angle outside of it.
+TEST(DirectLight, GoesStraightThroughGlassWhereShadowsAreTransparent) {
+    SceneDesc desc = under_a_pane();
+    desc.point_lights = {support::point_light({0, 0, 2}, 7)};
+    const Scene scene(std::move(desc));
+    for (const double x : {0.0, 1.0, 4.0}) {
+        const double distance2 = 4 + x * x;
+        const double cosine = 2 / std::sqrt(distance2);
+        const double passed = std::pow(1 - support::fresnel(cosine, 1.5), 2);
+        EXPECT_NEAR(static_cast<double>(transparent(scene, {x, 0, 0})[0]),
+                    7 / distance2 * cosine * 0.5 / pi_d * passed, 1e-5)
+            << x;
+    }
+    EXPECT_EQ(direct(scene, {0, 0, 0}).mean(), 0);
+}
+
+// By Beer's law between, from a light far away, and from one inside the glass.
+TEST(DirectLight, IsAbsorbedOnItsStraightWay) {
+    SceneDesc far = under_a_pane(Spectrum(1, 2, 0));
+    far.directional_lights = {support::directional_light({0, 0, -1}, 3)};
+    const double passed = std::pow(1 - support::fresnel(1, 1.5), 2) * 3 * 0.5 / pi_d;
+    const Spectrum value = transparent(Scene(std::move(far)), {0, 0, 0});
+    EXPECT_NEAR(static_cast<double>(value[0]), passed * std::exp(-0.2), 1e-5);
+    EXPECT_NEAR(static_cast<double>(value[1]), passed * std::exp(-0.4), 1e-5);
+    EXPECT_NEAR(static_cast<double>(value[2]), passed, 1e-5);
+    SceneDesc inside = under_a_pane(Spectrum(1, 2, 0));
+    inside.point_lights = {support::point_light({0, 0, 1.1}, 7)};
+    EXPECT_NEAR(static_cast<double>(transparent(Scene(std::move(inside)), {0, 0, 0})[1]),
+                7 / 1.21 * 0.5 / pi_d * (1 - support::fresnel(1, 1.5)) * std::exp(-0.2), 1e-5);
+}
+
+TEST(DirectLight, OfALampBehindGlassIsItsLightTimesWhatPasses) {
+    SceneDesc desc = under_a_pane();
+    desc.shapes.push_back(support::horizontal("lamp", 2, 0.02, false, support::diffuse(0)));
+    desc.shapes.back().radiance = Spectrum(Spectrum::Constant(1e4F));
+    const Scene scene(std::move(desc));
+    support::Moments value;
+    const ReceiverPoint point = support::probe(scene, 0, {0, 0, 0}, Vec3d::UnitZ(), 0);
+    for (std::uint64_t i = 0; i < 2'000; ++i) {
+        Rng rng(1, Stage::test, i);
+        value.add(static_cast<double>(direct_radiance(scene, point, rng, Shadows::transparent)[1]));
+    }
+    const double expected =
+        1e4 * 0.04 * 0.04 / 4 * 0.5 / pi_d * std::pow(1 - support::fresnel(1, 1.5), 2);
+    EXPECT_NEAR(value.mean(), expected, 4 * value.standard_error() + 1e-3 * expected);
+}
+
+// Mirrors and walls shade as ever.
+TEST(DirectLight, IsStoppedByAllElseWhereShadowsAreTransparent) {
+    SceneDesc desc = under_a_pane();
+    desc.point_lights = {support::point_light({0, 0, 2}, 7)};
+    desc.shapes.push_back(support::sphere("ball", {0, 0, 0.5}, 0.2, support::mirror()));
+    EXPECT_TRUE(is_black(transparent(Scene(std::move(desc)), {0, 0, 0})));
 }
 
 TEST(DirectLight, IsBlackInShadowBehindLampsAndBelow) {

@@ -139,5 +139,30 @@ TEST(EyePath, AbsorbsAlongSegmentsAndEndsLongChains) {
     EXPECT_TRUE(lost.first.caster && points.empty() && is_black(lost.emitted));
 }
 
+// However faint a reflection is, each ray follows it to the depth asked for: nothing is left to chance,
+// and the mean is the same.
+TEST(EyePath, SplitsToADepthAndThenByChance) {
+    const auto spread = [](int split_depth) {
+        SceneDesc desc = furnace({support::sphere("ball", {0, 0, 0}, 1, support::glass(1.5F))});
+        desc.shapes.push_back(support::sphere("sun", {0, 0, 30}, 4, support::diffuse(0)));
+        desc.shapes.back().radiance = Spectrum(Spectrum::Constant(100));
+        desc.sampling.split_depth = split_depth;
+        const Scene scene(std::move(desc));
+        return emitted(scene, Vec3(0, 0, 3), -Vec3::UnitZ(), 0.05F);
+    };
+    const support::Moments drawn = spread(0);
+    const support::Moments split = spread(3);
+    EXPECT_NEAR(drawn.mean(), split.mean(), 4 * drawn.standard_error());
+    EXPECT_LT(split.standard_error(), 0.3 * drawn.standard_error());
+}
+
+TEST(EyePath, DispersiveGlassIsInvisibleInAFurnace) {
+    Bsdf glass = support::glass(1.5F);
+    std::get<Dielectric>(glass.model).int_ior = Ior::cauchy(1.6, 0.02);
+    const Scene ball(furnace({support::sphere("ball", {0, 0, 0}, 1, glass)}));
+    const support::Moments outside = emitted(ball, Vec3(0, 0, 3), -Vec3::UnitZ(), 0.5F);
+    EXPECT_NEAR(outside.mean(), 1, 4 * outside.standard_error() + 2e-4);
+}
+
 }  // namespace
 }  // namespace caustics

@@ -46,6 +46,9 @@ Place place_of(const std::string& kind) {
         {"ply", {"/thing", R"({"type": "ply", "filename": "one.ply"})"}},
         {"heightfield", {"/thing", waves}},
         {"twosided", {"/floor/bsdf", R"({"type": "twosided", "inner": {"type": "diffuse"}})"}},
+        {"blendbsdf",
+         {"/floor/bsdf",
+          R"({"type": "blendbsdf", "a": {"type": "diffuse"}, "b": {"type": "conductor"}})"}},
         {"rgb", {"/floor/bsdf/reflectance", R"({"type": "rgb", "value": 0.5})"}},
         {"bitmap",
          {"/floor/bsdf/reflectance", R"({"type": "bitmap", "filename": ")" + texture + R"("})"}},
@@ -56,9 +59,9 @@ Place place_of(const std::string& kind) {
     if (const auto found = places.find(kind); found != places.end()) return found->second;
     for (const std::string sampler : {"independent", "stratified", "adaptive"})
         if (kind == sampler) return {"/sensor/sampler", plain(kind)};
-    for (const std::string light : {"point", "spot", "directional"})
+    for (const std::string light : {"point", "spot", "directional", "constant", "ambient"})
         if (kind == light) return {"/light", plain(kind)};
-    for (const std::string bsdf : {"diffuse", "schlick", "dielectric", "conductor"})
+    for (const std::string bsdf : {"diffuse", "schlick", "phong", "dielectric", "conductor"})
         if (kind == bsdf) return {"/floor/bsdf", plain(kind)};
     return {"/thing", plain(kind)};
 }

@@ -224,6 +224,40 @@ TEST(Scene, MeshFilesBesideTheSceneAreTransformedAndHashed) {
     EXPECT_EQ(first.canonical, second.canonical);
 }
 
+TEST(Scene, LawsOfDispersion) {
+    const auto ior = [](const std::string& law) {
+        return load_bsdf<Dielectric>(R"({"type": "dielectric", "int_ior": )" + law + "}").int_ior;
+    };
+    EXPECT_NEAR(ior(R"({"type": "cauchy", "A": 1.5, "B": 0.004})").at(500), 1.516, 1e-12);
+    EXPECT_NEAR(ior(R"({"type": "sellmeier", "material": "BK7"})").at(587.5618F), 1.51680, 1e-5);
+    EXPECT_NEAR(ior(R"({"type": "sellmeier", "B": [1.25], "C": [0.01]})").at(500),
+                std::sqrt(1 + 1.25 * 0.25 / 0.24), 1e-9);
+    EXPECT_NEAR(ior(R"({"type": "abbe", "n_d": 1.7, "V_d": 30})").at(400), 1.741, 1e-3);
+    EXPECT_FALSE(ior("1.5").is_dispersive());
+    EXPECT_FALSE(ior(R"("water")").is_dispersive());
+}
+
+// Mitsuba's order: the weight is that of the second of the two by the names of their keys.
+TEST(Scene, BlendsOfAReceiverAndAMirror) {
+    const auto blend = [](const std::string& weight, const std::string& a, const std::string& b) {
+        return load_shape(R"({"type": "disk", "s": {"type": "blendbsdf", "weight": )" + weight +
+                          R"(, "a": )" + a + R"(, "b": )" + b + "}}")
+            .bsdf;
+    };
+    const std::string paint = R"({"type": "diffuse", "reflectance": 0.3})";
+    const std::string mirror = R"({"type": "conductor", "specular_reflectance": 0.7})";
+    const Bsdf paint_first = blend("0.2", paint, mirror);
+    ASSERT_TRUE(paint_first.mirror);
+    EXPECT_FLOAT_EQ(paint_first.mirror->weight, 0.2F);
+    EXPECT_FLOAT_EQ(paint_first.mirror->reflectance[1], 0.7F);
+    EXPECT_TRUE(std::holds_alternative<Diffuse>(paint_first.model));
+    EXPECT_TRUE(is_caster(paint_first) && is_receiver(paint_first));
+    EXPECT_FLOAT_EQ(blend("0.2", mirror, paint).mirror->weight, 0.8F);
+    EXPECT_FALSE(is_caster(blend("0", paint, mirror)));
+    EXPECT_FALSE(is_receiver(blend("1", paint, mirror)));
+    EXPECT_FALSE(blend("1", paint, mirror).mirror);
+}
+
 TEST(Scene, BsdfDefaultsAndValues) {
     const auto glass = load_bsdf<Dielectric>(R"({"type": "dielectric"})");
     EXPECT_EQ(glass.int_ior, 1.5046F);
@@ -242,6 +276,13 @@ TEST(Scene, BsdfDefaultsAndValues) {
     const auto schlick = load_bsdf<Schlick>(R"({"type": "schlick", "alpha": 0.1})");
     EXPECT_EQ(schlick.alpha, 0.1F);
     EXPECT_TRUE(equal(constant(schlick.reflectance), Spectrum::Constant(0.5F)));
+    const auto phong = load_bsdf<Phong>(
+        R"({"type": "phong", "exponent": 12, "diffuse_reflectance": 0.6, "model": "classic"})");
+    EXPECT_EQ(phong.exponent, 12);
+    EXPECT_EQ(phong.model, Phong::Model::classic);
+    EXPECT_TRUE(equal(constant(phong.diffuse_reflectance), Spectrum::Constant(0.6F)));
+    EXPECT_TRUE(equal(constant(phong.specular_reflectance), Spectrum::Constant(0.2F)));
+    EXPECT_FLOAT_EQ(phong.lobe_share, 0.25F);
     const Shape both = load_shape(R"({"type": "disk", "b": {"type": "twosided",
         "inner": {"type": "diffuse", "reflectance": [0.1, 0.2, 0.3]}}})");
     EXPECT_TRUE(both.bsdf.twosided);

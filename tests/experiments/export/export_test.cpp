@@ -257,6 +257,20 @@ const auto shining = [](SceneDesc& d) { d.shapes[0].radiance = Spectrum(Spectrum
 INSTANTIATE_TEST_SUITE_P(
     Export, Refuses,
     testing::Values(
+        Refused{"MitsubaPhong",
+                to_mitsuba,
+                [](SceneDesc& d) { d.shapes[0].bsdf = support::phong(0.5F, 0.2F, 30); },
+                {"/floor", "no phong bsdf", "--set"}},
+        Refused{"PovrayPhong",
+                to_povray,
+                [](SceneDesc& d) { d.shapes[0].bsdf = support::phong(0.5F, 0.2F, 30); },
+                {"/floor", "classic"}},
+        Refused{"MitsubaDispersion",
+                to_mitsuba,
+                [](SceneDesc& d) {
+                    std::get<Dielectric>(d.shapes[1].bsdf.model).int_ior = Ior::cauchy(1.5, 0.01);
+                },
+                {"/ball", "no dispersion", "/bsdf/int_ior=1.52897"}},
         Refused{"MitsubaSchlick", to_mitsuba, schlick_floor, {"/floor", "schlick", "--set"}},
         Refused{"MitsubaAbsorption",
                 to_mitsuba,

@@ -97,6 +97,14 @@ TEST(Knobs, OfThePhotonMap) {
         EXPECT_GT(filtered.error(), usual.error()) << filter;
         EXPECT_NEAR(filtered.mean(), 1, 0.05) << filter;
     }
+    // The narrower a filter is, the more it scatters; as printed, the Gaussian has a mean of 0.531.
+    EXPECT_GT(map({"filter=cone", "filter_k=1"}).error(),
+              map({"filter=cone", "filter_k=4"}).error());
+    EXPECT_GT(map({"filter=gaussian", "filter_beta=6"}).error(),
+              map({"filter=gaussian", "filter_beta=0.5"}).error());
+    EXPECT_NEAR(
+        map({"filter=gaussian", "filter_alpha=0.918"}).mean() / map({"filter=gaussian"}).mean(),
+        0.531, 1e-3);
     // Discs that reach over the edges of the light hold photons that points do not use.
     const Answer adaptive = map({"nearest=4000", "adaptive=true"}, "parabolic_mirror");
     EXPECT_LT(count(adaptive, "used_photons"), count(adaptive, "gathered_photons"));

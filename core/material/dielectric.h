@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/material/ior.h"
+#include "core/math/spectrum.h"
+
+namespace caustics {
+
+/// A smooth interface between two lossless or absorbing media. The inside is the side away from
+/// the geometric normal.
+struct Dielectric {
+    Ior int_ior = 1.5046F;
+    Ior ext_ior = 1.000277F;
+    Spectrum absorption = Spectrum::Zero();      ///< Beer's law inside [1/m]
+    Spectrum ext_absorption = Spectrum::Zero();  ///< Beer's law outside [1/m]
+    Spectrum specular_reflectance = Spectrum::Ones();
+    Spectrum specular_transmittance = Spectrum::Ones();
+
+    bool is_dispersive() const { return int_ior.is_dispersive() || ext_ior.is_dispersive(); }
+    /// Index of refraction behind the interface over that before it, for light that comes to its front or
+    /// back, at a wavelength [nm]; 0: as Ior::at.
+    float relative_ior(bool front, float nm) const;
+};
+
+}  // namespace caustics

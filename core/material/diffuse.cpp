@@ -1,0 +1,20 @@
+#include "core/material/diffuse.h"
+
+#include "core/math/frame.h"
+#include "core/math/sampling.h"
+
+namespace caustics {
+
+Spectrum Diffuse::f_r(const Vec2& uv, const Vec3&, const Vec3&, const Vec3&) const {
+    return evaluate(reflectance, uv) * (1 / pi);
+}
+
+Spectrum Diffuse::albedo(const Vec2& uv) const { return evaluate(reflectance, uv); }
+
+std::optional<Vec3> Diffuse::sample(const Vec3& n, const Vec3&, const Vec3& u) const {
+    return Frame(n).to_world(cosine_hemisphere(u[0], u[1]));
+}
+
+float Diffuse::pdf(const Vec3& n, const Vec3&, const Vec3& wi) const { return n.dot(wi) / pi; }
+
+}  // namespace caustics

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+
+#include "core/material/texture.h"
+#include "core/math/vec.h"
+
+namespace caustics {
+
+/// Lambert's law: f_r = reflectance / pi.
+struct Diffuse {
+    Texture reflectance = Spectrum(Spectrum::Constant(0.5F));
+
+    Spectrum f_r(const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) const;
+    Spectrum albedo(const Vec2& uv) const;
+    std::optional<Vec3> sample(const Vec3& n, const Vec3& wo, const Vec3& u) const;
+    float pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const;
+};
+
+}  // namespace caustics

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "core/material/texture.h"
+#include "core/math/vec.h"
+
+namespace caustics {
+
+/// Phong's lobe about the mirror direction, beside Lambert's law [C11 sec. 3]. `normalised` (Lafortune
+/// and Willems 1994): f_r = k_d / pi + k_s (e + 2) / (2 pi) cos^e a, a the angle between wi and the
+/// mirrored wo, 0 beyond a right angle; energy is kept where k_d + k_s <= 1. `classic` (Phong 1975): light
+/// that arrives shines as k_s cos^e a without the cosine of its arrival, so f_r = k_d / pi +
+/// k_s cos^e a / (n.wi); energy is not kept.
+struct Phong {
+    enum class Model { normalised, classic };
+    Texture diffuse_reflectance = Spectrum(Spectrum::Constant(0.5F));   ///< k_d
+    Texture specular_reflectance = Spectrum(Spectrum::Constant(0.2F));  ///< k_s
+    float exponent = 30;                                                ///< e
+    Model model = Model::normalised;
+    float lobe_share = 0.5F;  ///< of the samples that go to the lobe; [0, 1]
+
+    Spectrum f_r(const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) const;
+    /// k_d + k_s: what is scattered of light seen straight on.
+    Spectrum albedo(const Vec2& uv) const;
+    std::optional<Vec3> sample(const Vec3& n, const Vec3& wo, const Vec3& u) const;
+    float pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const;
+};
+
+}  // namespace caustics

@@ -1,0 +1,272 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "beamtree/beam_tree.h"
+#include "beamtree/caustic_polygons.h"
+#include "core/material/wavelength.h"
+#include "core/reference/light_trace.h"
+#include "core/reference/path_trace.h"
+#include "core/render/eye_path.h"
+#include "photonmap/photon_map.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/fresnel.h"
+#include "tests/support/statistics.h"
+
+namespace caustics {
+namespace {
+
+constexpr double incidence = 60 * pi_d / 180;  // of light from far away on the face of a block
+constexpr double depth = 1;                    // of the glass above the floor
+constexpr double half_width = 0.1;             // of the face, along x
+constexpr double half_length = 0.05;
+constexpr double power = 10;  // W/m^2 across the light
+
+// Far stronger than glass, so that the colours part widely: n = 1.73 to 1.83.
+const Ior heavy = Ior::cauchy(1.69, 0.02);
+
+Bsdf glass_of(const Ior& inside) {
+    Bsdf bsdf = support::glass(1.5F);
+    std::get<Dielectric>(bsdf.model).int_ior = inside;
+    return bsdf;
+}
+
+SceneDesc block(const Ior& inside) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
+                   support::rectangle("face", {0, 0, depth}, Vec3d(half_width, 0, 0),
+                                      Vec3d(0, half_length, 0), glass_of(inside))};
+    return desc;
+}
+
+Scene lit_from_far(const Ior& inside) {
+    SceneDesc desc = block(inside);
+    desc.directional_lights = {support::directional_light(
+        {std::sin(incidence), 0, -std::cos(incidence)}, static_cast<float>(power))};
+    return Scene(std::move(desc));
+}
+
+// Irradiance of the floor at x: of the wavelengths whose shifted image of the face holds it.
+SpectrumSum closed_form(double x) {
+    constexpr int steps = 7'000;
+    constexpr double width = (longest_wavelength - shortest_wavelength) / steps;
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (int i = 0; i < steps; ++i) {
+        const double nm = shortest_wavelength + width * (i + 0.5);
+        const double n = heavy.at(static_cast<float>(nm));
+        const double shift = depth * std::tan(std::asin(std::sin(incidence) / n));
+        if (std::abs(x - shift) > half_width) continue;
+        const double passed = 1 - support::fresnel(std::cos(incidence), n);
+        sum += channel_density(nm) * (width * power * std::cos(incidence) * passed);
+    }
+    return sum;
+}
+
+// The same over a disc.
+SpectrumSum closed_form(double x, double radius) {
+    constexpr int steps = 100;
+    SpectrumSum sum = SpectrumSum::Zero();
+    double chords = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double at = 2 * (i + 0.5) / steps - 1;
+        const double chord = std::sqrt(1 - at * at);
+        sum += closed_form(x + radius * at) * chord;
+        chords += chord;
+    }
+    return sum / chords;
+}
+
+std::vector<ReceiverPoint> across(const Scene& scene, float radius) {
+    std::vector<ReceiverPoint> points;
+    std::uint64_t id = 0;
+    for (const double x : {0.43, 0.45, 0.46, 0.475, 0.5, 0.55, 0.62, 0.645, 0.66, 0.675})
+        points.push_back(support::probe(scene, 0, {x, 0, 0}, Vec3d::UnitZ(), id++, radius));
+    return points;
+}
+
+double at(const ReceiverPoint& point) { return static_cast<double>(point.position.x()); }
+
+TEST(Dispersion, LightTracingPaintsTheFringesOfAnImage) {
+    const Scene scene = lit_from_far(heavy);
+    const auto method = build(scene, LightTraceParams{.paths = 1'500'000}, RunOptions{});
+    constexpr float radius = 0.005F;
+    const std::vector<ReceiverPoint> points = across(scene, radius);
+    const std::vector<Estimate> found = support::irradiance(*method, points);
+    int coloured = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SpectrumSum exact = closed_form(at(points[i]), static_cast<double>(radius));
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(static_cast<double>(found[i].value[c]), exact[c],
+                        support::sidak_bound(3 * points.size()) *
+                                static_cast<double>(found[i].standard_error[c]) +
+                            1e-4 * power)
+                << at(points[i]) << " " << c;
+        coloured += exact.maxCoeff() > 1.5 * exact.minCoeff() ? 1 : 0;
+    }
+    EXPECT_GE(coloured, 4);
+}
+
+TEST(Dispersion, BeamsPaintThemToTheirNumberOfWavelengths) {
+    const Scene scene = lit_from_far(heavy);
+    const std::vector<ReceiverPoint> points = across(scene, 0);
+    const auto expect_right = [&](const CausticEstimator& method, double slack) {
+        const std::vector<Estimate> found = support::irradiance(method, points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const SpectrumSum exact = closed_form(at(points[i]));
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(static_cast<double>(found[i].value[c]), exact[c],
+                            slack * power * std::cos(incidence))
+                    << at(points[i]) << " " << c;
+        }
+    };
+    // A bin's weight is up to three times the channels' mean.
+    BeamTreeParams tree;
+    tree.wavelengths = 512;
+    expect_right(*build(scene, tree, RunOptions{}), 3.0 / 512);
+    tree.intensity = Intensity::refined;
+    tree.wavelengths = 64;
+    expect_right(*build(scene, tree, RunOptions{}), 3.0 / 64);
+    CausticPolygonsParams polygons;
+    polygons.wavelengths = 64;
+    polygons.receiver_resolution = 2;
+    expect_right(*build(scene, polygons, RunOptions{}), 3.0 / 64);
+}
+
+TEST(Dispersion, ThePhotonMapHasThemWithinItsBlur) {
+    const Scene scene = lit_from_far(heavy);
+    PhotonMapParams params;
+    params.photons = 400'000;
+    params.radius = 0.005;
+    for (const auto emission :
+         {PhotonMapParams::Emission::random, PhotonMapParams::Emission::stratified}) {
+        params.emission = emission;
+        const auto map = build(scene, params, RunOptions{});
+        const std::vector<ReceiverPoint> points = across(scene, 0);
+        const std::vector<Estimate> found = support::irradiance(*map, points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const SpectrumSum exact = closed_form(at(points[i]), params.radius);
+            // Some 1500 photons lie in a disc of even light, with colours that scatter as much again.
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(static_cast<double>(found[i].value[c]), exact[c],
+                            0.15 * std::sqrt(exact[c] * exact.maxCoeff()) + 0.02)
+                    << at(points[i]) << " " << c;
+        }
+    }
+}
+
+// Light from everywhere above, where each is asked in its own way.
+TEST(Dispersion, PathsFromTheReceiverAndFromTheLightAgree) {
+    SceneDesc desc = block(heavy);
+    Shape lamp = support::rectangle("lamp", {-1.2, 0, 2}, Vec3d(0.3, 0, 0), Vec3d(0, -0.3, 0),
+                                    support::diffuse(0));
+    lamp.radiance = Spectrum(Spectrum::Constant(50));
+    desc.shapes.push_back(std::move(lamp));
+    const Scene scene(std::move(desc));
+    const auto forward = build(scene, LightTraceParams{.paths = 1'500'000}, RunOptions{});
+    const auto backward = build(scene, PathTraceParams{.spp = 20'000}, RunOptions{});
+    std::vector<ReceiverPoint> points;
+    for (const double x : {0.45, 0.5, 0.6, 0.7})
+        points.push_back(support::probe(scene, 0, {x, 0, 0}, Vec3d::UnitZ(),
+                                        static_cast<std::uint64_t>(1000 * x), 0.01F));
+    const std::vector<Estimate> a = support::irradiance(*forward, points);
+    const std::vector<Estimate> b = support::irradiance(*backward, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const auto value = static_cast<double>(b[i].value[c]);
+            const double error = std::hypot(static_cast<double>(a[i].standard_error[c]),
+                                            static_cast<double>(b[i].standard_error[c]));
+            EXPECT_GT(value, 0.1);
+            EXPECT_LT(error, 0.08 * value);
+            EXPECT_NEAR(static_cast<double>(a[i].value[c]), value,
+                        support::sidak_bound(12) * error + 0.01 * value)
+                << at(points[i]) << " " << c;
+        }
+}
+
+// The eye's light, straight down into the block: (1 - F(l)) / n(l)^2 of each wavelength.
+TEST(Dispersion, TheEyeSeesTheMeanOverItsWavelengths) {
+    const Scene scene = lit_from_far(heavy);
+    constexpr int rays = 20'000;
+    std::array<support::Moments, 3> found;
+    for (int i = 0; i < rays; ++i) {
+        std::vector<WeightedPoint> points;
+        Rng rng(7, Stage::test, static_cast<std::uint64_t>(i));
+        trace_eye_path(scene, Ray{Vec3(0, 0, 2), -Vec3::UnitZ()}, black(), rng, points);
+        Spectrum sum = black();
+        for (const WeightedPoint& point : points) {
+            EXPECT_GT(point.point.nm, 0);
+            sum += point.weight;
+        }
+        for (std::size_t c = 0; c < 3; ++c)
+            found[c].add(static_cast<double>(sum[static_cast<Eigen::Index>(c)]));
+    }
+    SpectrumSum exact = SpectrumSum::Zero();
+    for (double nm = 380.5; nm < 730; nm += 1) {
+        const double n = heavy.at(static_cast<float>(nm));
+        exact += channel_density(nm) * (1 - support::fresnel(1, n)) / (n * n);
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(found[c].mean(), exact[static_cast<Eigen::Index>(c)],
+                    4.5 * found[c].standard_error() + 1e-4);
+}
+
+// A viewer behind glass that has chosen a wavelength sees the picture of that wavelength: white light of
+// it, at the place of its image.
+TEST(Dispersion, AnswersForTheWavelengthThatTheViewersGlassHasChosen) {
+    const Scene scene = lit_from_far(heavy);
+    BeamTreeParams params;
+    params.wavelengths = 256;
+    const auto beams = build(scene, params, RunOptions{});
+    for (const float nm : {420.0F, 550.0F, 650.0F}) {
+        const double n = heavy.at(nm);
+        const double shift = depth * std::tan(std::asin(std::sin(incidence) / n));
+        const double exact =
+            power * std::cos(incidence) * (1 - support::fresnel(std::cos(incidence), n));
+        ReceiverPoint inside =
+            support::probe(scene, 0, {shift + 0.95 * half_width, 0, 0}, Vec3d::UnitZ(), 0);
+        ReceiverPoint outside =
+            support::probe(scene, 0, {shift + 1.05 * half_width, 0, 0}, Vec3d::UnitZ(), 1);
+        inside.nm = outside.nm = nm;
+        const std::vector<Estimate> found = support::irradiance(*beams, {inside, outside});
+        EXPECT_NEAR(static_cast<double>(found[0].value.maxCoeff()), exact, 2e-3 * exact) << nm;
+        EXPECT_TRUE(is_black(found[1].value)) << nm;
+    }
+}
+
+TEST(Dispersion, ALawWithoutItChangesNoBit) {
+    const Scene plain = lit_from_far(1.5F);
+    const Scene law = lit_from_far(Ior::cauchy(1.5, 0));
+    const std::vector<ReceiverPoint> points = across(plain, 0.005F);
+    const auto expect_same = [&](const auto& params) {
+        const auto a = support::irradiance(*build(plain, params, RunOptions{}), points);
+        const auto b = support::irradiance(*build(law, params, RunOptions{}), points);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            EXPECT_TRUE((a[i].value == b[i].value).all()) << i;
+    };
+    expect_same(LightTraceParams{.paths = 20'000});
+    PhotonMapParams map;
+    map.photons = 10'000;
+    expect_same(map);
+    expect_same(BeamTreeParams{});
+}
+
+// Between parallel faces a colour goes on side by side with the others.
+TEST(Dispersion, ASlabColoursNothingButItsRim) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", -0.5, 3, true, support::diffuse(0.5F)),
+                   support::horizontal("top", 0.2, 0.4, true, glass_of(heavy)),
+                   support::horizontal("bottom", 0, 0.4, false, glass_of(heavy))};
+    desc.directional_lights = {support::directional_light({0.5, 0, -1}, 10)};
+    const Scene scene(std::move(desc));
+    BeamTreeParams params;
+    params.wavelengths = 64;
+    const auto beams = build(scene, params, RunOptions{});
+    const ReceiverPoint middle = support::probe(scene, 0, {0.3, 0, -0.5}, Vec3d::UnitZ(), 0);
+    const Spectrum value = support::irradiance(*beams, {middle})[0].value;
+    EXPECT_GT(value.minCoeff(), 5);
+    EXPECT_LT(value.maxCoeff() / value.minCoeff(), 1.01);
+}
+
+}  // namespace
+}  // namespace caustics
