@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/geometry/mesh_rows.h"
-#include "core/geometry/polytope.h"
 
 namespace caustics {
 namespace {

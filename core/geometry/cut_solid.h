@@ -5,14 +5,9 @@
 
 #include "core/geometry/lathe.h"
 #include "core/geometry/mesh.h"
+#include "core/geometry/polytope.h"
 
 namespace caustics {
-
-/// The half-space normal . x <= distance; the normal is unit.
-struct HalfSpace {
-    Vec3d normal = Vec3d::UnitZ();
-    double distance = 0;  ///< from the origin, along the normal [m]
-};
 
 /// Facets round the axis z, as a cutter's index wheel sets them.
 struct CutRing {

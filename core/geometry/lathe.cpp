@@ -6,7 +6,6 @@
 
 #include "core/base/error.h"
 #include "core/geometry/mesh_rows.h"
-#include "core/geometry/profile_curve.h"
 
 namespace caustics {
 namespace {

@@ -1,27 +1,9 @@
 #pragma once
 
-#include <vector>
-
 #include "core/geometry/mesh.h"
+#include "core/geometry/profile_curve.h"
 
 namespace caustics {
-
-/// A point of a lathe's profile.
-struct ProfilePoint {
-    Vec2d at = Vec2d::Zero();  ///< (r, z) [m], r >= 0 off the axis z
-    bool crease = false;       ///< the surface has an edge here
-};
-
-/// A curve in the half-plane (r, z) that turns round the axis z. It is open where it ends off the
-/// axis; one whose last point is its first is a ring and has no ends.
-struct LatheProfile {
-    std::vector<ProfilePoint> points;
-    /// Centripetal Catmull-Rom curves from crease to crease [Yuksel et al. 2011], in place of
-    /// straight lines. Either is mirrored by the axis where it meets it.
-    bool catmull_rom = false;
-    int segments = 1;   ///< straight pieces between two points
-    bool open = false;  ///< may have ends off the axis
-};
 
 /// The surface with `sectors` >= 3 round the axis, whose front is on the right of the profile's way:
 /// an outer profile runs upwards. Normals are those of the curve, or of the circle through a point

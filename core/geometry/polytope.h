@@ -3,9 +3,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry/cut_solid.h"
+#include "core/math/vec.h"
 
 namespace caustics {
+
+/// The half-space normal . x <= distance; the normal is unit.
+struct HalfSpace {
+    Vec3d normal = Vec3d::UnitZ();
+    double distance = 0;  ///< from the origin, along the normal [m]
+};
 
 /// A convex solid: its vertices, and for each half-space the vertices of its facet, counter-clockwise
 /// seen from outside; empty where the half-space cuts nothing off.
