@@ -201,23 +201,25 @@ Objects heightfields() {
         "Heights by a picture of one channel, 16-bit PNG or EXR, in place of waves; its pixels are "
         "the corners of the cells, the top row at +y.");
     picture.usual = "none";
+    return {{"heightfield",
+             "A shape over a rectangle round the origin, facing up: a sum of sines; or a mesh by "
+             "fractal or filename, which takes no resolution.",
+             joined(grid_keys(), {{.key = "waves",
+                                   .meaning = "The sines that are added.",
+                                   .type = "list of waves",
+                                   .usual = "none"},
+                                  {.key = "fractal",
+                                   .meaning = "Fractal ground in place of waves.",
+                                   .type = "object",
+                                   .usual = "none"},
+                                  picture,
+                                  number("height", "Of the picture's value 1 (white) over 0.", "m",
+                                         "1 with filename", "-1e+30 to 1e+30"),
+                                  half_size()})}};
+}
+
+Objects within_heightfields() {
     return {
-        {"heightfield",
-         "A shape over a rectangle round the origin, facing up: a sum of sines, or by one of "
-         "fractal "
-         "and filename a mesh, which takes no resolution.",
-         joined(grid_keys(), {{.key = "waves",
-                               .meaning = "The sines that are added.",
-                               .type = "list of waves",
-                               .usual = "none"},
-                              {.key = "fractal",
-                               .meaning = "Fractal ground in place of waves.",
-                               .type = "object",
-                               .usual = "none"},
-                              picture,
-                              number("height", "Of the picture's value 1 (white) over 0.", "m",
-                                     "1 times the value", "-1e+30 to 1e+30"),
-                              half_size()})},
         {"wave",
          "An element of waves: amplitude sin(wave_vector . (x, y) + phase).",
          {number("amplitude", "Of the sine.", "m", "", "-1e+30 to 1e+30"),
@@ -417,8 +419,9 @@ Objects transforms() {
 const std::vector<ObjectText>& scene_keys() {
     static const Objects all = [] {
         Objects made;
-        for (Objects family : {files(), sensors(), lights(), shapes(), heightfields(),
-                               turned_and_cut(), bsdfs(), laws(), textures(), transforms()})
+        for (Objects family :
+             {files(), sensors(), lights(), shapes(), heightfields(), within_heightfields(),
+              turned_and_cut(), bsdfs(), laws(), textures(), transforms()})
             for (ObjectText& object : family) made.push_back(std::move(object));
         return made;
     }();

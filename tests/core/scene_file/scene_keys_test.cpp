@@ -167,7 +167,7 @@ TEST_F(SceneKeys, TakeTheirDefaultsAndChoices) {
                 EXPECT_EQ(refusal_of(place, key.key, word), "") << object.name << " " << key.key;
             const bool is_told_in_words = key.usual.empty() || key.usual == "none" ||
                                           key.usual.find("times") != key.usual.npos ||
-                                          key.usual.find(" or ") != key.usual.npos;
+                                          key.usual.find(" with") != key.usual.npos;
             // Without a mesh there is nothing to shade.
             if (is_told_in_words || key.key == "face_normals") continue;
             EXPECT_EQ(refusal_of(place, key.key, key.usual), "") << object.name << " " << key.key;
