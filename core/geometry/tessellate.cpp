@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/geometry/mesh_rows.h"
 
 namespace caustics {
 namespace {
@@ -17,79 +18,17 @@ void check_resolution(int n, int least) {
                          std::to_string(least) + ", " + std::to_string(max_resolution) + "]");
 }
 
-// Unit vector at `step` of `steps` round the circle. The last step is the first one bit for bit,
-// and the axes are met exactly, so that seams close without a gap.
-Vec2d on_circle(int step, int steps) {
-    const int quarter = steps / 4;
-    const int turned = step % steps;
-    if (steps % 4 == 0 && turned % quarter == 0) {
-        const Vec2d axes[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-        return axes[turned / quarter];
-    }
-    const double angle = 2 * pi_d * turned / steps;
-    return {std::cos(angle), std::sin(angle)};
-}
-
-double fraction(int part, int whole) { return static_cast<double>(part) / whole; }
-
-// -1 .. 1, exactly antisymmetric.
-double symmetric(int part, int whole) { return static_cast<double>(2 * part - whole) / whole; }
-
-std::uint32_t add_vertex(TriangleMesh& mesh, const Vec3d& position, const Vec3d& normal,
-                         const Vec2d& uv) {
-    mesh.positions.emplace_back(position.cast<float>());
-    mesh.normals.emplace_back(normal.cast<float>());
-    mesh.uvs.emplace_back(uv.cast<float>());
-    return static_cast<std::uint32_t>(mesh.positions.size() - 1);
-}
-
-// Notes the subdivision of the triangles that follow.
-void add_patch(TriangleMesh& mesh, int columns, int rows, std::uint32_t cell_triangles) {
-    if (columns == 0 || rows == 0) return;
-    mesh.patches.push_back({static_cast<std::uint32_t>(mesh.triangles.size()),
-                            static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows),
-                            cell_triangles});
-}
-
-// Two triangles a quad over a grid of (columns + 1) vertices a row, whose first vertex is `first`.
-// Counter-clockwise where columns x rows points along the normal.
-void add_grid_triangles(TriangleMesh& mesh, std::uint32_t first, int columns, int rows) {
-    const auto stride = static_cast<std::uint32_t>(columns) + 1;
-    add_patch(mesh, columns, rows, 2);
-    for (std::uint32_t row = 0; row < static_cast<std::uint32_t>(rows); ++row)
-        for (std::uint32_t column = 0; column + 1 < stride; ++column) {
-            const std::uint32_t a = first + row * stride + column;
-            const std::uint32_t d = a + stride;
-            mesh.triangles.push_back({a, a + 1, d + 1});
-            mesh.triangles.push_back({a, d + 1, d});
-        }
-}
-
-// A triangle from each sector of a ring of (sectors + 1) vertices to its own copy of the pole,
-// which carries the uv of the sector's middle.
-template <class AddPole>
-void add_fan(TriangleMesh& mesh, std::uint32_t ring, int sectors, bool pole_left, AddPole pole) {
-    add_patch(mesh, sectors, 1, 1);
-    for (int sector = 0; sector < sectors; ++sector) {
-        const std::uint32_t tip = pole((sector + 0.5) / sectors);
-        const std::uint32_t a = ring + static_cast<std::uint32_t>(sector);
-        if (pole_left)
-            mesh.triangles.push_back({tip, a, a + 1});
-        else
-            mesh.triangles.push_back({tip, a + 1, a});
-    }
-}
-
 }  // namespace
 
-TriangleMesh tessellate_rectangle(int n) {
-    check_resolution(n, 1);
+TriangleMesh tessellate_rectangle(Cells n) {
+    check_resolution(n.x, 1);
+    check_resolution(n.y, 1);
     TriangleMesh mesh;
-    for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i)
-            add_vertex(mesh, {symmetric(i, n), symmetric(j, n), 0}, Vec3d::UnitZ(),
-                       {fraction(i, n), fraction(j, n)});
-    add_grid_triangles(mesh, 0, n, n);
+    for (int j = 0; j <= n.y; ++j)
+        for (int i = 0; i <= n.x; ++i)
+            add_vertex(mesh, {symmetric(i, n.x), symmetric(j, n.y), 0}, Vec3d::UnitZ(),
+                       {fraction(i, n.x), fraction(j, n.y)});
+    add_grid_triangles(mesh, 0, n.x, n.y);
     return mesh;
 }
 
@@ -172,17 +111,18 @@ TriangleMesh tessellate_cube(int n) {
     return mesh;
 }
 
-TriangleMesh tessellate_heightfield(const SineHeightfield& field, int n) {
-    check_resolution(n, 1);
+TriangleMesh tessellate_heightfield(const SineHeightfield& field, Cells n) {
+    check_resolution(n.x, 1);
+    check_resolution(n.y, 1);
     TriangleMesh mesh;
-    for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i) {
-            const Vec2d xy(symmetric(i, n) * field.half_size.x(),
-                           symmetric(j, n) * field.half_size.y());
+    for (int j = 0; j <= n.y; ++j)
+        for (int i = 0; i <= n.x; ++i) {
+            const Vec2d xy(symmetric(i, n.x) * field.half_size.x(),
+                           symmetric(j, n.y) * field.half_size.y());
             add_vertex(mesh, {xy.x(), xy.y(), field.height(xy)}, field.normal(xy),
-                       {fraction(i, n), fraction(j, n)});
+                       {fraction(i, n.x), fraction(j, n.y)});
         }
-    add_grid_triangles(mesh, 0, n, n);
+    add_grid_triangles(mesh, 0, n.x, n.y);
     return mesh;
 }
 

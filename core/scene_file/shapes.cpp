@@ -7,6 +7,9 @@
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/tessellate.h"
 #include "core/scene_file/bsdfs.h"
+#include "core/scene_file/cut_shape.h"
+#include "core/scene_file/heightfield_shape.h"
+#include "core/scene_file/lathe_shape.h"
 #include "core/scene_file/scene_frame.h"
 
 namespace caustics::scene_file {
@@ -57,49 +60,10 @@ Transform read_cylinder_placement(const JsonNode& node) {
     return placement;
 }
 
-SineWave read_wave(const JsonNode& node) {
-    SineWave wave;
-    wave.amplitude = node.at("amplitude").as_number_in(-far_away, far_away);
-    const std::vector<double> k = node.at("wave_vector").as_numbers(2);
-    wave.wave_vector = {k[0], k[1]};
-    if (wave.wave_vector.cwiseAbs().maxCoeff() > far_away)
-        node.at("wave_vector").fail("is out of range (to 1e+30)");
-    if (const auto phase = node.find("phase"))
-        wave.phase = phase->as_number_in(-far_away, far_away);
-    node.finish();
-    return wave;
-}
-
-SineHeightfield read_heightfield(const JsonNode& node) {
-    for (const char* later : {"fractal", "filename", "grid"})
-        if (node.has(later))
-            node.at(later).fail(std::string("heightfield by ") + later +
-                                " is not supported (yet) (known: waves)");
-    SineHeightfield field;
-    for (const JsonNode& wave : node.at("waves").as_array()) field.waves.push_back(read_wave(wave));
-    if (const auto half_size = node.find("half_size")) {
-        const std::vector<double> half = half_size->as_numbers(2);
-        for (const JsonNode& side : half_size->as_array()) side.as_number_in(0, far_away);
-        if (half[0] <= 0 || half[1] <= 0) half_size->fail("must be above 0");
-        field.half_size = {half[0], half[1]};
-    }
-    return field;
-}
-
 bool is_similarity(const Transform& transform) {
     const Eigen::Matrix3d square = transform.linear().transpose() * transform.linear();
     const double scale = square.trace() / 3;
     return (square - scale * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-6 * scale;
-}
-
-TriangleMesh tessellate(Primitive primitive, const SineHeightfield& field, int n) {
-    switch (primitive) {
-        case Primitive::rectangle: return tessellate_rectangle(n);
-        case Primitive::disk: return tessellate_disk(n);
-        case Primitive::sphere: return tessellate_sphere(n);
-        case Primitive::cylinder: return tessellate_cylinder(n);
-        default: return tessellate_heightfield(field, n);
-    }
 }
 
 // Keys that every shape has.
@@ -114,17 +78,26 @@ struct CommonKeys {
         if (transform_node) to_world = read_transform(*transform_node);
         if (const auto flip = node.find("flip_normals")) flip_normals = flip->as_bool();
         const bool file = type == "obj" || type == "ply";
+        const bool mesh = file || type == "cube" || type == "lathe" || type == "cut" ||
+                          (type == "heightfield" && is_height_grid(node));
         if (file && node.has("resolution"))
             node.at("resolution")
                 .fail("a mesh file has its own resolution; only analytic shapes take one");
         if (!file) resolution = node.find("resolution");
         const auto faces = node.find("face_normals");
-        if (faces && !file && !resolution && type != "cube")
+        if (faces && !mesh && !resolution)
             faces->fail("only a mesh has face normals; give the shape a `resolution`");
         if (faces) face_normals = faces->as_bool();
     }
 
     int count(int least) const { return static_cast<int>(resolution->as_integer_in(least, 4096)); }
+    Cells cells() const {
+        if (!resolution->is_array()) return count(1);
+        const std::vector<JsonNode> both = resolution->as_array();
+        if (both.size() != 2) resolution->fail("must be a whole number or [nx, ny]");
+        return {static_cast<int>(both[0].as_integer_in(1, 4096)),
+                static_cast<int>(both[1].as_integer_in(1, 4096))};
+    }
 
     void finish_mesh(TriangleMesh& mesh) const {
         if (face_normals) mesh.normals.clear();
@@ -149,11 +122,20 @@ void read_mesh_file(const JsonNode& node, const std::string& type, const CommonK
     shape.to_world = keys.to_world;
 }
 
+TriangleMesh tessellate(Primitive primitive, const SineHeightfield& field, const CommonKeys& keys) {
+    switch (primitive) {
+        case Primitive::rectangle: return tessellate_rectangle(keys.cells());
+        case Primitive::disk: return tessellate_disk(keys.count(1));
+        case Primitive::sphere: return tessellate_sphere(keys.count(2));
+        case Primitive::cylinder: return tessellate_cylinder(keys.count(1));
+        default: return tessellate_heightfield(field, keys.cells());
+    }
+}
+
 void read_analytic(const JsonNode& node, const std::string& type, CommonKeys keys, Shape& shape) {
     const std::vector<std::string> names{"rectangle", "disk", "sphere", "cylinder", "heightfield"};
     const auto at = std::ranges::find(names, type) - names.begin();
     shape.primitive = static_cast<Primitive>(at);
-    if (shape.primitive == Primitive::heightfield) shape.field = read_heightfield(node);
     const bool round =
         shape.primitive == Primitive::sphere || shape.primitive == Primitive::cylinder;
     if (round && !keys.resolution && !is_similarity(keys.to_world))
@@ -169,17 +151,27 @@ void read_analytic(const JsonNode& node, const std::string& type, CommonKeys key
         shape.flip_normals = keys.flip_normals;
         return;
     }
-    const int n = keys.count(shape.primitive == Primitive::sphere ? 2 : 1);
-    shape.mesh = tessellate(shape.primitive, shape.field, n);
+    shape.mesh = tessellate(shape.primitive, shape.field, keys);
     shape.primitive = Primitive::mesh;
     keys.finish_mesh(shape.mesh);
 }
 
-void read_cube(const CommonKeys& keys, Shape& shape) {
+// What is a mesh by its nature.
+void set_mesh(TriangleMesh mesh, const CommonKeys& keys, Shape& shape) {
     shape.primitive = Primitive::mesh;
     shape.to_world = keys.to_world;
-    shape.mesh = tessellate_cube(keys.resolution ? keys.count(1) : 1);
+    shape.mesh = std::move(mesh);
     keys.finish_mesh(shape.mesh);
+}
+
+void read_heightfield(const JsonNode& node, const CommonKeys& keys, Shape& shape, Assets& assets) {
+    const auto heights = read_heights(node, assets);
+    if (const auto* field = std::get_if<SineHeightfield>(&heights)) {
+        shape.field = *field;
+        return read_analytic(node, "heightfield", keys, shape);
+    }
+    if (keys.resolution) keys.resolution->fail("the heights have a resolution of their own");
+    set_mesh(tessellate_grid(std::get<HeightGrid>(heights)), keys, shape);
 }
 
 // What is nested in a shape under keys of the user's choice: a bsdf and an emitter.
@@ -211,13 +203,14 @@ void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
 
 const std::vector<std::string>& shape_types() {
     static const std::vector<std::string> types{"rectangle", "disk", "sphere", "cylinder",
-                                                "cube",      "obj",  "ply",    "heightfield"};
+                                                "cube",      "obj",  "ply",    "heightfield",
+                                                "lathe",     "cut"};
     return types;
 }
 
 const std::vector<std::string>& later_shape_types() {
-    static const std::vector<std::string> types{"lathe",        "instance", "shapegroup",
-                                                "bsplinecurve", "sdfgrid",  "serialized"};
+    static const std::vector<std::string> types{"instance", "shapegroup", "bsplinecurve", "sdfgrid",
+                                                "serialized"};
     return types;
 }
 
@@ -229,7 +222,13 @@ Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) 
     if (type == "obj" || type == "ply")
         read_mesh_file(node, type, keys, shape, assets);
     else if (type == "cube")
-        read_cube(keys, shape);
+        set_mesh(tessellate_cube(keys.resolution ? keys.count(1) : 1), keys, shape);
+    else if (type == "lathe")
+        set_mesh(read_lathe(node, keys.resolution ? keys.count(3) : 64), keys, shape);
+    else if (type == "cut")
+        set_mesh(read_cut(node, keys.resolution), keys, shape);
+    else if (type == "heightfield")
+        read_heightfield(node, keys, shape, assets);
     else
         read_analytic(node, type, keys, shape);
     const Eigen::AlignedBox3d box = world_bounds(shape);

@@ -11,6 +11,7 @@
 #include "experiments/base/interrupt.h"
 #include "experiments/base/number_option.h"
 #include "experiments/cli/map_info.h"
+#include "experiments/cli/shape_lines.h"
 #include "experiments/cli/verbs.h"
 #include "experiments/picture/beam_picture.h"
 #include "experiments/run/cli_options.h"
@@ -19,41 +20,6 @@
 namespace caustics {
 
 namespace {
-
-const char* primitive_name(Primitive primitive) {
-    switch (primitive) {
-        case Primitive::rectangle: return "exact rectangle";
-        case Primitive::disk: return "exact disk";
-        case Primitive::sphere: return "exact sphere";
-        case Primitive::cylinder: return "exact cylinder";
-        case Primitive::heightfield: return "exact heightfield";
-        case Primitive::mesh: return "mesh";
-    }
-    return "";
-}
-
-// What a glass catalogue says of the inside.
-std::string dispersion(const Bsdf& bsdf) {
-    const auto* glass = std::get_if<Dielectric>(&bsdf.model);
-    if (glass == nullptr || !glass->int_ior.is_dispersive()) return "";
-    const double n_f = glass->int_ior.at(486.1327F);
-    const double n_c = glass->int_ior.at(656.2725F);
-    return fmt::format(", n_d {:.5f}, V_d {:.2f}", glass->int_ior.at(d_line),
-                       (glass->int_ior.at(d_line) - 1) / (n_f - n_c));
-}
-
-std::string shape_line(const Shape& shape) {
-    std::string kind = primitive_name(shape.primitive);
-    if (shape.primitive == Primitive::mesh)
-        kind += fmt::format(" of {} triangles", triangle_count(shape));
-    const bool caster = is_caster(shape.bsdf);
-    const bool receiver = is_receiver(shape.bsdf);
-    return fmt::format("  {:<16} {:<28} {}{}\n", shape.name, kind,
-                       caster && receiver ? "caster and receiver"
-                       : caster           ? "caster"
-                                          : "receiver",
-                       (shape.radiance ? ", area light" : "") + dispersion(shape.bsdf));
-}
 
 std::string rgb(const Spectrum& s) { return fmt::format("{:.6g} {:.6g} {:.6g}", s[0], s[1], s[2]); }
 
@@ -110,7 +76,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     text += fmt::format("film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
                         scene.camera().height, sampling.sample_count, sampling_name(sampling));
     text += "shapes\n";
-    for (const Shape& shape : scene.shapes()) text += shape_line(shape);
+    for (const std::string& line : shape_lines(scene)) text += line;
     text += "lights\n";
     for (const Light& light : scene.lights()) text += std::visit(LightLine{scene}, light);
     if (!is_black(scene.ambient()))

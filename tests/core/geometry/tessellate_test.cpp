@@ -5,13 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <set>
 
 #include "core/base/error.h"
+#include "tests/core/geometry/mesh_measures.h"
 
 namespace caustics {
 namespace {
+
+using test::area;
+using test::area_vector;
+using test::euler_characteristic;
+using test::volume;
 
 SineHeightfield waves() {
     SineHeightfield field;
@@ -54,45 +59,6 @@ std::vector<Case> cases() {
          [](const Vec3d& p) { return p.z() - waves().height(p.head<2>()); },
          [](const Vec3d& p) { return waves().normal(p.head<2>()); }},
     };
-}
-
-Vec3d corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t i) {
-    return mesh.positions[mesh.triangles[triangle][i]].cast<double>();
-}
-
-Vec3d area_vector(const TriangleMesh& mesh, std::size_t t) {
-    const Vec3d a = corner(mesh, t, 0);
-    return (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a) / 2;
-}
-
-double area(const TriangleMesh& mesh) {
-    double sum = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) sum += area_vector(mesh, t).norm();
-    return sum;
-}
-
-// Divergence theorem: the flux of x / 3.
-double volume(const TriangleMesh& mesh) {
-    double sum = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        sum += corner(mesh, t, 0).dot(area_vector(mesh, t)) / 3;
-    return sum;
-}
-
-int euler_characteristic(const TriangleMesh& mesh) {
-    std::map<std::array<float, 3>, int> numbers;
-    std::set<std::pair<int, int>> edges;
-    for (const auto& triangle : mesh.triangles) {
-        std::array<int, 3> ids{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3& p = mesh.positions[triangle[i]];
-            ids[i] = numbers.try_emplace({p.x(), p.y(), p.z()}, static_cast<int>(numbers.size()))
-                         .first->second;
-        }
-        for (std::size_t i = 0; i < 3; ++i) edges.insert(std::minmax(ids[i], ids[(i + 1) % 3]));
-    }
-    return static_cast<int>(numbers.size()) - static_cast<int>(edges.size()) +
-           static_cast<int>(mesh.triangles.size());
 }
 
 class Tessellate : public testing::TestWithParam<Case> {
@@ -176,6 +142,8 @@ TEST(TessellateCounts, AreAsDocumented) {
     EXPECT_EQ(tessellate_cylinder(2).triangles.size(), 8U * 2 * 2);
     EXPECT_EQ(tessellate_cube(2).triangles.size(), 6U * 8);
     EXPECT_EQ(tessellate_heightfield(waves(), 3).triangles.size(), 18U);
+    EXPECT_EQ(tessellate_rectangle({3, 2}).triangles.size(), 12U);
+    EXPECT_EQ(tessellate_heightfield(waves(), {1, 5}).triangles.size(), 10U);
 }
 
 // A corner of Mitsuba's cube, one a face: (1, -1, -1) has uv (0, 1), (0, 1) and (1, 1).

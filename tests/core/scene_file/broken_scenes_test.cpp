@@ -63,7 +63,6 @@ std::vector<Broken> broken_scenes() {
         {"root_area", with(R"({"type": "area"})"), {"/it", "nested in the shape"}},
         // What later versions or other programs have.
         {"constant", with(R"({"type": "constant"})"), {"/it", "not supported (yet)", "point"}},
-        {"lathe", with(R"({"type": "lathe"})"), {"/it", "not supported (yet)", "heightfield"}},
         {"instance", with(R"({"type": "instance"})"), {"/it", "not supported (yet)"}},
         {"shapegroup", with(R"({"type": "shapegroup"})"), {"/it", "not supported (yet)"}},
         {"ref", with(R"({"type": "ref", "id": "x"})"), {"/it", "not supported (yet)"}},
@@ -90,12 +89,6 @@ std::vector<Broken> broken_scenes() {
          with_bsdf(R"({"type": "blendbsdf", "weight": {"type": "checkerboard"},
                        "a": {"type": "diffuse"}, "b": {"type": "conductor"}})"),
          {"/it/b/weight", "not supported (yet)"}},
-        {"fractal",
-         with(R"({"type": "heightfield", "fractal": {}})"),
-         {"/it/fractal", "not supported (yet)", "waves"}},
-        {"grid",
-         with(R"({"type": "heightfield", "filename": "g.exr"})"),
-         {"/it/filename", "not supported (yet)", "waves"}},
         {"law_without_numbers",
          with_bsdf(R"({"type": "dielectric", "int_ior": {"type": "cauchy"}})"),
          {"/it/b/int_ior", "\"A\""}},
@@ -203,7 +196,9 @@ std::vector<Broken> broken_scenes() {
         {"faces",
          with(R"({"type": "disk", "face_normals": true})"),
          {"/it/face_normals", "resolution"}},
-        {"no_waves", with(R"({"type": "heightfield"})"), {"/it", "\"waves\" is missing"}},
+        {"no_heights",
+         with(R"({"type": "heightfield"})"),
+         {"/it: ", "one of waves, fractal and filename"}},
         {"wave_typo",
          with(R"({"type": "heightfield",
                   "waves": [{"amplitude": 1, "wave_vector": [1, 0], "phaes": 0}]})"),
@@ -347,6 +342,106 @@ std::vector<Broken> broken_scenes() {
     };
 }
 
+std::string with_lathe(const std::string& keys) {
+    return with(R"({"type": "lathe", )" + keys + "}");
+}
+std::string with_cut(const std::string& keys) { return with(R"({"type": "cut", )" + keys + "}"); }
+std::string with_heights(const std::string& keys) {
+    return with(R"({"type": "heightfield", )" + keys + "}");
+}
+
+std::vector<Broken> broken_meshes() {
+    const std::string box =
+        R"("planes": [[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, -1, 1]])";
+    return {
+        // Rectangles and heightfields.
+        {"three_resolutions",
+         with(R"({"type": "rectangle", "resolution": [2, 3, 4]})"),
+         {"/it/resolution", "a whole number or [nx, ny]"}},
+        {"no_cells",
+         with(R"({"type": "rectangle", "resolution": [2, 0]})"),
+         {"/it/resolution/1", "from 1 to 4096"}},
+        {"two_sectors_of_a_disk",
+         with(R"({"type": "disk", "resolution": [2, 2]})"),
+         {"/it/resolution", "whole number"}},
+        {"two_kinds_of_heights",
+         with_heights(R"("waves": [], "filename": "grey.exr")"),
+         {"/it: ", "one of waves, fractal and filename"}},
+        {"fine_fractal",
+         with_heights(R"("fractal": {"levels": 16, "rms": 1})"),
+         {"/it/fractal/levels", "from 2 to 12"}},
+        {"fractal_typo",
+         with_heights(R"("fractal": {"levels": 3, "rms": 1, "hursd": 1})"),
+         {"/it/fractal: ", "hursd", "hurst"}},
+        {"fractal_resolution",
+         with_heights(R"("fractal": {"levels": 3, "rms": 1}, "resolution": 8)"),
+         {"/it/resolution", "of their own"}},
+        {"lowest_of_none",
+         with_heights(R"("fractal": {"levels": 3, "rms": 1, "lowest": 5})"),
+         {"/it/fractal/lowest", "from 1 to 4"}},
+        {"high_waves",
+         with_heights(R"("waves": [], "height": 2)"),
+         {"/it/height", "only heights of a file"}},
+        {"no_heights_file", with_heights(R"("filename": "no.exr")"), {"/it/filename", "no.exr"}},
+        {"colours_as_heights",
+         with_heights(R"("filename": "grey.exr")"),
+         {"/it/filename", "one channel, and not 3"}},
+        {"one_pixel_of_heights",
+         with_heights(R"("filename": "one.pgm")"),
+         {"/it/filename", "2 to 4097 pixels", "1 x 2"}},
+        {"stairs", with_heights(R"("filename": "stairs.pgm")"), {"/it/filename", "8 bits"}},
+        // Lathes.
+        {"no_profile", with_lathe(R"("open": true)"), {"/it", "\"profile\" is missing"}},
+        {"one_point", with_lathe(R"("profile": [[0, 0]])"), {"/it/profile", "at least 2"}},
+        {"point_of_three",
+         with_lathe(R"("profile": [[0, 0], [1, 0, 0], [0, 1]])"),
+         {"/it/profile/1", "2 numbers"}},
+        {"crease_typo",
+         with_lathe(R"("profile": [[0, 0], {"at": [1, 1], "creese": true}, [0, 2]])"),
+         {"/it/profile/1: ", "creese", "crease"}},
+        {"holed",
+         with_lathe(R"("profile": [[0, 0], [1, 1]])"),
+         {"/it/profile", "last end [1, 1]", "\"open\": true"}},
+        {"across_the_axis",
+         with_lathe(R"("profile": [[0, 0], [-1, 1], [0, 2]])"),
+         {"/it/profile", "point 1", "axis"}},
+        {"crossing_profile",
+         with_lathe(R"("profile": [[0, 0], [2, 2], [2, 0], [0, 2]])"),
+         {"/it/profile", "meets itself"}},
+        {"other_curve",
+         with_lathe(R"("profile": [[0, 0], [1, 1], [0, 2]], "interpolation": "bezier")"),
+         {"/it/interpolation", "linear, catmullrom"}},
+        {"two_sectors",
+         with_lathe(R"("profile": [[0, 0], [1, 1], [0, 2]], "resolution": 2)"),
+         {"/it/resolution", "from 3 to 4096"}},
+        {"many_segments",
+         with_lathe(R"("profile": [[0, 0], [1, 1], [0, 2]], "segments": 3000)"),
+         {"/it/profile", "more than 4096 segments"}},
+        // Cuts.
+        {"no_planes", with_cut(R"("rings": [])"), {"/it: ", "leave the solid open"}},
+        {"no_normal",
+         with_cut(R"("planes": [[0, 0, 0, 1]])"),
+         {"/it/planes/0", "must not be zero"}},
+        {"open_box", with_cut(box), {"/it: ", "open towards [", "1]"}},
+        {"empty_box", with_cut(box + R"(, "height": -2)"), {"/it: ", "enclose nothing"}},
+        {"many_planes",
+         with_cut(box + R"(, "height": 1, "rings": [{"count": 200, "angle": 0, "distance": 1}])"),
+         {"/it: ", "206 planes are more than 200"}},
+        {"steep_ring",
+         with_cut(R"("rings": [{"count": 3, "angle": 91, "distance": 1}])"),
+         {"/it/rings/0/angle", "from -90 to 90"}},
+        {"solid_with_sectors",
+         with_cut(box + R"(, "height": 1, "resolution": 16)"),
+         {"/it/resolution", "inner"}},
+        {"wide_inside",
+         with_cut(box + R"(, "height": 1, "inner": {"profile": [[1.1, 1], [0, 0]]})"),
+         {"/it: ", "reaches the outside at r = 1.1"}},
+        {"inner_typo",
+         with_cut(box + R"(, "height": 1, "inner": {"profile": [[0.5, 1], [0, 0]], "open": true})"),
+         {"/it/inner: ", "unknown key \"open\"", "profile, interpolation, segments"}},
+    };
+}
+
 class BrokenScene : public testing::TestWithParam<Broken> {
 protected:
     static void SetUpTestSuite() {
@@ -354,6 +449,8 @@ protected:
         const unsigned char huge[100] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
                                          0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
         write("huge.tga", {reinterpret_cast<const char*>(huge), sizeof huge});
+        write("stairs.pgm", {"P5 2 2 255\n\0\0\0\0", 15});
+        write("one.pgm", {"P5 1 2 65535\n\0\0\0\0", 17});
         write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
         Film bright(1, 1);
         bright.set_rgb("", 0, Spectrum::Constant(1.5F));
@@ -379,8 +476,10 @@ TEST_P(BrokenScene, IsOneErrorLineWithFilePlaceAndAlternatives) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BrokenScene, testing::ValuesIn(broken_scenes()),
-                         [](const auto& scene) { return std::string(scene.param.name); });
+std::string name_of(const testing::TestParamInfo<Broken>& scene) { return scene.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(All, BrokenScene, testing::ValuesIn(broken_scenes()), name_of);
+INSTANTIATE_TEST_SUITE_P(Meshes, BrokenScene, testing::ValuesIn(broken_meshes()), name_of);
 
 TEST(BrokenOverride, NamesThePlaceAndWhatIsThere) {
     write("good.json", with(R"({"type": "disk"})"));

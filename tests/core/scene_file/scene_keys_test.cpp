@@ -33,6 +33,12 @@ const std::string view =
 const std::string waves =
     R"({"type": "heightfield", "waves": [{"amplitude": 0.1, "wave_vector": [1, 2]}]})";
 
+const std::string vase = R"({"type": "lathe", "profile": [[0, 0], {"at": [1, 1]}, [0, 2]]})";
+const std::string bowl =
+    R"({"type": "cut", "rings": [{"count": 6, "angle": 0, "distance": 1}], "height": 1,
+        "planes": [[0, 0, -1, 1]], "inner": {"profile": [[0.5, 1], [0, 0]]}})";
+const std::string ground = R"({"type": "heightfield", "fractal": {"levels": 2, "rms": 0.1}})";
+
 std::string plain(const std::string& type) { return R"({"type": ")" + type + R"("})"; }
 
 Place place_of(const std::string& kind) {
@@ -45,6 +51,13 @@ Place place_of(const std::string& kind) {
         {"obj", {"/thing", R"({"type": "obj", "filename": "one.obj"})"}},
         {"ply", {"/thing", R"({"type": "ply", "filename": "one.ply"})"}},
         {"heightfield", {"/thing", waves}},
+        {"wave", {"/water/waves/0"}},
+        {"fractal", {"/ground/fractal"}},
+        {"lathe", {"/vase"}},
+        {"profile point", {"/vase/profile/1"}},
+        {"cut", {"/bowl"}},
+        {"ring", {"/bowl/rings/0"}},
+        {"inner", {"/bowl/inner"}},
         {"twosided", {"/floor/bsdf", R"({"type": "twosided", "inner": {"type": "diffuse"}})"}},
         {"blendbsdf",
          {"/floor/bsdf",
@@ -73,7 +86,9 @@ protected:
                               "film": {"type": "hdrfilm", "filter": {"type": "box"}}},
                    "floor": {"type": "rectangle", "bsdf": {"type": "diffuse"}},
                    "glass": {"type": "sphere", "bsdf": {"type": "dielectric", "int_ior": 1.5}},
-                   "water": )" << waves << "}";
+                   "water": )" << waves << R"(, "ground": )"
+                                              << ground << R"(, "vase": )" << vase
+                                              << R"(, "bowl": )" << bowl << "}";
         std::ofstream(folder_ / "one.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
         std::ofstream(folder_ / "one.ply")
             << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -120,9 +135,8 @@ Words keys_of(const ObjectText& object) {
     return all;
 }
 
-/// Objects that have no `type`, each at a place of its own.
+/// Objects of a transform.
 std::optional<Place> place_within(const std::string& name) {
-    if (name == "wave") return Place{"/water/waves/0"};
     if (name == "transform") return Place{"/floor/to_world/0"};
     if (name == "rotate") return Place{"/floor/to_world/0/rotate"};
     if (name == "look_at") return Place{"/floor/to_world/0/look_at"};
@@ -133,13 +147,13 @@ TEST_F(SceneKeys, AreThoseThatTheReadersAskFor) {
     for (const ObjectText& object : scene_file::scene_keys()) {
         if (object.name == "$include") continue;  // replaced before any reader sees it
         const auto within = place_within(object.name);
-        if (within && object.name != "wave") {
+        if (within) {
             const Overrides values = {{"/floor/to_world", object.name == "look_at" ? view : turned},
                                       {within->pointer + "/no_such_key", "1"}};
             EXPECT_EQ(known(refusal(values)), keys_of(object)) << object.name;
             continue;
         }
-        const Place place = within ? *within : place_of(object.name);
+        const Place place = place_of(object.name);
         EXPECT_EQ(refusal(at(place)), "") << object.name;
         EXPECT_EQ(asked(place), keys_of(object)) << object.name;
     }
@@ -155,7 +169,8 @@ TEST_F(SceneKeys, TakeTheirDefaultsAndChoices) {
             for (std::string word; std::getline(choices >> std::ws, word, ',');)
                 EXPECT_EQ(refusal_of(place, key.key, word), "") << object.name << " " << key.key;
             const bool is_told_in_words = key.usual.empty() || key.usual == "none" ||
-                                          key.usual.find("times") != key.usual.npos;
+                                          key.usual.find("times") != key.usual.npos ||
+                                          key.usual.find(" with") != key.usual.npos;
             // Without a mesh there is nothing to shade.
             if (is_told_in_words || key.key == "face_normals") continue;
             EXPECT_EQ(refusal_of(place, key.key, key.usual), "") << object.name << " " << key.key;

@@ -1,0 +1,107 @@
+#include "core/scene_file/heightfield_shape.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/base/picture_file.h"
+#include "core/geometry/fractal_field.h"
+
+namespace caustics::scene_file {
+namespace {
+
+constexpr double far_away = 1e30;
+
+SineWave read_wave(const JsonNode& node) {
+    SineWave wave;
+    wave.amplitude = node.at("amplitude").as_number_in(-far_away, far_away);
+    const std::vector<double> k = node.at("wave_vector").as_numbers(2);
+    wave.wave_vector = {k[0], k[1]};
+    if (wave.wave_vector.cwiseAbs().maxCoeff() > far_away)
+        node.at("wave_vector").fail("is out of range (to 1e+30)");
+    if (const auto phase = node.find("phase"))
+        wave.phase = phase->as_number_in(-far_away, far_away);
+    node.finish();
+    return wave;
+}
+
+HeightGrid read_fractal(const JsonNode& node, const Vec2d& half_size) {
+    FractalField field;
+    field.half_size = half_size;
+    field.levels = static_cast<int>(
+        node.at("levels").as_integer_in(FractalField::least_levels, FractalField::most_levels));
+    field.rms = node.at("rms").as_number_in(0, far_away);
+    if (const auto hurst = node.find("hurst")) field.hurst = hurst->as_number_in(0, 1);
+    if (const auto lowest = node.find("lowest"))
+        field.lowest = lowest->as_number_in(1, std::exp2(field.levels - 1));
+    if (const auto seed = node.find("seed"))
+        field.seed = static_cast<std::uint64_t>(seed->as_integer_in(0, 4294967295));
+    node.finish();
+    return make_for(node, [&] { return fractal_grid(field); });
+}
+
+// Pixels are the corners of the cells; the top row lies at +y, as the picture looks from above.
+HeightGrid load_heights(const std::filesystem::path& file, double height) {
+    PictureFile picture(file);
+    const OIIO::ImageSpec& spec = picture.spec();
+    if (spec.nchannels != 1)
+        picture.fail(fmt::format("heights are one channel, and not {}", spec.nchannels));
+    if (spec.format.size() < 2)
+        picture.fail("heights of 8 bits are a flight of stairs; use a 16-bit PNG or an EXR file");
+    HeightGrid grid{.columns = spec.width - 1, .rows = spec.height - 1};
+    const int most = HeightGrid::most_cells;
+    if (grid.columns < 1 || grid.rows < 1 || grid.columns > most || grid.rows > most)
+        picture.fail(fmt::format("heights are 2 to {} pixels wide and high, and not {} x {}",
+                                 most + 1, spec.width, spec.height));
+    grid.heights.resize(picture.pixel_count());
+    picture.read_rows([&](int y, const float* values) {
+        for (int x = 0; x <= grid.columns; ++x) {
+            const double z = height * static_cast<double>(values[x]);
+            if (!(std::abs(z) <= far_away))
+                picture.fail(fmt::format("pixel ({}, {}) is no height", x, y));
+            grid.heights[grid.index(x, grid.rows - y)] = static_cast<float>(z);
+        }
+    });
+    return grid;
+}
+
+HeightGrid read_picture(const JsonNode& name, const std::optional<JsonNode>& height,
+                        const Vec2d& half_size, Assets& assets) {
+    const double metres = height ? height->as_number_in(-far_away, far_away) : 1;
+    const std::filesystem::path file = read_file_name(name, assets);
+    HeightGrid grid = load_for(name, [&] { return load_heights(file, metres); });
+    grid.half_size = half_size;
+    return grid;
+}
+
+Vec2d read_half_size(const JsonNode& node) {
+    const auto half_size = node.find("half_size");
+    if (!half_size) return Vec2d::Ones();
+    const std::vector<double> half = half_size->as_numbers(2);
+    for (const JsonNode& side : half_size->as_array()) side.as_number_in(0, far_away);
+    if (half[0] <= 0 || half[1] <= 0) half_size->fail("must be above 0");
+    return {half[0], half[1]};
+}
+
+}  // namespace
+
+bool is_height_grid(const JsonNode& node) { return node.has("fractal") || node.has("filename"); }
+
+std::variant<SineHeightfield, HeightGrid> read_heights(const JsonNode& node, Assets& assets) {
+    const auto waves = node.find("waves");
+    const auto fractal = node.find("fractal");
+    const auto name = node.find("filename");
+    const auto height = node.find("height");
+    const Vec2d half_size = read_half_size(node);
+    if (int{waves.has_value()} + int{fractal.has_value()} + int{name.has_value()} != 1)
+        node.fail("a heightfield takes one of waves, fractal and filename");
+    if (height && !name) height->fail("only heights of a file are scaled");
+    if (fractal) return read_fractal(*fractal, half_size);
+    if (name) return read_picture(*name, height, half_size, assets);
+    SineHeightfield field;
+    field.half_size = half_size;
+    for (const JsonNode& wave : waves->as_array()) field.waves.push_back(read_wave(wave));
+    return field;
+}
+
+}  // namespace caustics::scene_file

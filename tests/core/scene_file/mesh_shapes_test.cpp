@@ -1,0 +1,72 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/scene_file/scene_reader.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+class MeshShapes : public testing::Test {
+protected:
+    Shape read(const std::string& keys) const {
+        std::ofstream(folder_ / "scene.json")
+            << R"({"sensor": {"type": "perspective"}, "it": {)" << keys << "}}";
+        return load_scene(folder_ / "scene.json").desc.shapes.at(0);
+    }
+
+    support::TemporaryFolder folder_;
+};
+
+TEST_F(MeshShapes, TwoResolutionsAreThoseAlongXAndY) {
+    const Shape floor = read(R"("type": "rectangle", "resolution": [3, 2])");
+    ASSERT_EQ(floor.mesh.patches.size(), 1U);
+    EXPECT_EQ(floor.mesh.patches[0].columns, 3U);
+    EXPECT_EQ(floor.mesh.patches[0].rows, 2U);
+    const Shape water = read(R"("type": "heightfield", "waves": [], "resolution": [1, 5])");
+    EXPECT_EQ(water.mesh.triangles.size(), 10U);
+}
+
+// Three by two heights of 16 bits, the upper row first.
+TEST_F(MeshShapes, HeightsOfAPictureStandOnItsPixels) {
+    const char bytes[] = "P5 3 2 65535\n\xFF\xFF\x00\x00\x00\x00\x00\x00\x80\x00\x33\x33";
+    std::ofstream(folder_ / "heights.pgm", std::ios::binary).write(bytes, sizeof bytes - 1);
+    const Shape relief = read(
+        R"("type": "heightfield", "filename": "heights.pgm", "height": 2, "half_size": [3, 1])");
+    const std::vector<Vec3> expected = {{-3, -1, 0},   {0, -1, 2 * 32768 / 65535.0F},
+                                        {3, -1, 0.4F}, {-3, 1, 2},
+                                        {0, 1, 0},     {3, 1, 0}};
+    ASSERT_EQ(relief.mesh.positions.size(), expected.size());
+    // Values of this format are read to one in 65536.
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_LT((relief.mesh.positions[i] - expected[i]).norm(), 1e-4F) << i;
+    EXPECT_EQ(relief.mesh.triangles.size(), 4U);
+}
+
+TEST_F(MeshShapes, TakeTheKeysOfOtherMeshes) {
+    const std::string cone = R"("type": "lathe", "profile": [[0, 0], [1, 0], [0, 1]])";
+    EXPECT_EQ(read(cone).mesh.patches.at(0).columns, 64U);
+    const Shape turned =
+        read(cone + R"(, "resolution": 4, "flip_normals": true, "to_world": [{"scale": 3}])");
+    EXPECT_EQ(turned.mesh.positions.at(0), Vec3(3, 0, 0));
+    EXPECT_LT(turned.mesh.normals.at(0).x(), 0);
+    EXPECT_TRUE(read(cone + R"(, "face_normals": true)").mesh.normals.empty());
+    const Shape ground = read(
+        R"("type": "heightfield", "fractal": {"levels": 4, "rms": 0.1}, "face_normals": true)");
+    EXPECT_EQ(ground.mesh.triangles.size(), 512U);
+    EXPECT_TRUE(ground.mesh.normals.empty());
+}
+
+TEST_F(MeshShapes, RingsOfACutLookWhereTheirAnglesSay) {
+    const Shape drum = read(R"("type": "cut", "rings": [{"count": 4, "angle": 0, "distance": 1,
+        "phase": 0.5}, {"count": 1, "angle": -90, "distance": 0}], "height": 2)");
+    Box box;
+    for (const Vec3& p : drum.mesh.positions) box.extend(p);
+    EXPECT_LT((box.max() - Vec3(std::sqrt(2.0F), std::sqrt(2.0F), 2)).norm(), 1e-5F);
+    EXPECT_NEAR(box.min().z(), 0, 1e-6F);
+}
+
+}  // namespace
+}  // namespace caustics
