@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Makes results/pictures/caustics.png, the picture on README's first screen.
+"""Makes results/pictures/caustics.png, the picture on README's first screen, and glass.png.
 
-Renders the ring, the ball and the pool with the photon map (2 million photons, N = 80, 16 samples a
-pixel) and sets them side by side. Needs build/release (tools/build.sh release causticbench) and some
-two minutes; run from the project's folder.
+caustics.png: the ring, the ball and the pool with the photon map (2 million photons, N = 80, 16 samples a
+pixel) side by side. glass.png: bowl, crystal bowl and cognac above prism, rainbow and gem (2 million photons,
+N = 200). Needs build/release (tools/build.sh release causticbench) and some five minutes; run from the
+project's folder.
 """
 
 import pathlib
@@ -15,28 +16,46 @@ import matplotlib.image
 import numpy as np
 
 PROGRAM = pathlib.Path("build/release/bin/causticbench")
-SCENES = ["ring", "ball_area", "pool"]
-TARGET = pathlib.Path("results/pictures/caustics.png")
+FOLDER = pathlib.Path("results/pictures")
+# Rows of (scene, exposure in stops or None), and the photons of an estimate.
+PICTURES = {
+    "caustics": ([[("ring", None), ("ball_area", None), ("pool", None)]], 80),
+    "glass": ([[("bowl", 0.6), ("crystal_bowl", 0.6), ("cognac", None)],
+               [("prism", 2), ("rainbow", None), ("gem", 0.9)]], 200),
+}
 
 
-def render(scene, picture):
+def render(scene, exposure, nearest, picture):
     command = [PROGRAM, "render", f"experiments/scenes/{scene}.json", "--method", "photonmap",
-               "--param", "photons=2000000", "--param", "nearest=80", "--spp", "16",
+               "--param", "photons=2000000", "--param", f"nearest={nearest}", "--param", "tree=packed", "--spp", "16",
                "--set", "/sensor/film/width=480", "--set", "/sensor/film/height=360",
                "-o", picture]
+    if exposure is not None:
+        command += ["--exposure", str(exposure)]
     subprocess.run(command, check=True)
     return matplotlib.image.imread(picture)[..., :3]
+
+
+def make(name, folder):
+    rows, nearest = PICTURES[name]
+    pictures = [np.concatenate([render(scene, exposure, nearest, folder / f"{scene}.png") for scene, exposure in row],
+                               axis=1) for row in rows]
+    target = FOLDER / f"{name}.png"
+    joined = np.round(255 * np.concatenate(pictures, axis=0)).astype(np.uint8)
+    matplotlib.image.imsave(target, joined, format="png", metadata={"Software": ""})
+    print(f"{target}: {target.stat().st_size} bytes")
 
 
 def main():
     if not PROGRAM.exists():
         sys.exit(f"{PROGRAM}: not there (tools/build.sh release causticbench)")
+    unknown = [name for name in sys.argv[1:] if name not in PICTURES]
+    if unknown:
+        sys.exit(f"unknown picture {unknown[0]} (known: {', '.join(PICTURES)})")
+    FOLDER.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        pictures = [render(scene, pathlib.Path(folder) / f"{scene}.png") for scene in SCENES]
-    TARGET.parent.mkdir(parents=True, exist_ok=True)
-    joined = np.round(255 * np.concatenate(pictures, axis=1)).astype(np.uint8)
-    matplotlib.image.imsave(TARGET, joined, format="png", metadata={"Software": ""})
-    print(f"{TARGET}: {TARGET.stat().st_size} bytes")
+        for name in sys.argv[1:] or PICTURES:
+            make(name, pathlib.Path(folder))
 
 
 if __name__ == "__main__":

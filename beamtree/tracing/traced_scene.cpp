@@ -11,12 +11,6 @@ namespace {
 // With most of the light missing it would be another picture.
 constexpr double least_captured = 0.5;
 
-bool disperses(const Scene& scene) {
-    return std::ranges::any_of(scene.casters(), [&scene](std::uint32_t caster) {
-        return is_dispersive(scene.shapes()[caster].bsdf);
-    });
-}
-
 void refuse_what_is_lost(const std::string& method, const FluxBalance& balance) {
     if (balance.captured() >= least_captured) return;
     const auto percent = std::to_string(std::lround(100 * (1 - balance.captured())));

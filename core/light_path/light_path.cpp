@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/material/optics.h"
 
@@ -213,6 +214,14 @@ struct OneOfMany : Flight {
     std::size_t number;  // of its start
 };
 
+// Halton's sequence in base 3: neighbours in the order of paths, which are neighbours in the light, have
+// wavelengths far apart.
+double spread(std::uint64_t path, double shift) {
+    double share = 1.0 / 3;
+    for (; path > 0; path /= 3, share /= 3) shift += static_cast<double>(path % 3) * share;
+    return shift - std::floor(shift);
+}
+
 // Moves up to Scene::most_together flights along one segment; those that go on are kept in front.
 std::size_t advance(const Scene& scene, std::span<OneOfMany> flights,
                     std::span<LightPathStart> starts, const LightPathSettings& settings,
@@ -244,8 +253,11 @@ void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
     const std::size_t before = deposits.size();
     std::vector<OneOfMany> flights;
     flights.reserve(starts.size());
-    for (std::size_t i = 0; i < starts.size(); ++i)
+    for (std::size_t i = 0; i < starts.size(); ++i) {
         flights.push_back({{starts[i].particle.ray, starts[i].particle.flux}, i});
+        if (settings.wavelength_shift)
+            flights.back().wavelength.choice = spread(starts[i].path, *settings.wavelength_shift);
+    }
     while (!flights.empty()) {
         std::size_t kept = 0;
         for (std::size_t first = 0; first < flights.size(); first += Scene::most_together) {

@@ -73,6 +73,9 @@ struct LightPathSettings {
     int max_bounces = 16;  ///< specular events between light and receiver
     Interaction interaction = Interaction::roulette;
     std::vector<Ray>* traced = nullptr;  ///< gets every ray that is traced; for measuring
+    /// Where given, paths that start side by side share the wavelengths out by their numbers, turned by
+    /// this part of all; else each draws its own.
+    std::optional<double> wavelength_shift = {};
 };
 
 /// Follows a particle through specular surfaces to the first that is a receiver alone, with reflection

@@ -95,7 +95,7 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
 
 Spectrum PathWavelength::arrive_at(const Bsdf& bsdf, Rng& rng) {
     if (nm != 0 || !is_dispersive(bsdf)) return Spectrum::Ones();
-    const SampledWavelength sampled = sample_wavelength(rng.next_fine());
+    const SampledWavelength sampled = sample_wavelength(choice ? *choice : rng.next_fine());
     nm = sampled.nm;
     return sampled.weight;
 }

@@ -44,8 +44,11 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
 /// The light of a path that may have come to have one wavelength.
 struct PathWavelength {
     float nm = 0;  ///< 0: all of them
+    /// The number of [0, 1) that chooses the wavelength, where paths share them out among each other; none:
+    /// drawn.
+    std::optional<double> choice = {};
 
-    /// Draws one at the path's first dispersive interface, and returns the factor of its light from there
+    /// Chooses one at the path's first dispersive interface, and returns the factor of its light from there
     /// on: SampledWavelength::weight, else 1.
     Spectrum arrive_at(const Bsdf& bsdf, Rng& rng);
 };

@@ -27,6 +27,7 @@ enum class Stage : std::uint32_t {
     beams = 8,
     illumination_map = 9,
     survey = 10,
+    wavelength = 11,
     test = 100,
 };
 

@@ -129,7 +129,8 @@ private:
         if (is_black(scattering)) return black();
         const Ray ray = spawn_ray({point.position, point.geometric_normal, point.offset}, *wi);
         const float weight = cosine / mixture.pdf_w(*wi);
-        return scattering * chain_radiance(scene_, ray, max_bounces_, {point.nm}, rng) * weight;
+        return scattering * chain_radiance(scene_, ray, max_bounces_, {.nm = point.nm}, rng) *
+               weight;
     }
 
     const Scene& scene_;

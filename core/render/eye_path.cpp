@@ -71,10 +71,11 @@ FirstHit first_hit(const SurfacePoint& hit, const Bsdf& bsdf) {
 }  // namespace
 
 EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum& absorption,
-                       Rng& rng, std::vector<WeightedPoint>& points) {
+                       Rng& rng, std::vector<WeightedPoint>& points,
+                       std::optional<double> wavelength) {
     EyePath path;
     BranchStack stack;
-    stack.push({camera_ray, Spectrum::Ones(), &absorption, 0});
+    stack.push({camera_ray, Spectrum::Ones(), &absorption, 0, {.choice = wavelength}});
     while (stack.size > 0) {
         Branch branch = stack.pop();
         const auto hit = scene.intersect(branch.ray);

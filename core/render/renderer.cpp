@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -50,6 +51,7 @@ public:
         : scene_(scene),
           options_(options),
           eye_absorption_(eye_medium(scene).absorption),
+          disperses_(disperses(scene)),
           adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
           most_samples_(adaptive_ ? scene.sampling().max_sample_count : options.samples_per_pixel),
           tiles_(all_tiles()),
@@ -213,6 +215,19 @@ private:
         return {x + u, y + v};
     }
 
+    // Spread over the pixel's samples (van der Corput), and by chance over the pixels: few samples have all
+    // colours.
+    double wavelength_choice(int x, int y, int sample) const {
+        Rng rng(options_.seed, Stage::wavelength,
+                static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(scene_.camera().width) +
+                    static_cast<std::uint64_t>(x));
+        double choice = rng.next_fine();
+        double share = 0.5;
+        for (int digits = sample; digits > 0; digits /= 2, share /= 2)
+            choice += digits % 2 == 1 ? share : 0;
+        return choice - std::floor(choice);
+    }
+
     void sample_all(const Tile& tile, std::vector<PixelSums>& sums, Worker& worker) const {
         worker.pixels.resize(sums.size());
         std::iota(worker.pixels.begin(), worker.pixels.end(), std::size_t{0});
@@ -260,7 +275,10 @@ private:
         const Camera& camera = scene_.camera();
         const Ray ray = spawn_ray({camera.position()}, camera.direction(at.x(), at.y()));
         worker.found.clear();
-        const EyePath path = trace_eye_path(scene_, ray, eye_absorption_, rng, worker.found);
+        std::optional<double> wavelength;
+        if (disperses_) wavelength = wavelength_choice(x, y, sample);
+        const EyePath path =
+            trace_eye_path(scene_, ray, eye_absorption_, rng, worker.found, wavelength);
         ++worker.camera_rays;
         std::uint64_t branch = 0;
         for (WeightedPoint& found : worker.found) {
@@ -332,6 +350,7 @@ private:
     Shadows shadows_ = Shadows::opaque;
     RunOptions options_;
     Spectrum eye_absorption_;  ///< of the medium that camera rays start in
+    bool disperses_;
     bool adaptive_;
     int most_samples_;
     bool with_caustic_ = true;

@@ -59,6 +59,11 @@ const AreaLight* Scene::area_light(std::uint32_t shape) const {
 
 float Scene::diameter() const { return bounds_.diagonal().norm(); }
 
+bool disperses(const Scene& scene) {
+    return std::ranges::any_of(scene.shapes(),
+                               [](const Shape& shape) { return is_dispersive(shape.bsdf); });
+}
+
 float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direction) {
     // Outwards by more than the rounding of the bounds, of a flat scene as well.
     const Vec3 low = bounds.min() - Vec3::Constant(0x1p-20F * bounds.min().cwiseAbs().maxCoeff());

@@ -104,6 +104,9 @@ private:
     std::unique_ptr<const Intersector> intersector_;
 };
 
+/// Whether light of different wavelengths goes different ways at some surface.
+bool disperses(const Scene& scene);
+
 /// Signed distance along a unit direction from a point to where light from that direction begins: just
 /// outside of the bounds of all surfaces [m]. Measured along the line itself, so that a wide floor
 /// sends no light off to start where floats are coarse. A line that misses the bounds begins anywhere.

@@ -45,7 +45,7 @@ public:
     struct Settings {
         GatherLimits limits;
         PhotonMapParams::Estimator estimator = PhotonMapParams::Estimator::unbiased;
-        DensityFilter filter;
+        DensityFilter filter = {};
         bool adaptive = false;  ///< whether N is the largest number (AdaptiveN)
         double share = 1;       ///< of the squared radius within which photons count (pass_share)
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1

@@ -194,7 +194,10 @@ private:
     }
 
     ScenePaths::Settings settings(const std::optional<StratifiedSquare>& strata) const {
-        return {.path = {params_.max_bounces, params_.interaction, traced_},
+        std::optional<double> wavelength_shift;
+        if (strata && disperses(scene_))
+            wavelength_shift = Rng(options_.seed, Stage::wavelength, 0).next_fine();
+        return {.path = {params_.max_bounces, params_.interaction, traced_, wavelength_shift},
                 .strata = strata,
                 .seed = options_.seed};
     }

@@ -34,8 +34,8 @@ Scene room() {
     desc.shapes = {support::horizontal("ceiling", 2, 4, false, support::diffuse(0.5F)),
                    support::horizontal("floor", 0, 4, true, blend()),
                    support::rectangle("wall", {3, 0, 1}, Vec3d(0, -4, 0), Vec3d(0, 0, 1),
-                                      support::mirror(float{wall}))};
-    desc.point_lights = {support::point_light({0, 0, 1}, float{intensity})};
+                                      support::mirror(static_cast<float>(wall)))};
+    desc.point_lights = {support::point_light({0, 0, 1}, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 
@@ -84,18 +84,22 @@ TEST(Blend, LightGoesOnFromWhereItIsScattered) {
             EXPECT_NEAR(static_cast<double>(found[i].value[1]), all[i].exact,
                         support::sidak_bound(all.size()) * error + slack * all[i].exact)
                 << i;
-            EXPECT_LT(error, 0.08 * all[i].exact);
+            EXPECT_LT(error, 0.3 * all[i].exact);
         }
     };
     expect_near(*build(scene, LightTraceParams{.paths = 2'000'000}, RunOptions{}), 5e-3);
-    expect_near(*build(scene, BeamTreeParams{}, RunOptions{}), 5e-3);
+    BeamTreeParams tree;
+    tree.intensity = Intensity::refined;
+    expect_near(*build(scene, tree, RunOptions{}), 5e-3);
     CausticPolygonsParams polygons;
     polygons.receiver_resolution = 2;
-    expect_near(*build(scene, polygons, RunOptions{}), 5e-3);
+    polygons.mesh_resolution = 128;
+    expect_near(*build(scene, polygons, RunOptions{}), 0.05);
     for (const auto interaction : {Interaction::roulette, Interaction::split})
         for (const auto emission :
              {PhotonMapParams::Emission::random, PhotonMapParams::Emission::stratified}) {
             PhotonMapParams map;
+            map.photons = 0;
             map.emitted = 1'000'000;
             map.interaction = interaction;
             map.emission = emission;
@@ -131,7 +135,7 @@ TEST(Blend, InASphereItIsAGeometricSeries) {
     for (const int max_bounces : {1, 2, 5, 64}) {
         SceneDesc desc;
         desc.shapes = {support::enclosure(radius, blend())};
-        desc.point_lights = {support::point_light({0, 0, 0}, float{intensity})};
+        desc.point_lights = {support::point_light({0, 0, 0}, static_cast<float>(intensity))};
         const Scene scene(std::move(desc));
         const auto method = build(
             scene, LightTraceParams{.paths = 300'000, .max_bounces = max_bounces}, RunOptions{});
@@ -158,7 +162,7 @@ TEST(Blend, PathsFromTheReceiverFindTheSame) {
     desc.shapes.push_back(support::horizontal("lamp", 1, 0.05, false, support::diffuse(0)));
     desc.shapes.back().radiance = Spectrum(Spectrum::Constant(1000));
     const Scene scene(std::move(desc));
-    const auto method = build(scene, PathTraceParams{.spp = 100'000}, RunOptions{});
+    const auto method = build(scene, PathTraceParams{.spp = 4'000'000}, RunOptions{});
     const ReceiverPoint point = support::probe(scene, 0, {1, 0, 2}, -Vec3d::UnitZ(), 0);
     const Estimate found = support::irradiance(*method, {point})[0];
     // The lamp's image at z = -1 shines upwards: area x radiance x cosines / distance^2.

@@ -122,6 +122,7 @@ TEST(Dispersion, BeamsPaintThemToTheirNumberOfWavelengths) {
     };
     // A bin's weight is up to three times the channels' mean.
     BeamTreeParams tree;
+    tree.mesh_resolution = 4;
     tree.wavelengths = 512;
     expect_right(*build(scene, tree, RunOptions{}), 3.0 / 512);
     tree.intensity = Intensity::refined;
@@ -130,6 +131,7 @@ TEST(Dispersion, BeamsPaintThemToTheirNumberOfWavelengths) {
     CausticPolygonsParams polygons;
     polygons.wavelengths = 64;
     polygons.receiver_resolution = 2;
+    polygons.mesh_resolution = 4;
     expect_right(*build(scene, polygons, RunOptions{}), 3.0 / 64);
 }
 
@@ -163,10 +165,10 @@ TEST(Dispersion, PathsFromTheReceiverAndFromTheLightAgree) {
     lamp.radiance = Spectrum(Spectrum::Constant(50));
     desc.shapes.push_back(std::move(lamp));
     const Scene scene(std::move(desc));
-    const auto forward = build(scene, LightTraceParams{.paths = 1'500'000}, RunOptions{});
+    const auto forward = build(scene, LightTraceParams{.paths = 3'000'000}, RunOptions{});
     const auto backward = build(scene, PathTraceParams{.spp = 20'000}, RunOptions{});
     std::vector<ReceiverPoint> points;
-    for (const double x : {0.45, 0.5, 0.6, 0.7})
+    for (const double x : {0.4, 0.45, 0.5, 0.55})
         points.push_back(support::probe(scene, 0, {x, 0, 0}, Vec3d::UnitZ(),
                                         static_cast<std::uint64_t>(1000 * x), 0.01F));
     const std::vector<Estimate> a = support::irradiance(*forward, points);
@@ -177,7 +179,7 @@ TEST(Dispersion, PathsFromTheReceiverAndFromTheLightAgree) {
             const double error = std::hypot(static_cast<double>(a[i].standard_error[c]),
                                             static_cast<double>(b[i].standard_error[c]));
             EXPECT_GT(value, 0.1);
-            EXPECT_LT(error, 0.08 * value);
+            EXPECT_LT(error, 0.12 * value);
             EXPECT_NEAR(static_cast<double>(a[i].value[c]), value,
                         support::sidak_bound(12) * error + 0.01 * value)
                 << at(points[i]) << " " << c;
@@ -216,6 +218,7 @@ TEST(Dispersion, TheEyeSeesTheMeanOverItsWavelengths) {
 TEST(Dispersion, AnswersForTheWavelengthThatTheViewersGlassHasChosen) {
     const Scene scene = lit_from_far(heavy);
     BeamTreeParams params;
+    params.mesh_resolution = 4;
     params.wavelengths = 256;
     const auto beams = build(scene, params, RunOptions{});
     for (const float nm : {420.0F, 550.0F, 650.0F}) {
@@ -260,12 +263,19 @@ TEST(Dispersion, ASlabColoursNothingButItsRim) {
     desc.directional_lights = {support::directional_light({0.5, 0, -1}, 10)};
     const Scene scene(std::move(desc));
     BeamTreeParams params;
+    params.mesh_resolution = 2;
     params.wavelengths = 64;
     const auto beams = build(scene, params, RunOptions{});
-    const ReceiverPoint middle = support::probe(scene, 0, {0.3, 0, -0.5}, Vec3d::UnitZ(), 0);
+    // Light that comes in at the open side lands elsewhere.
+    const ReceiverPoint middle = support::probe(scene, 0, {0.05, 0, -0.5}, Vec3d::UnitZ(), 0);
     const Spectrum value = support::irradiance(*beams, {middle})[0].value;
-    EXPECT_GT(value.minCoeff(), 5);
-    EXPECT_LT(value.maxCoeff() / value.minCoeff(), 1.01);
+    const double cosine = 1 / std::sqrt(1.25);
+    SpectrumSum exact = SpectrumSum::Zero();
+    for (double nm = 380.5; nm < 730; nm += 1) {
+        const double r = support::fresnel(cosine, heavy.at(static_cast<float>(nm)));
+        exact += channel_density(nm) * 10 * cosine * support::slab(r).transmitted;
+    }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(static_cast<double>(value[c]) / exact[c], 1, 1e-3) << c;
 }
 
 }  // namespace

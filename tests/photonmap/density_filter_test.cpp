@@ -128,7 +128,7 @@ TEST_F(UniformField, EveryFilterMeansTheTruth) {
         {"the 20 nearest where half of the points find fewer", {20, radius_of(19.5)}}};
     for (const FilterKind kind : kinds)
         for (const auto& [what, limit] : limits) {
-            const auto moments = relative_irradiance({.limits = limit, .filter = kind});
+            const auto moments = relative_irradiance({.limits = limit, .filter = {.kind = kind}});
             EXPECT_NEAR(moments.mean(), 1, 0.005) << name(kind) << ", " << what;
             EXPECT_NEAR(moments.mean(), 1, 4 * moments.standard_error());
         }
@@ -138,7 +138,7 @@ TEST_F(UniformField, RawReadsHighByTheWeightAtTheRim) {
     const GatherLimits limits{10, 1};
     const double plain = relative_irradiance({.limits = limits}).mean();
     for (const FilterKind kind : kinds) {
-        RadianceEstimate::Settings settings{.limits = limits, .filter = kind};
+        RadianceEstimate::Settings settings{.limits = limits, .filter = {.kind = kind}};
         const double unbiased = relative_irradiance(settings).mean();
         settings.estimator = Estimator::raw;
         EXPECT_NEAR(relative_irradiance(settings).mean() - unbiased,
@@ -151,8 +151,8 @@ TEST_F(UniformField, FiltersScatterByTheirMeanSquareWeight) {
     // At a fixed radius with n photons on average the variance is that of a Poisson number times
     // the mean square weight.
     for (const FilterKind kind : kinds) {
-        const auto moments =
-            relative_irradiance({.limits = {GatherLimits::all, radius_of(25)}, .filter = kind});
+        const auto moments = relative_irradiance(
+            {.limits = {GatherLimits::all, radius_of(25)}, .filter = {.kind = kind}});
         const double square =
             integral([&](double u) { return std::pow(DensityFilter{kind}.weight(u), 2); });
         EXPECT_NEAR(moments.deviation() / std::sqrt(square / 25), 1, 0.03) << name(kind);
@@ -178,7 +178,7 @@ TEST(DensityFilter, SmearsAStraightEdgeAsItsProfileSays) {
     const EstimateMap map(test::uniform_field(photons, 42));
     for (const FilterKind kind : kinds) {
         const RadianceEstimate::Settings settings{.limits = {GatherLimits::all, radius},
-                                                  .filter = kind};
+                                                  .filter = {.kind = kind}};
         for (const float offset : {-0.75F, -0.5F, -0.25F, 0.0F, 0.25F, 0.5F}) {
             std::vector<ReceiverPoint> points;
             for (int i = 0; i < 200; ++i)

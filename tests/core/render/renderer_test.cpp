@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -357,6 +358,31 @@ TEST_F(AdaptiveSampling, LeavesDarkNoiseAloneAndIsTheSameForAnyNumberOfThreads) 
         if (one.rgb("", pixel)[0] < 0.002F) {
             EXPECT_EQ(samples[pixel], 4);
         }
+}
+
+// Behind dispersive glass a pixel's samples have wavelengths far apart: with so few that each were drawn by
+// itself, channels would scatter by 1.2 / sqrt(16) = 30 %.
+TEST(Renderer, SamplesOfAPixelShareOutTheWavelengths) {
+    SceneDesc desc;
+    desc.camera = support::camera({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 20, 16, 16);
+    Bsdf glass = support::glass(1.5F);
+    std::get<Dielectric>(glass.model).int_ior = Ior::cauchy(1.5, 0.01);
+    desc.shapes = {support::horizontal("water", 1, 5, true, glass),
+                   support::horizontal("floor", 0, 5, true, support::diffuse(0.5F))};
+    desc.sampling.split_depth = 1;  // reflections are not left to chance either
+    const Scene scene(std::move(desc));
+    RunOptions options;
+    options.samples_per_pixel = 16;
+    const Film film = render(scene, constant(1), options).film;
+    std::array<support::Moments, 3> channels;
+    for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel)
+        for (std::size_t c = 0; c < 3; ++c)
+            channels[c].add(
+                static_cast<double>(film.rgb("caustic", pixel)[static_cast<Eigen::Index>(c)]));
+    for (const support::Moments& channel : channels) {
+        EXPECT_LT(channel.deviation(), 0.08 * channel.mean());
+        EXPECT_NEAR(channel.mean() / channels[1].mean(), 1, 0.02);
+    }
 }
 
 TEST(Renderer, AProgressCallbackMayStopIt) {

@@ -62,7 +62,10 @@ std::vector<Broken> broken_scenes() {
         {"root_bsdf", with(R"({"type": "diffuse"})"), {"/it", "nested in the shape"}},
         {"root_area", with(R"({"type": "area"})"), {"/it", "nested in the shape"}},
         // What later versions or other programs have.
-        {"constant", with(R"({"type": "constant"})"), {"/it", "not supported (yet)", "point"}},
+        {"envmap", with(R"({"type": "envmap"})"), {"/it", "not supported (yet)", "point"}},
+        {"two_skies",
+         with(R"({"type": "constant"}, "sky": {"type": "constant"})"),
+         {"takes one constant light"}},
         {"instance", with(R"({"type": "instance"})"), {"/it", "not supported (yet)"}},
         {"shapegroup", with(R"({"type": "shapegroup"})"), {"/it", "not supported (yet)"}},
         {"ref", with(R"({"type": "ref", "id": "x"})"), {"/it", "not supported (yet)"}},
@@ -259,7 +262,7 @@ std::vector<Broken> broken_scenes() {
          {"/it/b/alpha", "from 0 to 1"}},
         {"glass_twice",
          with_bsdf(R"({"type": "twosided", "g": {"type": "dielectric"}})"),
-         {"/it/b/g", "diffuse, schlick, conductor"}},
+         {"/it/b/g", "diffuse, schlick, phong, conductor"}},
         {"empty_sides", with_bsdf(R"({"type": "twosided"})"), {"/it/b", "one nested bsdf"}},
         {"no_picture",
          with_bsdf(

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""Measures what dispersion costs and what splitting at the eye gains, and writes results/crystal/README.md.
+
+Runs the sweeps experiments/sweeps/dispersion_photons.json, dispersion_beams.json and split_depth.json on one thread,
+one after another; their trials stay in results/crystal/trials (not in git). Ratios are of CPU times of one thread on one
+machine. Needs build/release (tools/build.sh release causticbench). Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
+"""
+import argparse
+import json
+import math
+import pathlib
+import statistics
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True  # the source folder may be read-only
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+
+from report import records
+from report.report_files import write
+
+PAGE = """# Crystal and colour
+
+Made by `tools/measure_crystal.py` on {machine} Times are CPU times of one thread, medians over the repeats; what is not measured
+here: other machines, area lights, memory.
+
+## Photons with and without dispersion
+
+A ball of BK7 (experiments/sweeps/dispersion_photons.json, 1,000,000 photons): photons traced a second, over those of a ball with one
+index.
+
+| emission | without [s] | with [s] | with / without |
+|---|---|---|---|
+{photons}
+## Beams by their number of wavelengths
+
+A prism of SF10 (experiments/sweeps/dispersion_beams.json), against 1,024 wavelengths.
+
+| wavelengths | relmse | mean / reference's | build and query [s] |
+|---|---|---|---|
+{beams}
+## Splitting at the eye
+
+Direct light and what is seen through glass, without caustics, at 4 samples a pixel (experiments/sweeps/split_depth.json, 5 seeds),
+against 256. The last column is the error at equal time over that of `split_depth` 0: sqrt(rmse² × s).
+
+| scene | split_depth | rmse | s | error at equal time |
+|---|---|---|---|---|
+{split}"""
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--keep", action="store_true", help="take the trials that are there, run only those that are not")
+    parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build" / "release" / "bin" / "causticbench")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "crystal", metavar="DIR")
+    return parser.parse_args()
+
+
+def sweep(options, name):
+    """The rows of a sweep's table."""
+    if not options.program.exists():
+        raise records.RecordsError(f"{options.program}: not there (tools/build.sh release causticbench)")
+    folder = options.output / "trials" / name
+    command = [options.program, "sweep", ROOT / "experiments" / "sweeps" / f"{name}.json", "-o", folder]
+    status = subprocess.run([str(part) for part in command + ([] if options.keep else ["--force"])], cwd=ROOT,
+                            stdout=sys.stderr, stdin=subprocess.DEVNULL).returncode
+    if status != 0:
+        raise ChildProcessError(f"sweep {name}: exit code {status}")
+    return folder, [row for _, row in records.read_rows(folder / "records.csv")[1] if row["status"] == "done"]
+
+
+def median(rows, column, **where):
+    """Of a column's numbers in the rows that hold these values."""
+    chosen = [row for row in rows if all(str(row[key]) == str(value) for key, value in where.items())]
+    return statistics.median(float(row[column]) for row in chosen)
+
+
+def photon_lines(rows):
+    glasses = sorted({row["glass"] for row in rows}, key=len)
+    for emission in ("random", "stratified"):
+        plain, law = (median(rows, "precompute_cpu_s", emission=emission, glass=glass) for glass in glasses)
+        yield f"| {emission} | {plain:.3f} | {law:.3f} | {plain / law:.2f} |\n"
+
+
+def beam_lines(rows):
+    for count in sorted({int(row["wavelengths"]) if row["wavelengths"] else 16 for row in rows}):
+        where = {"wavelengths": "" if count == 16 else count}
+        seconds = sum(median(rows, f"{phase}_cpu_s", **where) for phase in ("precompute", "balance", "render"))
+        yield (f"| {count} | {median(rows, 'relmse', **where):.3g} | {median(rows, 'mean_ratio', **where):.5f} "
+               f"| {seconds:.2f} |\n")
+
+
+def split_lines(rows):
+    for scene in sorted({row["scene"] for row in rows}):
+        first = None
+        for depth in sorted({int(row["split_depth"]) for row in rows}):
+            where = {"scene": scene, "split_depth": depth}
+            error, seconds = median(rows, "beauty_rmse", **where), median(rows, "render_cpu_s", **where)
+            cost = math.sqrt(error**2 * seconds)
+            first = first or cost
+            yield f"| {scene} | {depth} | {error:.4g} | {seconds:.2f} | {cost / first:.2f} |\n"
+
+
+def main():
+    options = arguments()
+    try:
+        folder, photons = sweep(options, "dispersion_photons")
+        beams = sweep(options, "dispersion_beams")[1]
+        split = sweep(options, "split_depth")[1]
+        found = json.loads((folder / "environment.json").read_text(encoding="utf-8"))
+        machine = f"{found['cpu']}, {found['threads_available']} threads, {found['compiler']}, commit {found['commit']}."
+        write(options.output / "README.md", PAGE.format(machine=machine, photons="".join(photon_lines(photons)),
+                                                        beams="".join(beam_lines(beams)), split="".join(split_lines(split))))
+    except records.RecordsError as error:
+        print(f"measure_crystal: {error}", file=sys.stderr)
+        return 2
+    except ChildProcessError as error:
+        print(f"measure_crystal: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
