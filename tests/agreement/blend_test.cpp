@@ -68,9 +68,14 @@ std::vector<Place> places() {
 
 std::vector<ReceiverPoint> probes(const Scene& scene, float radius) {
     std::vector<ReceiverPoint> points;
-    for (const Place& place : places())
+    for (const Place& place : places()) {
         points.push_back(
             support::probe(scene, place.shape, place.point, place.normal, points.size(), radius));
+        const Vec3 normal = place.normal.cast<float>();
+        const auto hit = scene.intersect(Ray{points.back().position + 0.1F * normal, -normal});
+        points.back().uv = hit->uv;
+        points.back().shape = hit->shape;
+    }
     return points;
 }
 
