@@ -35,7 +35,7 @@ std::vector<Parameter<Params>> beam_parameters() {
                  "Parts of equal power that each light is divided into, by wavelength, where a "
                  "caster is dispersive.",
              .unit = "wavelengths",
-             .source = "[C11 sec. 4]"})
+             .source = "[C11]"})
             .only_if([](const Params& params) {
                 return params.wavelengths != BeamParams{}.wavelengths;
             })};

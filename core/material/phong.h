@@ -7,7 +7,7 @@
 
 namespace caustics {
 
-/// Phong's lobe about the mirror direction, beside Lambert's law [C11 sec. 3]. `normalised` (Lafortune
+/// Phong's lobe about the mirror direction, beside Lambert's law [C11]. `normalised` (Lafortune
 /// and Willems 1994): f_r = k_d / pi + k_s (e + 2) / (2 pi) cos^e a, a the angle between wi and the
 /// mirrored wo, 0 beyond a right angle; energy is kept where k_d + k_s <= 1. `classic` (Phong 1975): light
 /// that arrives shines as k_s cos^e a without the cosine of its arrival, so f_r = k_d / pi +

@@ -15,7 +15,7 @@ const DescribedMethod<NoneParams>& none_method() {
                  {.key = "shadows",
                   .meaning = "Of glass in direct light: dark, or weakened light that goes "
                              "straight through, as POV-Ray has it without photons.",
-                  .source = "[C11 sec. 3]"})
+                  .source = "[C11]"})
                  .only_if([](const P& p) { return p.shadows != Shadows::opaque; })}});
     return method;
 }
