@@ -215,16 +215,20 @@ TEST(Knobs, AreAllTurnedAbove) {
     const std::map<std::string, std::set<std::string>> turned = {
         {"photonmap",
          {"photons", "emitted", "estimator", "adaptive", "nearest", "max_radius", "radius",
-          "filter", "max_bounces", "emission", "interaction", "tree", "tables", "passes", "save",
+          "filter", "filter_k", "filter_beta", "filter_alpha", "max_bounces", "emission",
+          "interaction", "tree", "tables", "passes", "save",
           "load"}},  // these three: photonmap/progressive_test, kept_photons_test
         {"beamtree",
          {"bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity", "footprint",
-          "polygons", "light_samples", "mesh_resolution", "max_bounces"}},
+          "polygons", "light_samples", "mesh_resolution", "max_bounces",
+          "wavelengths"}},  // the last: agreement/dispersion_test
         {"causticpolygons",
-         {"polygons", "light_samples", "mesh_resolution", "max_bounces", "receiver_resolution"}},
+         {"polygons", "light_samples", "mesh_resolution", "max_bounces", "wavelengths",
+          "receiver_resolution"}},
         {"illuminationmap", {"emitted", "resolution", "max_bounces"}},
         {"lighttrace", {"paths", "radius", "max_bounces"}},
-        {"pathtrace", {"spp", "max_bounces"}}};
+        {"pathtrace", {"spp", "max_bounces"}},
+        {"none", {"shadows"}}};  // core/render/direct_light_test
     for (const MethodDescription* method : all_methods()) {
         std::set<std::string> told;
         for (const KeyText& parameter : method->parameters()) told.insert(parameter.key);
