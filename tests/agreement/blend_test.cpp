@@ -18,7 +18,7 @@ namespace {
 // Surfaces that are diffuse and specular: they scatter the light that comes to them, and reflect it.
 constexpr float weight = 0.6F;
 constexpr float reflectance = 0.9F;
-constexpr double q = double{weight} * double{reflectance};
+constexpr double q = static_cast<double>(weight) * static_cast<double>(reflectance);
 constexpr double wall = 0.8;
 constexpr double intensity = 10;
 
@@ -213,7 +213,7 @@ TEST(Blend, PhotonsAreScatteredByTheShareThatIsNotMirrored) {
     Bsdf plain = blend();
     plain.mirror.reset();
     points[0].bsdf = &plain;
-    EXPECT_NEAR(blended / radiance(), 1 - double{weight}, 1e-5);
+    EXPECT_NEAR(blended / radiance(), 1 - static_cast<double>(weight), 1e-5);
 }
 
 }  // namespace
