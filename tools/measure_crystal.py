@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Measures what dispersion costs and what splitting at the eye gains, and writes results/crystal/README.md.
+"""Measures what dispersion costs photons and what splitting at the eye gains, and writes results/crystal/README.md.
 
-Runs the sweeps experiments/sweeps/dispersion_photons.json, dispersion_beams.json and split_depth.json on one thread,
+Runs the sweeps experiments/sweeps/dispersion_photons.json and split_depth.json on one thread,
 one after another; their trials stay in results/crystal/trials (not in git). Ratios are of CPU times of one thread on one
 machine. Needs build/release (tools/build.sh release causticbench). Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
@@ -23,7 +23,7 @@ from report.report_files import write
 PAGE = """# Crystal and colour
 
 Made by `tools/measure_crystal.py` on {machine} Times are CPU times of one thread, medians over the repeats; what is not measured
-here: other machines, area lights, memory.
+here: other machines, area lights, memory, beams by wavelengths.
 
 ## Photons with and without dispersion
 
@@ -33,13 +33,6 @@ index.
 | emission | without [s] | with [s] | with / without |
 |---|---|---|---|
 {photons}
-## Beams by their number of wavelengths
-
-A prism of SF10 (experiments/sweeps/dispersion_beams.json), against 1,024 wavelengths.
-
-| wavelengths | relmse | mean / reference's | build and query [s] |
-|---|---|---|---|
-{beams}
 ## Splitting at the eye
 
 Direct light and what is seen through glass, without caustics, at 4 samples a pixel (experiments/sweeps/split_depth.json, 5 seeds),
@@ -84,14 +77,6 @@ def photon_lines(rows):
         yield f"| {emission} | {plain:.3f} | {law:.3f} | {plain / law:.2f} |\n"
 
 
-def beam_lines(rows):
-    for count in sorted({int(row["wavelengths"]) if row["wavelengths"] else 16 for row in rows}):
-        where = {"wavelengths": "" if count == 16 else count}
-        seconds = sum(median(rows, f"{phase}_cpu_s", **where) for phase in ("precompute", "balance", "render"))
-        yield (f"| {count} | {median(rows, 'relmse', **where):.3g} | {median(rows, 'mean_ratio', **where):.5f} "
-               f"| {seconds:.2f} |\n")
-
-
 def split_lines(rows):
     for scene in sorted({row["scene"] for row in rows}):
         first = None
@@ -107,12 +92,11 @@ def main():
     options = arguments()
     try:
         folder, photons = sweep(options, "dispersion_photons")
-        beams = sweep(options, "dispersion_beams")[1]
         split = sweep(options, "split_depth")[1]
         found = json.loads((folder / "environment.json").read_text(encoding="utf-8"))
         machine = f"{found['cpu']}, {found['threads_available']} threads, {found['compiler']}, commit {found['commit']}."
         write(options.output / "README.md", PAGE.format(machine=machine, photons="".join(photon_lines(photons)),
-                                                        beams="".join(beam_lines(beams)), split="".join(split_lines(split))))
+                                                        split="".join(split_lines(split))))
     except records.RecordsError as error:
         print(f"measure_crystal: {error}", file=sys.stderr)
         return 2
