@@ -41,7 +41,7 @@ TEST(Progressive, EveryPassIsUnbiasedInAUniformField) {
         for (const float max_radius : {1.0F, fewer})
             for (const bool adaptive : {false, true}) {
                 const RadianceEstimate::Settings settings{.limits = {20, max_radius, adaptive},
-                                                          .filter = FilterKind::cone,
+                                                          .filter = {FilterKind::cone},
                                                           .adaptive = adaptive,
                                                           .share = pass_share(pass)};
                 support::Moments moments;
