@@ -27,8 +27,8 @@ struct AimedSource {
     std::uint32_t light = 0;
     Spectrum power = black();      ///< into all regions, overlaps counted again and again [W]
     std::vector<AimedCone> cones;  ///< of directions: point and area lights
-    std::vector<AimedDisc>
-        discs;  ///< across a directional light, or any direction of a constant one
+    /// Across a directional light, or any direction of a constant one.
+    std::vector<AimedDisc> discs;
     std::vector<double> cumulative;  ///< of the regions' measures, normalised
     Frame across{Vec3::UnitZ()};     ///< round a directional light's direction
     float max_cosine = 1;            ///< area lights: bound of the cosine over the cones

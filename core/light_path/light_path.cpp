@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/material/optics.h"
+#include "core/math/sampling.h"
 
 namespace caustics {
 
@@ -144,20 +144,18 @@ void leave(const Scene& scene, const SurfacePoint& hit, const Vec3& direction, F
 // What a caster does with a flight, which gets a wavelength at its first dispersive one.
 SpecularSplit split_at(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng) {
     const Bsdf& bsdf = scene.shape_at(hit).bsdf;
-    if (is_dispersive(bsdf)) flight.flux *= flight.wavelength.arrive_at(bsdf, rng);
+    flight.wavelength.arrive_at(bsdf, rng, flight.flux);
     return split_specular(bsdf, hit.geometric_normal, hit.shading_normal, -flight.ray.direction,
                           flight.wavelength.nm);
 }
 
-// One decision for reflection, refraction or an end, which is counted; the survivor's channels are
-// rescaled so that the mean over many particles is the split's weights [C11, after Jensen 2004].
-const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux,
-                     LightPathCounts& counts) {
+enum class Fate { reflected, refracted, absorbed, misdirected };
+
+// One decision for reflection, refraction or an end; the survivor's channels are rescaled so that the
+// mean over many particles is the split's weights [C11, after Jensen 2004].
+Fate roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux) {
     const float before = flux.sum();
-    if (!(before > 0)) {
-        ++counts.absorbed;
-        return nullptr;
-    }
+    if (!(before > 0)) return Fate::absorbed;
     const Spectrum reflected = split.reflected_weight * flux;
     const Spectrum refracted = split.refracted_weight * flux;
     const float reflected_share = reflected.sum() / before;
@@ -165,28 +163,29 @@ const Vec3* roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux,
     const float u = rng.next();
     if (u < reflected_share) {
         flux = reflected / reflected_share;
-        return &split.reflected;
+        return Fate::reflected;
     }
     if (u < reflected_share + refracted_share) {
         flux = refracted / refracted_share;
-        return &split.refracted;
+        return Fate::refracted;
     }
     const float lost_share = Spectrum(split.lost_weight * flux).sum() / before;
-    ++(u < reflected_share + refracted_share + lost_share ? counts.misdirected : counts.absorbed);
-    return nullptr;
+    return u < reflected_share + refracted_share + lost_share ? Fate::misdirected : Fate::absorbed;
 }
 
 // The event at a caster; false when it ends the flight, whose end a deposit there has counted already.
 bool goes_on_from(const Scene& scene, const SurfacePoint& hit, bool has_deposit, Flight& flight,
                   Rng& rng, LightPathCounts& counts) {
     const SpecularSplit split = split_at(scene, hit, flight, rng);
-    LightPathCounts uncounted;
-    const Vec3* const direction =
-        roulette(split, rng, flight.flux, has_deposit ? uncounted : counts);
-    if (direction == nullptr) return false;
+    const Fate fate = roulette(split, rng, flight.flux);
+    if (fate == Fate::absorbed || fate == Fate::misdirected) {
+        if (!has_deposit) ++(fate == Fate::absorbed ? counts.absorbed : counts.misdirected);
+        return false;
+    }
+    const bool reflects = fate == Fate::reflected;
     counts.branched += has_deposit ? 1 : 0;
-    ++(direction == &split.reflected ? counts.reflected : counts.refracted);
-    leave(scene, hit, *direction, flight);
+    ++(reflects ? counts.reflected : counts.refracted);
+    leave(scene, hit, reflects ? split.reflected : split.refracted, flight);
     return true;
 }
 
@@ -213,14 +212,6 @@ namespace {
 struct OneOfMany : Flight {
     std::size_t number;  // of its start
 };
-
-// Halton's sequence in base 3: neighbours in the order of paths, which are neighbours in the light, have
-// wavelengths far apart.
-double spread(std::uint64_t path, double shift) {
-    double share = 1.0 / 3;
-    for (; path > 0; path /= 3, share /= 3) shift += static_cast<double>(path % 3) * share;
-    return shift - std::floor(shift);
-}
 
 // Moves up to Scene::most_together flights along one segment; those that go on are kept in front.
 std::size_t advance(const Scene& scene, std::span<OneOfMany> flights,
@@ -255,8 +246,10 @@ void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
     flights.reserve(starts.size());
     for (std::size_t i = 0; i < starts.size(); ++i) {
         flights.push_back({{starts[i].particle.ray, starts[i].particle.flux}, i});
+        // Neighbours in the order of paths, which are neighbours in the light, have wavelengths far apart.
         if (settings.wavelength_shift)
-            flights.back().wavelength.choice = spread(starts[i].path, *settings.wavelength_shift);
+            flights.back().wavelength.choice =
+                radical_inverse<3>(starts[i].path, *settings.wavelength_shift);
     }
     while (!flights.empty()) {
         std::size_t kept = 0;

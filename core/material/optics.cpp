@@ -62,10 +62,6 @@ SpecularSplit split_dielectric(const Dielectric& d, bool front, const Vec3& ng, 
     return split;
 }
 
-}  // namespace
-
-namespace {
-
 // Of a conductor or a mirror part.
 Spectrum mirror_reflectance(const Bsdf& bsdf) {
     if (bsdf.mirror) return bsdf.mirror->weight * bsdf.mirror->reflectance;
@@ -93,12 +89,14 @@ SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, c
     return split;
 }
 
-Spectrum PathWavelength::arrive_at(const Bsdf& bsdf, Rng& rng) {
-    if (nm != 0 || !is_dispersive(bsdf)) return Spectrum::Ones();
+void PathWavelength::arrive_at(const Bsdf& bsdf, Rng& rng, Spectrum& carried) {
+    if (nm != 0 || !is_dispersive(bsdf)) return;
     const SampledWavelength sampled = sample_wavelength(choice ? *choice : rng.next_fine());
     nm = sampled.nm;
-    return sampled.weight;
+    carried *= sampled.weight;
 }
+
+bool is_clear(const Spectrum* absorption) { return absorption == nullptr || is_black(*absorption); }
 
 const Spectrum* medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& w) {
     const auto* dielectric = std::get_if<Dielectric>(&bsdf.model);
@@ -109,8 +107,7 @@ const Spectrum* medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& 
 Spectrum segment_transmittance(const Spectrum* start_absorption, const Spectrum* end_absorption,
                                float distance) {
     const Spectrum* const medium = end_absorption != nullptr ? end_absorption : start_absorption;
-    if (medium == nullptr || is_black(*medium)) return Spectrum::Ones();
-    return transmittance(*medium, distance);
+    return is_clear(medium) ? Spectrum(Spectrum::Ones()) : transmittance(*medium, distance);
 }
 
 }  // namespace caustics

@@ -48,10 +48,13 @@ struct PathWavelength {
     /// drawn.
     std::optional<double> choice = {};
 
-    /// Chooses one at the path's first dispersive interface, and returns the factor of its light from there
-    /// on: SampledWavelength::weight, else 1.
-    Spectrum arrive_at(const Bsdf& bsdf, Rng& rng);
+    /// Chooses one at the path's first dispersive interface, and weighs what the path carries by
+    /// SampledWavelength::weight; does nothing elsewhere.
+    void arrive_at(const Bsdf& bsdf, Rng& rng, Spectrum& carried);
 };
+
+/// Whether nothing is absorbed on the way through a medium of that absorption; nullptr: through none.
+bool is_clear(const Spectrum* absorption);
 
 /// Absorption [1/m] on the side of the surface that `w` points into; nullptr for surfaces that bound
 /// no medium (all but dielectrics).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "core/math/frame.h"
@@ -62,6 +63,16 @@ inline Vec2 uniform_disc(float u0, float u1) {
     const float r = std::sqrt(u0);
     const float angle = 2 * pi * u1;
     return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+/// Halton's sequence: the digits of `number` in a base, mirrored about the point, turned by `shift`
+/// around [0, 1).
+template <std::uint64_t base>
+double radical_inverse(std::uint64_t number, double shift) {
+    constexpr double step = static_cast<double>(base);
+    for (double share = 1 / step; number > 0; number /= base, share /= step)
+        shift += static_cast<double>(number % base) * share;
+    return shift - std::floor(shift);
 }
 
 /// The first index whose cumulative share exceeds u; `cumulative` ascends to 1.

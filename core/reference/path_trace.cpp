@@ -34,8 +34,7 @@ Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, PathWavele
         const std::optional<SurfacePoint> hit = scene.intersect(ray);
         if (!hit) {
             // An absorbing medium without end leaves nothing.
-            const bool clear = start_absorption == nullptr || is_black(*start_absorption);
-            if (bounces > 0 && clear) result += weight * scene.background();
+            if (bounces > 0 && is_clear(start_absorption)) result += weight * scene.background();
             return result;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
@@ -46,7 +45,7 @@ Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, PathWavele
         if (light != nullptr && bounces > 0 && hit->geometric_normal.dot(w) > 0)
             result += weight * light->radiance;
         if (!is_caster(bsdf) || bounces == max_bounces) return result;
-        if (is_dispersive(bsdf)) weight *= wavelength.arrive_at(bsdf, rng);
+        wavelength.arrive_at(bsdf, rng, weight);
         const SpecularSplit split =
             split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w, wavelength.nm);
         const float reflect_share = (split.reflected_weight * weight).mean() / weight.mean();

@@ -37,7 +37,7 @@ Branch continued(const SurfacePoint& hit, const Bsdf& bsdf, const Vec3& directio
 
 void scatter(const SurfacePoint& hit, const Bsdf& bsdf, int split_depth, Branch& branch, Rng& rng,
              BranchStack& stack) {
-    if (is_dispersive(bsdf)) branch.weight *= branch.wavelength.arrive_at(bsdf, rng);
+    branch.wavelength.arrive_at(bsdf, rng, branch.weight);
     const SpecularSplit split = split_specular(bsdf, hit.geometric_normal, hit.shading_normal,
                                                -branch.ray.direction, branch.wavelength.nm);
     Spectrum reflected = branch.weight * split.reflected_weight;
@@ -80,7 +80,7 @@ EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum
         Branch branch = stack.pop();
         const auto hit = scene.intersect(branch.ray);
         if (!hit) {
-            if (branch.start_absorption == nullptr || is_black(*branch.start_absorption))
+            if (is_clear(branch.start_absorption))
                 path.emitted += branch.weight * scene.background();
             continue;
         }

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/rng.h"
+#include "core/math/sampling.h"
 #include "core/render/direct_light.h"
 #include "core/render/eye_path.h"
 #include "core/render/film_layers.h"
@@ -61,7 +62,6 @@ public:
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
         estimator_ = &estimator;
-        shadows_ = estimator.shadows();
         const auto layer = estimator.camera_layer(options_);
         with_caustic_ = !layer.has_value();
         FilmLayers layers(rendering.film, {.unreached = layer.has_value(),
@@ -218,14 +218,8 @@ private:
     // Spread over the pixel's samples (van der Corput), and by chance over the pixels: few samples have all
     // colours.
     double wavelength_choice(int x, int y, int sample) const {
-        Rng rng(options_.seed, Stage::wavelength,
-                static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(scene_.camera().width) +
-                    static_cast<std::uint64_t>(x));
-        double choice = rng.next_fine();
-        double share = 0.5;
-        for (int digits = sample; digits > 0; digits /= 2, share /= 2)
-            choice += digits % 2 == 1 ? share : 0;
-        return choice - std::floor(choice);
+        Rng rng(options_.seed, Stage::wavelength, pixel_number(x, y));
+        return radical_inverse<2>(static_cast<std::uint64_t>(sample), rng.next_fine());
     }
 
     void sample_all(const Tile& tile, std::vector<PixelSums>& sums, Worker& worker) const {
@@ -258,11 +252,13 @@ private:
         }
     }
 
+    std::uint64_t pixel_number(int x, int y) const {
+        return static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(scene_.camera().width) +
+               static_cast<std::uint64_t>(x);
+    }
+
     std::uint64_t sample_id(int x, int y, int sample) const {
-        const auto pixel =
-            static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(scene_.camera().width) +
-            static_cast<std::uint64_t>(x);
-        return pixel * static_cast<std::uint64_t>(most_samples_) +
+        return pixel_number(x, y) * static_cast<std::uint64_t>(most_samples_) +
                static_cast<std::uint64_t>(sample);
     }
 
@@ -301,9 +297,10 @@ private:
         sums.through_caster += path.first.caster ? 1 : 0;
         SpectrumSum direct = SpectrumSum::Zero();
         SpectrumSum ambient = SpectrumSum::Zero();
+        const Shadows shadows = estimator_->shadows();
         for (const WeightedPoint& found : worker.found) {
             direct +=
-                (found.weight * direct_radiance(scene_, found.point, rng, shadows_)).cast<double>();
+                (found.weight * direct_radiance(scene_, found.point, rng, shadows)).cast<double>();
             ambient += (found.weight * albedo(*found.point.bsdf, found.point.uv) * scene_.ambient())
                            .cast<double>();
         }
@@ -338,16 +335,12 @@ private:
         for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
             const int x = tile.x0 + static_cast<int>(pixel) % width;
             const int y = tile.y0 + static_cast<int>(pixel) / width;
-            layers.write(
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(scene_.camera().width) +
-                    static_cast<std::size_t>(x),
-                sums[pixel]);
+            layers.write(pixel_number(x, y), sums[pixel]);
         }
     }
 
     const Scene& scene_;
     const CausticEstimator* estimator_ = nullptr;
-    Shadows shadows_ = Shadows::opaque;
     RunOptions options_;
     Spectrum eye_absorption_;  ///< of the medium that camera rays start in
     bool disperses_;
