@@ -66,7 +66,6 @@ std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int 
     for (const LightSample& sample : samples)
         for (const WavelengthBin& bin : bins) {
             parts.push_back(sample);
-            parts.back().nm = bin.nm;
             parts.back().bin = bin;
             parts.back().strength *= bin.weight;
         }
@@ -74,7 +73,7 @@ std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int 
 }
 
 Spectrum share_of_wavelength(const LightSample& light, float nm) {
-    if (nm == 0 || light.nm == 0) return Spectrum::Ones();
+    if (nm == 0 || light.bin.nm == 0) return Spectrum::Ones();
     const bool is_last = light.bin.to >= float{longest_wavelength};
     if (nm < light.bin.from || (nm >= light.bin.to && !is_last)) return black();
     // The light of one wavelength that the picture without dispersion has: the bin's, but for its colour.

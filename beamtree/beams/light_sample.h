@@ -22,12 +22,12 @@ struct LightSample {
                                    ///< directional [W/m^2] across the direction
     std::optional<SpotCone> spot;  ///< of a point light that is one
     std::uint32_t light = 0;       ///< index into Scene::lights
-    float nm = 0;                  ///< wavelength where glass disperses it; 0: all of them
-    WavelengthBin bin = {};        ///< of light of one wavelength
+    WavelengthBin bin = {};  ///< its part of all wavelengths where glass disperses it; nm 0: all
 };
 
-/// For all lights but constant ones: one sample a point or directional light, `per_area_light` samples an area light: a rank-1 lattice
-/// over the part of it that can shine on casters (AreaLightSampler), shifted at random by the seed.
+/// For all lights but constant ones: one sample a point or directional light, `per_area_light` samples an
+/// area light: a rank-1 lattice over the part of it that can shine on casters (AreaLightSampler), shifted
+/// at random by the seed.
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
 /// The same light in parts: each sample once a bin of wavelengths (WavelengthBin), with its share of the
 /// strength.

@@ -13,7 +13,7 @@ MeshPoint LightBender::at(const Vec3& position, const Vec3& normal) const {
     if (w.isZero(0) || n.isZero(0)) return point;
     SpecularVertex& bent = point.bent;
     bent.front = n.dot(w) > 0;
-    const SpecularSplit split = split_specular(bsdf_, n, n, w, light_.nm);
+    const SpecularSplit split = split_specular(bsdf_, n, n, w, light_.bin.nm);
     const Spectrum* const medium = medium_absorption(bsdf_, n, w);
     const Spectrum arriving =
         strength_along(light_, w) *

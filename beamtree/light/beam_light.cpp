@@ -78,7 +78,8 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
     SpectrumSum sum = SpectrumSum::Zero();
     for (const BeamHit& hit : hits) {
         const BeamSet& set = sets_[hit.set];
-        const Spectrum share = share_of_wavelength(set.light, point.nm);
+        Spectrum share = Spectrum::Ones();
+        if (point.nm != 0) share = share_of_wavelength(set.light, point.nm);
         if (is_black(share)) continue;
         const Beam& beam = set.beams[hit.beam];
         ArrivingRay ray = arriving_ray(set, hit);

@@ -138,7 +138,7 @@ std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const Vec3d& local) 
         exit.direction = 2 * cosine * n - w;
         return exit;
     }
-    const double eta = relative_index(shape_.bsdf, exit.from_front(), light_.nm);
+    const double eta = relative_index(shape_.bsdf, exit.from_front(), light_.bin.nm);
     const double inner = 1 - (1 - cosine * cosine) / (eta * eta);
     if (!(inner > 0)) return {};
     exit.direction = (cosine * n - w) / eta - std::sqrt(inner) * n;

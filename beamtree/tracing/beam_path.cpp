@@ -51,7 +51,7 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
         return point;
     point.ray = {position, first.bent.direction[first_event_]};
     for (const Step& step : steps_) {
-        const RayArrival arrival = land(scene_, point.ray, point.from, surface_.light().nm);
+        const RayArrival arrival = land(scene_, point.ray, point.from, surface_.light().bin.nm);
         if (!same_piece(arrival, *step.where)) return point;
         point.origin.weight *= arrival.weight[step.event];
         point.origin.left *= arrival.left;
@@ -60,7 +60,7 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
         point.from = {arrival.shape, arrival.geometric_normal, arrival.offset};
     }
     point.alive = true;
-    point.next = land(scene_, point.ray, point.from, surface_.light().nm);
+    point.next = land(scene_, point.ray, point.from, surface_.light().bin.nm);
     return point;
 }
 

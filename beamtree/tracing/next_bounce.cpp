@@ -64,7 +64,7 @@ private:
             const bool blocked = is_first && !sees(scene_, {ray.position, from.normal, from.offset},
                                                    surface_.light());
             level_.arrivals.push_back(blocked ? RayArrival{}
-                                              : land(scene_, ray, from, set_.light.nm));
+                                              : land(scene_, ray, from, set_.light.bin.nm));
         }
     }
 
@@ -156,7 +156,8 @@ private:
             if (!sees(scene_, middle, surface_.light())) return;
             count_lit(parent);
         }
-        if (land(scene_, ray, {from.shape, from.normal, parent.offset}, set_.light.nm).goes_on() ||
+        if (land(scene_, ray, {from.shape, from.normal, parent.offset}, set_.light.bin.nm)
+                .goes_on() ||
             hides_a_caster(piece_of(rays)))
             cut_triangle(beam, rays);
     }

@@ -17,8 +17,8 @@ struct NextSets {
     std::vector<bool> stays;
 };
 
-/// Follows a level's rays to the next surfaces (its `arrivals`) and makes the beams that go on from there; those that
-/// had less than `least_flux` if media were clear are left out and counted by `balance`.
+/// Follows a level's rays to the next surfaces (its `arrivals`) and makes the beams that go on from there;
+/// those that had less than `least_flux` if media were clear are left out and counted by `balance`.
 NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
                    Level& level, double least_flux, FluxBalance& balance, const ProgressPart& part);
 
