@@ -79,8 +79,6 @@ void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane&
 /// another, it is not evenly lit.
 inline constexpr double most_uneven = 2;
 
-inline double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// The signed crossing of the edge a -> b with the half axis y = 0, x > 0; summed round a polygon it
 /// is the winding round the origin. Without branches, as nobody can foretell them.
 inline int edge_crossing(const Vec2d& a, const Vec2d& b) {

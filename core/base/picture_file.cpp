@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/lower_case.h"
 
 namespace caustics {
 namespace {
@@ -55,10 +55,8 @@ PictureFile::PictureFile(const std::filesystem::path& file)
 void PictureFile::open() {
     const SilentStandardError silent;
     const OIIO::ImageSpec config = reading();
-    std::string format = file_.extension().string();
+    std::string format = lower_case(file_.extension().string());
     if (!format.empty()) format.erase(0, 1);
-    std::ranges::transform(format, format.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     OIIO::ImageSpec found;
     std::string why;
     if (!format.empty()) input_ = OIIO::ImageInput::create(format);

@@ -3,24 +3,18 @@
 #include <assimp/scene.h>
 #include <array>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <map>
 #include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/lower_case.h"
 #include "core/geometry/mesh_source.h"
 #include "core/geometry/vertex_normals.h"
 #include "core/math/polygon.h"
 
 namespace caustics {
 namespace {
-
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
 
 Vec3 to_vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
@@ -129,7 +123,7 @@ TriangleMesh load_ply(const std::string& bytes, const std::string& name) {
 }  // namespace
 
 TriangleMesh load_mesh(const std::filesystem::path& file, const MeshLoadOptions& options) {
-    const std::string extension = lower_extension(file);
+    const std::string extension = lower_case(file.extension().string());
     if (extension != ".obj" && extension != ".ply")
         throw InputError(file.string() + ": unknown mesh format '" + extension +
                          "' (known: .obj, .ply)");

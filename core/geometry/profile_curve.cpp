@@ -16,8 +16,6 @@ constexpr std::size_t most_pieces = 4096;
 
 std::string shown(const Vec2d& p) { return fmt::format("[{:g}, {:g}]", p.x(), p.y()); }
 
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // The points with their neighbours, which lie across the axis at a pole and across the seam of a ring.
 class Curve {
 public:

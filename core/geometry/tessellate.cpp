@@ -18,11 +18,15 @@ void check_resolution(int n, int least) {
                          std::to_string(least) + ", " + std::to_string(max_resolution) + "]");
 }
 
+void check_resolution(Cells n) {
+    check_resolution(n.x, 1);
+    check_resolution(n.y, 1);
+}
+
 }  // namespace
 
 TriangleMesh tessellate_rectangle(Cells n) {
-    check_resolution(n.x, 1);
-    check_resolution(n.y, 1);
+    check_resolution(n);
     TriangleMesh mesh;
     for (int j = 0; j <= n.y; ++j)
         for (int i = 0; i <= n.x; ++i)
@@ -112,8 +116,7 @@ TriangleMesh tessellate_cube(int n) {
 }
 
 TriangleMesh tessellate_heightfield(const SineHeightfield& field, Cells n) {
-    check_resolution(n.x, 1);
-    check_resolution(n.y, 1);
+    check_resolution(n);
     TriangleMesh mesh;
     for (int j = 0; j <= n.y; ++j)
         for (int i = 0; i <= n.x; ++i) {

@@ -44,8 +44,6 @@ void integrate_exact(const Shape& shape, const TexelGrid& grid, std::vector<doub
         }
 }
 
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// The part of a convex polygon where sign * (p[axis] - bound) >= 0.
 std::vector<Vec2d> cut(const std::vector<Vec2d>& polygon, int axis, double bound, double sign) {
     std::vector<Vec2d> kept;

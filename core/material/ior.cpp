@@ -95,4 +95,11 @@ const std::vector<NamedGlass>& named_glasses() {
     return glasses;
 }
 
+std::string named_glass_list() {
+    std::string list;
+    for (const NamedGlass& glass : named_glasses())
+        list += (list.empty() ? "" : ", ") + std::string(glass.name);
+    return list;
+}
+
 }  // namespace caustics

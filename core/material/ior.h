@@ -57,5 +57,7 @@ struct NamedGlass {
 /// Those known by name: Schott's catalogue, fused silica by Malitson (1965), water at 20 degrees by
 /// Daimon and Masumura (2007).
 const std::vector<NamedGlass>& named_glasses();
+/// Their names, with commas between them.
+std::string named_glass_list();
 
 }  // namespace caustics

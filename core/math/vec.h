@@ -19,6 +19,9 @@ using Transform = Eigen::Affine3d;
 inline constexpr float pi = 3.14159265358979323846F;
 inline constexpr double pi_d = 3.14159265358979323846;
 
+/// Twice the signed area of a triangle with sides a, b: above 0 where b lies to the left of a.
+inline double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 /// Axis-aligned box, world frame; empty until extended.
 using Box = Eigen::AlignedBox3f;
 

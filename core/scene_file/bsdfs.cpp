@@ -7,13 +7,10 @@
 namespace caustics::scene_file {
 namespace {
 
-const std::vector<std::string> known_types{"diffuse",   "schlick",   "phong",   "dielectric",
-                                           "conductor", "blendbsdf", "twosided"};
 const std::vector<std::string> later_types{
     "roughconductor", "roughdielectric", "plastic", "thindielectric", "mask", "principled", "ref"};
 
 Dielectric read_dielectric(const JsonNode& node) {
-    constexpr double unlimited = 1e30;
     Dielectric glass;
     glass.int_ior = read_ior(node, "int_ior", glass.int_ior);
     glass.ext_ior = read_ior(node, "ext_ior", glass.ext_ior);
@@ -131,13 +128,19 @@ Bsdf read_twosided(const JsonNode& node, Assets& assets) {
 
 }  // namespace
 
+const std::vector<std::string>& bsdf_types() {
+    static const std::vector<std::string> types{"diffuse",   "schlick",   "phong",   "dielectric",
+                                                "conductor", "blendbsdf", "twosided"};
+    return types;
+}
+
 bool is_bsdf_type(const std::string& type) {
-    return std::ranges::find(known_types, type) != known_types.end() ||
+    return std::ranges::find(bsdf_types(), type) != bsdf_types().end() ||
            std::ranges::find(later_types, type) != later_types.end();
 }
 
 Bsdf read_bsdf(const JsonNode& node, Assets& assets) {
-    const std::string type = read_type(node, "bsdf", known_types, later_types);
+    const std::string type = read_type(node, "bsdf", bsdf_types(), later_types);
     Bsdf bsdf;
     if (type == "twosided") return read_twosided(node, assets);
     if (type == "blendbsdf") return read_blend(node, assets);

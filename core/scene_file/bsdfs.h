@@ -5,6 +5,9 @@
 
 namespace caustics::scene_file {
 
+/// Those that read_bsdf() knows.
+const std::vector<std::string>& bsdf_types();
+/// Whether it is one of them, or one that is refused by name.
 bool is_bsdf_type(const std::string& type);
 Bsdf read_bsdf(const JsonNode& node, Assets& assets);
 

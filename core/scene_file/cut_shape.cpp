@@ -8,13 +8,11 @@
 namespace caustics::scene_file {
 namespace {
 
-constexpr double far_away = 1e30;
-
 CutRing read_ring(const JsonNode& node) {
     CutRing ring;
     ring.count = static_cast<int>(node.at("count").as_integer_in(1, CutSolid::most_planes));
     ring.angle = node.at("angle").as_number_in(-90, 90);
-    ring.distance = node.at("distance").as_number_in(-far_away, far_away);
+    ring.distance = node.at("distance").as_number_in(-unlimited, unlimited);
     if (const auto phase = node.find("phase")) ring.phase = phase->as_number_in(-1000, 1000);
     node.finish();
     return ring;
@@ -26,7 +24,7 @@ HalfSpace read_plane(const JsonNode& node) {
     const double length = normal.stableNorm();
     if (!(length > 0)) node.fail("the normal must not be zero");
     const HalfSpace plane{normal / length, numbers[3] / length};
-    if (!(std::abs(plane.distance) <= far_away)) node.fail("is out of range (to 1e+30)");
+    if (!(std::abs(plane.distance) <= unlimited)) node.fail("is out of range (to 1e+30)");
     return plane;
 }
 
@@ -47,7 +45,7 @@ TriangleMesh read_cut(const JsonNode& node, const std::optional<JsonNode>& resol
     if (const auto planes = node.find("planes"))
         for (const JsonNode& plane : planes->as_array()) solid.planes.push_back(read_plane(plane));
     if (const auto height = node.find("height"))
-        solid.height = height->as_number_in(-far_away, far_away);
+        solid.height = height->as_number_in(-unlimited, unlimited);
     if (const auto inner = node.find("inner")) solid.inner = read_inner(*inner);
     if (resolution) {
         if (!solid.inner) resolution->fail("only a bowl's `inner` surface has sectors");

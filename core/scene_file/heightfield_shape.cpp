@@ -10,17 +10,12 @@
 namespace caustics::scene_file {
 namespace {
 
-constexpr double far_away = 1e30;
-
 SineWave read_wave(const JsonNode& node) {
     SineWave wave;
-    wave.amplitude = node.at("amplitude").as_number_in(-far_away, far_away);
-    const std::vector<double> k = node.at("wave_vector").as_numbers(2);
-    wave.wave_vector = {k[0], k[1]};
-    if (wave.wave_vector.cwiseAbs().maxCoeff() > far_away)
-        node.at("wave_vector").fail("is out of range (to 1e+30)");
+    wave.amplitude = node.at("amplitude").as_number_in(-unlimited, unlimited);
+    wave.wave_vector = read_pair(node.at("wave_vector"));
     if (const auto phase = node.find("phase"))
-        wave.phase = phase->as_number_in(-far_away, far_away);
+        wave.phase = phase->as_number_in(-unlimited, unlimited);
     node.finish();
     return wave;
 }
@@ -30,7 +25,7 @@ HeightGrid read_fractal(const JsonNode& node, const Vec2d& half_size) {
     field.half_size = half_size;
     field.levels = static_cast<int>(
         node.at("levels").as_integer_in(FractalField::least_levels, FractalField::most_levels));
-    field.rms = node.at("rms").as_number_in(0, far_away);
+    field.rms = node.at("rms").as_number_in(0, unlimited);
     if (const auto hurst = node.find("hurst")) field.hurst = hurst->as_number_in(0, 1);
     if (const auto lowest = node.find("lowest"))
         field.lowest = lowest->as_number_in(1, std::exp2(field.levels - 1));
@@ -57,7 +52,7 @@ HeightGrid load_heights(const std::filesystem::path& file, double height) {
     picture.read_rows([&](int y, const float* values) {
         for (int x = 0; x <= grid.columns; ++x) {
             const double z = height * static_cast<double>(values[x]);
-            if (!(std::abs(z) <= far_away))
+            if (!(std::abs(z) <= unlimited))
                 picture.fail(fmt::format("pixel ({}, {}) is no height", x, y));
             grid.heights[grid.index(x, grid.rows - y)] = static_cast<float>(z);
         }
@@ -67,7 +62,7 @@ HeightGrid load_heights(const std::filesystem::path& file, double height) {
 
 HeightGrid read_picture(const JsonNode& name, const std::optional<JsonNode>& height,
                         const Vec2d& half_size, Assets& assets) {
-    const double metres = height ? height->as_number_in(-far_away, far_away) : 1;
+    const double metres = height ? height->as_number_in(-unlimited, unlimited) : 1;
     const std::filesystem::path file = read_file_name(name, assets);
     HeightGrid grid = load_for(name, [&] { return load_heights(file, metres); });
     grid.half_size = half_size;
@@ -78,7 +73,7 @@ Vec2d read_half_size(const JsonNode& node) {
     const auto half_size = node.find("half_size");
     if (!half_size) return Vec2d::Ones();
     const std::vector<double> half = half_size->as_numbers(2);
-    for (const JsonNode& side : half_size->as_array()) side.as_number_in(0, far_away);
+    for (const JsonNode& side : half_size->as_array()) side.as_number_in(0, unlimited);
     if (half[0] <= 0 || half[1] <= 0) half_size->fail("must be above 0");
     return {half[0], half[1]};
 }

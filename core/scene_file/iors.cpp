@@ -1,9 +1,9 @@
 #include "core/scene_file/iors.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
+
+#include "core/base/lower_case.h"
 
 namespace caustics::scene_file {
 namespace {
@@ -21,17 +21,10 @@ constexpr std::array<std::pair<const char*, float>, 23> named_iors{{
 }};
 
 Ior read_named_glass(const JsonNode& node) {
-    const auto lower = [](std::string text) {
-        std::ranges::transform(text, text.begin(),
-                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return text;
-    };
-    std::string known;
-    for (const NamedGlass& glass : named_glasses()) {
-        if (lower(node.as_string()) == glass.name) return Ior::sellmeier(glass.terms);
-        known += (known.empty() ? "" : ", ") + std::string(glass.name);
-    }
-    node.fail("unknown glass \"" + node.as_string() + "\" (known: " + known + ")");
+    const std::string name = lower_case(node.as_string());
+    for (const NamedGlass& glass : named_glasses())
+        if (name == glass.name) return Ior::sellmeier(glass.terms);
+    node.fail("unknown glass \"" + node.as_string() + "\" (known: " + named_glass_list() + ")");
 }
 
 Ior read_sellmeier(const JsonNode& node) {

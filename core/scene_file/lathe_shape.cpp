@@ -3,16 +3,9 @@
 namespace caustics::scene_file {
 namespace {
 
-Vec2d read_place(const JsonNode& node) {
-    const std::vector<double> numbers = node.as_numbers(2);
-    const Vec2d at(numbers[0], numbers[1]);
-    if (at.cwiseAbs().maxCoeff() > 1e30) node.fail("is out of range (to 1e+30)");
-    return at;
-}
-
 ProfilePoint read_point(const JsonNode& node) {
-    if (!node.is_object()) return {read_place(node)};
-    ProfilePoint point{read_place(node.at("at"))};
+    if (!node.is_object()) return {read_pair(node)};
+    ProfilePoint point{read_pair(node.at("at"))};
     if (const auto crease = node.find("crease")) point.crease = crease->as_bool();
     node.finish();
     return point;

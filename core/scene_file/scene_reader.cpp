@@ -18,8 +18,7 @@ using scene_file::Assets;
 using scene_file::read_colour;
 using scene_file::read_type;
 using scene_file::read_vector;
-
-constexpr double unlimited = 1e30;
+using scene_file::unlimited;
 
 void read_film(const JsonNode& node, Camera& camera) {
     if (const auto width = node.find("width"))

@@ -1,9 +1,9 @@
 #include "core/scene_file/shapes.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
+#include "core/base/lower_case.h"
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/tessellate.h"
 #include "core/scene_file/bsdfs.h"
@@ -15,12 +15,10 @@
 namespace caustics::scene_file {
 namespace {
 
-constexpr double far_away = 1e30;
-
 double read_radius(const JsonNode& node) {
     const auto radius = node.find("radius");
     if (!radius) return 1;
-    const double value = radius->as_number_in(0, far_away);
+    const double value = radius->as_number_in(0, unlimited);
     if (value == 0) radius->fail("must be above 0");
     return value;
 }
@@ -113,10 +111,7 @@ void read_mesh_file(const JsonNode& node, const std::string& type, const CommonK
     options.flip_normals = keys.flip_normals;
     const JsonNode name = node.at("filename");
     const std::filesystem::path file = read_file_name(name, assets);
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != "." + type)
+    if (lower_case(file.extension().string()) != "." + type)
         name.fail("a shape of type " + type + " takes a ." + type + " file (known: obj, ply)");
     shape.mesh = load_for(name, [&] { return load_mesh(file, options); });
     shape.to_world = keys.to_world;
@@ -187,12 +182,11 @@ void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
             shape.bsdf = read_bsdf(child, assets);
             continue;
         }
-        read_type(child, "bsdf or emitter",
-                  {"area", "diffuse", "schlick", "phong", "dielectric", "conductor", "blendbsdf",
-                   "twosided"},
-                  {"homogeneous", "heterogeneous"});
+        std::vector<std::string> known = bsdf_types();
+        known.insert(known.begin(), "area");
+        read_type(child, "bsdf or emitter", known, {"homogeneous", "heterogeneous"});
         if (shape.radiance) child.fail("a shape takes one emitter");
-        shape.radiance = read_colour(child, "radiance", 1, far_away);
+        shape.radiance = read_colour(child, "radiance", 1, unlimited);
         child.finish();
         if (shape.primitive == Primitive::heightfield)
             child.fail("an exact heightfield cannot emit; give it a `resolution`");

@@ -102,7 +102,7 @@ Transform read_operation(const JsonNode& node) {
     if (rotate) return read_rotation(*rotate);
     if (look_at) return read_look_at(*look_at);
     const Vec3d factors = scale->is_number()
-                              ? Vec3d(Vec3d::Constant(scale->as_number_in(-1e30, 1e30)))
+                              ? Vec3d(Vec3d::Constant(scale->as_number_in(-unlimited, unlimited)))
                               : read_vector(*scale);
     return Transform(Eigen::Scaling(factors));
 }
@@ -128,9 +128,16 @@ Transform read_matrix(const JsonNode& node, const std::vector<JsonNode>& entries
 
 }  // namespace
 
+Vec2d read_pair(const JsonNode& node) {
+    const std::vector<double> values = node.as_numbers(2);
+    const Vec2d pair(values[0], values[1]);
+    if (pair.cwiseAbs().maxCoeff() > unlimited) node.fail("is out of range (to 1e+30)");
+    return pair;
+}
+
 Vec3d read_vector(const JsonNode& node) {
     const std::vector<double> values = node.as_numbers(3);
-    for (const JsonNode& component : node.as_array()) component.as_number_in(-1e30, 1e30);
+    for (const JsonNode& component : node.as_array()) component.as_number_in(-unlimited, unlimited);
     return {values[0], values[1], values[2]};
 }
 
@@ -176,7 +183,7 @@ Transform read_transform(const JsonNode& node) {
     }
     const Eigen::Matrix3d linear = result.linear();
     const double size = linear.cwiseAbs().maxCoeff();
-    if (!(result.matrix().cwiseAbs().maxCoeff() <= 1e30))
+    if (!(result.matrix().cwiseAbs().maxCoeff() <= unlimited))
         node.fail("the transform's numbers reach beyond 1e30");
     if (!(std::abs(linear.determinant()) > 1e-12 * size * size * size))
         node.fail("the transform is singular: it flattens or deletes what it is applied to");

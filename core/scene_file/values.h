@@ -15,7 +15,11 @@ namespace caustics::scene_file {
 /// What a scene file refers to: absolute file -> name as written.
 using Assets = std::vector<std::pair<std::filesystem::path, std::string>>;
 
-/// Three numbers that fit a float.
+/// The range of numbers that have no range of their own: their squares fit a double, and they a float.
+inline constexpr double unlimited = 1e30;
+
+/// Two or three numbers, none beyond it.
+Vec2d read_pair(const JsonNode& node);
 Vec3d read_vector(const JsonNode& node);
 /// Fails at the node unless all points are within `farthest_coordinate`.
 void require_near(const JsonNode& node, const std::vector<Vec3d>& points);

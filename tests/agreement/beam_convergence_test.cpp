@@ -14,8 +14,8 @@
 namespace caustics {
 namespace {
 
-// A pool over a floor so deep that caustics fold. The truth is the light that rays bring through the exact water; the beams'
-// picture of a mesh is taken in two steps: what `beamtree` answers at a point is the sum of
+// A pool over a floor so deep that caustics fold. The truth is the light that rays bring through the exact
+// water; the beams' picture of a mesh is taken in two steps: what `beamtree` answers at a point is the sum of
 // flux / area over the caustic polygons that hold it, found here on their own, and so its means over
 // pixels are those of the polygons. Pixels have a smooth filter, four of them wide, for which sums
 // over rays and over points of polygons converge fast.
