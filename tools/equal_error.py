@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from report import records
 from report.curves import along
+from report.program import BENCH, Program
 from report.report_files import write
 
 SCENE = ROOT / "experiments" / "scenes" / "pool_overhead.json"
@@ -35,29 +36,16 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--keep", action="store_true", help="take the trials and truths that are there, run only those that are not")
     parser.add_argument("--quick", action="store_true", help="10 million photons at most, and a coarser truth: a first look")
-    parser.add_argument("--bench", type=pathlib.Path, default=ROOT / "build" / "release" / "bin" / "causticbench",
+    parser.add_argument("--bench", type=pathlib.Path, default=BENCH,
                         metavar="PROGRAM", help="(default: build/release/bin/causticbench)")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "bench", metavar="DIR",
                         help="(default: results/bench)")
     return parser.parse_args()
 
 
-class Program:
-    def __init__(self, path):
-        if not path.exists():
-            raise records.RecordsError(f"{path}: not there (tools/build.sh release causticbench)")
-        self.path = str(path)
-
-    def run(self, *words, **options):
-        status = subprocess.run([self.path, *map(str, words)], cwd=ROOT, stdin=subprocess.DEVNULL, text=True, **options)
-        if status.returncode != 0:
-            raise ChildProcessError(f"{' '.join(map(str, words[:2]))}: exit code {status.returncode}")
-        return status.stdout
-
+class Comparing(Program):
     def sweep(self, name, folder, keep):
-        print(f"equal_error: {name}", file=sys.stderr, flush=True)
-        self.run("sweep", ROOT / "experiments" / "sweeps" / f"{name}.json", "-o", folder, "--timeout", LONGEST,
-                 *([] if keep else ["--force"]), stdout=sys.stderr)
+        super().sweep(name, folder, keep, "--timeout", LONGEST)
 
     def compare(self, picture, reference):
         return json.loads(self.run("compare", picture, reference, "--json", stdout=subprocess.PIPE))
@@ -205,7 +193,7 @@ def plot(results):
 def main():
     chosen = arguments()
     try:
-        results, about = measure(Program(chosen.bench), chosen)
+        results, about = measure(Comparing("equal_error", chosen.bench), chosen)
         write(chosen.output / "equal_error.svg", plot(results))
         write(chosen.output / "equal_error.json", json.dumps(results, indent=2, ensure_ascii=False) + "\n")
         write(chosen.output / "equal_error.md", table(results, about, chosen.quick))

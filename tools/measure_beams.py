@@ -7,10 +7,8 @@ thread, so run it where nothing else runs. Needs build/release (tools/build.sh r
 Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
 import argparse
-import json
 import pathlib
 import re
-import subprocess
 import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
@@ -20,6 +18,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 from report import beam_report
 from report import beam_trials
 from report import records
+from report.program import Program, machine
 from report.report_files import write
 
 SWEEPS = ("counts", "counts_quads", "bounds_pool", "bounds_ring", "height", "watt_ns", "watt_nd", "watt_nl")
@@ -32,27 +31,6 @@ def arguments():
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "beamtree", metavar="DIR",
                         help="a folder with the page README.md to fill in (default: results/beamtree)")
     return parser.parse_args()
-
-
-def run(name, folder, keep):
-    program = ROOT / "build" / "release" / "bin" / "causticbench"
-    if not program.exists():
-        raise records.RecordsError(f"{program}: not there (tools/build.sh release causticbench)")
-    command = [program, "sweep", ROOT / "experiments" / "sweeps" / f"beam_{name}.json", "-o", folder]
-    print(f"measure_beams: {name}", file=sys.stderr, flush=True)
-    status = subprocess.run([str(part) for part in command + ([] if keep else ["--force"])], cwd=ROOT,
-                            stdout=sys.stderr, stdin=subprocess.DEVNULL).returncode
-    if status != 0:
-        raise ChildProcessError(f"sweep beam_{name}: exit code {status}")
-
-
-def machine(folders):
-    """One line on where and in which state the times were taken."""
-    found = [json.loads((folder / "environment.json").read_text(encoding="utf-8")) for folder in folders]
-    loads = [float(each["load"].split()[0]) for each in found]
-    first = found[0]
-    return (f"{first['cpu']}, {first['threads_available']} threads, {first['compiler']}, commit {first['commit']}; load "
-            f"average {min(loads):.1f} to {max(loads):.1f} while the sweeps began ({found[0]['date'][:10]}).")
 
 
 def fill(page, blocks):
@@ -85,8 +63,9 @@ def main():
     chosen = arguments()
     folders = {name: chosen.output / "trials" / name for name in SWEEPS}
     try:
+        program = Program("measure_beams")
         for name, folder in folders.items():
-            run(name, folder, chosen.keep)
+            program.sweep(f"beam_{name}", folder, chosen.keep)
         write_results(chosen.output, folders)
     except records.RecordsError as error:
         print(f"measure_beams: {error}", file=sys.stderr)

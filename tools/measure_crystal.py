@@ -6,11 +6,9 @@ one after another; their trials stay in results/crystal/trials (not in git). Rat
 machine. Needs build/release (tools/build.sh release causticbench). Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
 import argparse
-import json
 import math
 import pathlib
 import statistics
-import subprocess
 import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
@@ -18,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
 from report import records
+from report.program import BENCH, Program, machine
 from report.report_files import write
 
 PAGE = """# Crystal and colour
@@ -46,21 +45,15 @@ against 256. The last column is the error at equal time over that of `split_dept
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--keep", action="store_true", help="take the trials that are there, run only those that are not")
-    parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build" / "release" / "bin" / "causticbench")
+    parser.add_argument("--program", type=pathlib.Path, default=BENCH)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "crystal", metavar="DIR")
     return parser.parse_args()
 
 
-def sweep(options, name):
-    """The rows of a sweep's table."""
-    if not options.program.exists():
-        raise records.RecordsError(f"{options.program}: not there (tools/build.sh release causticbench)")
+def sweep(program, options, name):
+    """The sweep's folder, and the rows of its table."""
     folder = options.output / "trials" / name
-    command = [options.program, "sweep", ROOT / "experiments" / "sweeps" / f"{name}.json", "-o", folder]
-    status = subprocess.run([str(part) for part in command + ([] if options.keep else ["--force"])], cwd=ROOT,
-                            stdout=sys.stderr, stdin=subprocess.DEVNULL).returncode
-    if status != 0:
-        raise ChildProcessError(f"sweep {name}: exit code {status}")
+    program.sweep(name, folder, options.keep)
     return folder, [row for _, row in records.read_rows(folder / "records.csv")[1] if row["status"] == "done"]
 
 
@@ -91,12 +84,12 @@ def split_lines(rows):
 def main():
     options = arguments()
     try:
-        folder, photons = sweep(options, "dispersion_photons")
-        split = sweep(options, "split_depth")[1]
-        found = json.loads((folder / "environment.json").read_text(encoding="utf-8"))
-        machine = f"{found['cpu']}, {found['threads_available']} threads, {found['compiler']}, commit {found['commit']}."
-        write(options.output / "README.md", PAGE.format(machine=machine, photons="".join(photon_lines(photons)),
-                                                        split="".join(split_lines(split))))
+        program = Program("measure_crystal", options.program)
+        dispersion, photons = sweep(program, options, "dispersion_photons")
+        splitting, split = sweep(program, options, "split_depth")
+        write(options.output / "README.md",
+              PAGE.format(machine=machine([dispersion, splitting]), photons="".join(photon_lines(photons)),
+                          split="".join(split_lines(split))))
     except records.RecordsError as error:
         print(f"measure_crystal: {error}", file=sys.stderr)
         return 2

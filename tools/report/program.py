@@ -1,0 +1,39 @@
+"""The release build of causticbench, as the measuring tools run it: sweeps, and the line on where they ran."""
+import json
+import pathlib
+import subprocess
+import sys
+
+from report import records
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BENCH = ROOT / "build" / "release" / "bin" / "causticbench"
+
+
+class Program:
+    def __init__(self, tool, path=BENCH):
+        if not path.exists():
+            raise records.RecordsError(f"{path}: not there (tools/build.sh release causticbench)")
+        self.tool, self.path = tool, str(path)
+
+    def run(self, *words, **options):
+        """What it prints to a pipe; raises ChildProcessError where it fails."""
+        status = subprocess.run([self.path, *map(str, words)], cwd=ROOT, stdin=subprocess.DEVNULL, text=True, **options)
+        if status.returncode != 0:
+            raise ChildProcessError(f"{' '.join(map(str, words[:2]))}: exit code {status.returncode}")
+        return status.stdout
+
+    def sweep(self, name, folder, keep, *words):
+        """Runs experiments/sweeps/NAME.json into the folder; `keep` takes the trials that are there."""
+        print(f"{self.tool}: {name}", file=sys.stderr, flush=True)
+        self.run("sweep", ROOT / "experiments" / "sweeps" / f"{name}.json", "-o", folder, *words,
+                 *([] if keep else ["--force"]), stdout=sys.stderr)
+
+
+def machine(folders):
+    """One line on where and in which state the times of these sweeps were taken."""
+    found = [json.loads((folder / "environment.json").read_text(encoding="utf-8")) for folder in folders]
+    loads = [float(each["load"].split()[0]) for each in found]
+    first = found[0]
+    return (f"{first['cpu']}, {first['threads_available']} threads, {first['compiler']}, commit {first['commit']}; load "
+            f"average {min(loads):.1f} to {max(loads):.1f} while the sweeps began ({first['date'][:10]}).")
