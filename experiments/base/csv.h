@@ -28,9 +28,9 @@ struct NumberTable {
     std::size_t column(const std::string& name) const;
 };
 
-/// Reads a CSV file, or what read_input() takes, strictly: every column is one of `required` or `optional`, in any order, each
-/// at most once; every row has a finite number in every column. Throws InputError naming the file
-/// and the row (the first one after the header is row 1).
+/// Reads a CSV file, or what read_input() takes, strictly: every column is one of `required` or `optional`,
+/// in any order, each at most once; every row has a finite number in every column. Throws InputError naming
+/// the file and the row (the first one after the header is row 1).
 NumberTable read_numbers(const std::filesystem::path& file,
                          const std::vector<std::string>& required,
                          const std::vector<std::string>& optional);

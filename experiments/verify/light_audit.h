@@ -7,8 +7,8 @@
 
 namespace caustics {
 
-/// Where the light of one light goes that it sends towards casters, by paths traced to find out [W], mean of the
-/// channels.
+/// Where the light of one light goes that it sends towards casters, by paths traced to find out [W], mean of
+/// the channels.
 struct LightAccount {
     std::string light;
     std::string nothing_aimed;  ///< why no light is sent towards a caster; empty when some is
