@@ -20,13 +20,24 @@ struct ExportOptions {
     std::string target;
     std::string folder;
     ExportSettings settings;
+    int wavelengths = 0;
 };
+
+ExportedScene exported_scene(const SceneDesc& scene, const ExportOptions& options) {
+    if (options.target == "povray") {
+        if (options.wavelengths > 0)
+            throw InputError("--wavelengths: POV-Ray disperses light by itself; leave it out");
+        return to_povray(scene, options.settings);
+    }
+    if (options.wavelengths > 0)
+        return to_mitsuba_by_wavelength(scene, options.settings, options.wavelengths);
+    return to_mitsuba(scene, options.settings);
+}
 
 int export_scene(ExportOptions options) {
     const SceneFile file = options.scene.load();
     options.settings.scene_file = options.scene.file;
-    ExportedScene exported = options.target == "mitsuba" ? to_mitsuba(file.desc, options.settings)
-                                                         : to_povray(file.desc, options.settings);
+    ExportedScene exported = exported_scene(file.desc, options);
     if (const Vec3d& o = file.desc.origin; !o.isZero(0))
         exported.notes.push_back(
             fmt::format("coordinates are relative to ({:.9g}, {:.9g}, {:.9g}) m of the scene file, "
@@ -66,6 +77,10 @@ Verb add_export(CLI::App& app) {
                "Specular events between light and receiver (default 16)");
     add_number(*verb, "--mesh-resolution", options->settings.mesh_resolution, 1, 4096,
                "Of exact shapes that the other renderer does not know (default 256)");
+    add_number(
+        *verb, "--wavelengths", options->wavelengths, 1, 4096,
+        "Of a scene with dispersion: so many scenes for Mitsuba, scene_NNN.NNNnm.xml, each in the "
+        "light of one; add up their pictures");
     verb->footer(
         "Units stay: metres, watts, and pixels in W/(m^2 sr). A scene that the other renderer "
         "cannot express is refused (exit code 3).\n"

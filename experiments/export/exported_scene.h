@@ -13,7 +13,7 @@ struct ExportedScene {
         std::string name;
         std::string bytes;
     };
-    std::vector<File> files;         ///< the first is the one to render
+    std::vector<File> files;         ///< the first is the one to render, or the first of them
     std::vector<std::string> notes;  ///< what is not as in the scene, one line each
 };
 
@@ -40,6 +40,12 @@ std::string plain_name(const std::string& name, std::size_t number);
 /// Lengths and radiances keep their units. Throws UnsupportedScene for schlick receivers,
 /// absorption, and mirrored spheres and cylinders.
 ExportedScene to_mitsuba(const SceneDesc& scene, const ExportSettings& settings);
+
+/// The same with dispersion, which Mitsuba's dielectric has not: the scene in the light of each of so many
+/// bins of wavelengths (WavelengthBin), scene_NNN.NNNnm.xml with the index there. The sum of their pictures is
+/// the picture, as beams make it up. Throws UnsupportedScene for a scene that disperses nothing as well.
+ExportedScene to_mitsuba_by_wavelength(const SceneDesc& scene, const ExportSettings& settings,
+                                       int wavelengths);
 
 /// POV-Ray 3.7: scene.pov, and scene.ini that asks for a linear OpenEXR picture. POV-Ray has no
 /// units; lights are scaled so that a pixel's value is the radiance [W m^-2 sr^-1]. Throws

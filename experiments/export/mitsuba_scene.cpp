@@ -228,8 +228,10 @@ private:
                    "dielectric to 0, such as --set " +
                        place(i) + "/bsdf/absorption=0");
         if (glass.is_dispersive())
-            refuse(i, "Mitsuba's dielectric has no dispersion; give it one index, such as --set " +
-                          place(i) + fmt::format("/bsdf/int_ior={:.6g}", glass.int_ior.n()));
+            refuse(i,
+                   "Mitsuba's dielectric has no dispersion; write a scene for each of some "
+                   "wavelengths (--wavelengths 16), or give it one index, such as --set " +
+                       place(i) + fmt::format("/bsdf/int_ior={:.6g}", glass.int_ior.n()));
         xml_.open("bsdf", {{"type", "dielectric"}});
         number("int_ior", glass.int_ior.n());
         number("ext_ior", glass.ext_ior.n());

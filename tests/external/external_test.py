@@ -16,8 +16,11 @@ RENDER_MITSUBA = """
 import sys, mitsuba
 mitsuba.set_variant("scalar_rgb")
 mitsuba.set_log_level(mitsuba.LogLevel.Error)
-picture = mitsuba.render(mitsuba.load_file(sys.argv[1], integrator=sys.argv[3]), spp=int(sys.argv[4]), seed=1)
-mitsuba.Bitmap(picture).write(sys.argv[2])
+to, integrator, spp, *scenes = sys.argv[1:]
+picture = 0
+for seed, scene in enumerate(scenes, 1):
+    picture += mitsuba.render(mitsuba.load_file(scene, integrator=integrator), spp=int(spp), seed=seed)
+mitsuba.Bitmap(picture).write(to)
 """
 # Scene; integrator and samples a pixel, or what POV-Ray is told; how far the ratio of the means may be off, and how
 # large relmse may be, which tells a picture that is turned round. Both are mostly the noise of one small picture.
@@ -28,7 +31,10 @@ MITSUBA = [
     ("ring_point", "ptracer", "600", 0.02, 0.03),
     ("pool_area", "ptracer", "1000", 0.02, 0.1),
     ("ball_area", "ptracer", "600", 0.02, 0.15),
+    ("ball_flint", "ptracer", "60", 0.02, 0.15),  # a scene for each wavelength
 ]
+# Scenes that are others, changed.
+CHANGED = {"ball_flint": ("ball_area", "--set", '/ball/bsdf/int_ior={"type": "sellmeier", "material": "sf10"}')}
 POVRAY = [
     ("plain_checker", [], 0.004, 0.01),
     ("plain_sun", [], 0.004, 0.01),
@@ -42,15 +48,20 @@ def run(*command, **more):
     subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL, **more)
 
 
+def scene_of(name):
+    """The words that name a scene: its file, and a change."""
+    return [SCENES / f"{CHANGED.get(name, (name,))[0]}.json", *CHANGED.get(name, (name,))[1:]]
+
+
 def ours(program, scene, picture):
     method = ["none"] if scene.startswith("plain") else ["lighttrace", "--param", "paths=1000000"]
-    run(program, "render", SCENES / f"{scene}.json", "--method", *method, "--spp", 64, "-o", picture,
-        stderr=subprocess.DEVNULL)
+    run(program, "render", *scene_of(scene), "--method", *method, "--spp", 64, "-o", picture, stderr=subprocess.DEVNULL)
 
 
 def mitsuba(program, python, folder, scene, integrator, samples):
-    run(program, "export", SCENES / f"{scene}.json", "--to", "mitsuba", "-o", folder, stderr=subprocess.DEVNULL)
-    run(python, "-c", RENDER_MITSUBA, folder / "scene.xml", folder / "theirs.exr", integrator, samples)
+    more = ["--wavelengths", 16] if scene in CHANGED else []
+    run(program, "export", *scene_of(scene), "--to", "mitsuba", *more, "-o", folder, stderr=subprocess.DEVNULL)
+    run(python, "-c", RENDER_MITSUBA, folder / "theirs.exr", integrator, samples, *sorted(folder.glob("scene*.xml")))
     return folder / "theirs.exr"
 
 

@@ -99,6 +99,34 @@ TEST(MitsubaScene, SaysEveryNumberOfTheSceneExactly) {
     EXPECT_EQ(numbers_after(xml, "name=\"int_ior\" value=\"").at(0), 1.5);
 }
 
+TEST(MitsubaScene, IsOneForEachWavelengthWhereGlassDisperses) {
+    SceneDesc desc = small_scene();
+    const Ior law = Ior::cauchy(1.5, 0.01);
+    std::get<Dielectric>(desc.shapes[1].bsdf.model).int_ior = law;
+    desc.shapes.push_back(
+        support::mesh("box", tessellate_cube(1), Transform::Identity(), support::diffuse(0.5F)));
+    constexpr int wavelengths = 5;
+    const ExportedScene scenes = to_mitsuba_by_wavelength(desc, {}, wavelengths);
+    Vec3d intensity = Vec3d::Zero();
+    Vec3d irradiance = Vec3d::Zero();
+    std::size_t scene_count = 0;
+    std::size_t mesh_count = 0;
+    for (const ExportedScene::File& each : scenes.files) {
+        mesh_count += each.name.ends_with(".ply") ? 1 : 0;
+        if (!each.name.ends_with("nm.xml")) continue;
+        ++scene_count;
+        const float nm = std::strtof(each.name.c_str() + std::string("scene_").size(), nullptr);
+        EXPECT_NEAR(numbers_after(each.bytes, "name=\"int_ior\" value=\"").at(0), law.at(nm), 1e-5);
+        intensity += vector_after(each.bytes, "name=\"intensity\" value=\"");
+        irradiance += vector_after(each.bytes, "name=\"irradiance\" value=\"");
+    }
+    EXPECT_EQ(scene_count, wavelengths);
+    EXPECT_EQ(mesh_count, 1U) << "all scenes share it";
+    EXPECT_TRUE(intensity.isApprox(Vec3d::Constant(7), 1e-6)) << intensity;
+    EXPECT_TRUE(irradiance.isApprox(Vec3d::Constant(3), 1e-6)) << irradiance;
+    EXPECT_THROW(to_mitsuba_by_wavelength(small_scene(), {}, wavelengths), UnsupportedScene);
+}
+
 TEST(MitsubaScene, BringsTheFilesItNames) {
     SceneDesc desc = small_scene();
     Shape water = support::horizontal("wa/ter", 0.5, 1, true, support::glass(1.333F));
@@ -270,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](SceneDesc& d) {
                     std::get<Dielectric>(d.shapes[1].bsdf.model).int_ior = Ior::cauchy(1.5, 0.01);
                 },
-                {"/ball", "no dispersion", "/bsdf/int_ior=1.52897"}},
+                {"/ball", "no dispersion", "--wavelengths", "/bsdf/int_ior=1.52897"}},
         Refused{"MitsubaSchlick", to_mitsuba, schlick_floor, {"/floor", "schlick", "--set"}},
         Refused{"MitsubaAbsorption",
                 to_mitsuba,
