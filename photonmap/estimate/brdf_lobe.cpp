@@ -40,6 +40,19 @@ BrdfLobe reflection_of(const ReceiverPoint& point) {
         const auto alpha = static_cast<double>(schlick->alpha);
         reflection.scale = evaluate(schlick->reflectance, point.uv).cast<double>() * alpha /
                            (pi_d * (cosine + alpha * (1 - cosine)));
+    } else if (const auto* phong = std::get_if<Phong>(&point.bsdf->model);
+               phong != nullptr && phong->model == Phong::Model::normalised) {
+        reflection.model = BrdfLobe::Model::phong;
+        copy(n, reflection.lobe.normal);
+        const Vec3d normal = n.cast<double>();
+        const Vec3d wo = point.wo.cast<double>();
+        copy((2 * normal.dot(wo) * normal - wo).normalized().cast<float>(),
+             reflection.lobe.mirrored);
+        reflection.lobe.exponent = phong->exponent;
+        reflection.scale = SpectrumSum::Ones();
+        reflection.diffuse = evaluate(phong->diffuse_reflectance, point.uv).cast<double>() / pi_d;
+        reflection.specular = evaluate(phong->specular_reflectance, point.uv).cast<double>() *
+                              (static_cast<double>(phong->exponent) + 2) / (2 * pi_d);
     } else {
         reflection.model = BrdfLobe::Model::other;
         reflection.scale = SpectrumSum::Ones();

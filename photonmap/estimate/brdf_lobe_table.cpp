@@ -11,7 +11,8 @@ namespace {
 /// Whether the factors of all directions are the same.
 bool same_factors(const BrdfLobe& a, const BrdfLobe& b) {
     return a.model == b.model && a.model != BrdfLobe::Model::other &&
-           std::memcmp(&a.lobe, &b.lobe, sizeof(Lobe)) == 0;
+           std::memcmp(&a.lobe, &b.lobe, sizeof(Lobe)) == 0 && (a.diffuse == b.diffuse).all() &&
+           (a.specular == b.specular).all();
 }
 
 }  // namespace
@@ -41,6 +42,13 @@ void BrdfLobeTable::fill(Entry& entry, std::uint16_t direction) {
             break;
         case BrdfLobe::Model::schlick:
             factor.setConstant(schlick_factor(direction_tables(), reflection_.lobe, theta, phi));
+            break;
+        case BrdfLobe::Model::phong:
+            factor = (reflection_.diffuse * static_cast<double>(facing_factor(
+                                                direction_tables(), reflection_.lobe, theta, phi)) +
+                      reflection_.specular * static_cast<double>(phong_factor(
+                                                 direction_tables(), reflection_.lobe, theta, phi)))
+                         .cast<float>();
             break;
         case BrdfLobe::Model::other:
             factor = evaluate(*point_.bsdf, point_.uv, point_.shading_normal, point_.wo,

@@ -79,15 +79,19 @@ SpectrumSum Shading::arriving(const WeightedPhotons& photons) const {
 
 SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons& photons) const {
     const BrdfLobe reflection = reflection_of(point);
-    const auto sum_by = [&](ShadingKernel* kernel) -> SpectrumSum {
-        return sum_in_runs(kernel, reflection.lobe, photons) * reflection.scale;
+    const auto sum_by = [&](ShadingKernel* kernel) {
+        return sum_in_runs(kernel, reflection.lobe, photons);
     };
+    // All photons are in front already where the normals are one.
+    ShadingKernel* const facing =
+        point.shading_normal == point.geometric_normal ? kernels_.arriving : kernels_.facing;
     switch (reflection.model) {
-        case BrdfLobe::Model::lambert:
-            // All photons are in front already where the normals are one.
-            return sum_by(point.shading_normal == point.geometric_normal ? kernels_.arriving
-                                                                         : kernels_.facing);
-        case BrdfLobe::Model::schlick: return sum_by(kernels_.schlick);
+        case BrdfLobe::Model::lambert: return sum_by(facing) * reflection.scale;
+        case BrdfLobe::Model::schlick: return sum_by(kernels_.schlick) * reflection.scale;
+        case BrdfLobe::Model::phong:
+            return (sum_by(facing) * reflection.diffuse +
+                    sum_by(kernels_.phong) * reflection.specular) *
+                   reflection.scale;
         case BrdfLobe::Model::other: return sum_evaluated(point, photons);
         case BrdfLobe::Model::black: break;
     }

@@ -33,7 +33,7 @@ public:
 
     /// Sum of f_r(wo, wi) x flux x weight [1/sr], f_r about the point's shading normal and 0 when wo
     /// or wi is below it. The photons must have arrived on the side of its geometric normal.
-    /// Lambert's and Schlick's laws have kernels; any other is evaluated photon by photon.
+    /// Lambert's, Schlick's and Phong's laws have kernels; Phong's classic one is evaluated photon by photon.
     SpectrumSum reflected(const ReceiverPoint& point, const WeightedPhotons& photons) const;
 
     /// The same by a table of f_r, one photon after another.

@@ -1,5 +1,6 @@
 #include <immintrin.h>
 
+#include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_avx2.h"
 
@@ -157,8 +158,25 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     sums.add_to(rgb);
 }
 
+/// The formula of phong_factor.
+void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
+               double* rgb) {
+    const Vectors n = all_of(lobe.normal), mirrored = all_of(lobe.mirrored);
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 8) {
+        const Vectors wi = directions(tables, photons.direction + i);
+        const Vectors apart{_mm256_sub_ps(mirrored.x, wi.x), _mm256_sub_ps(mirrored.y, wi.y),
+                            _mm256_sub_ps(mirrored.z, wi.z)};
+        const Floats t = product(all(0.5F), dot(apart, apart));
+        sums.add(photons, i, facing(counted(photons, i), dot(n, wi)),
+                 cosine_power<Avx2Lanes>(t, lobe.exponent));
+    }
+    sums.add_to(rgb);
+}
+
 }  // namespace
 
-const ShadingKernels avx2_shading{add_arriving, add_facing, add_schlick, weigh_photons<Avx2Lanes>};
+const ShadingKernels avx2_shading{add_arriving, add_facing, add_schlick, add_phong,
+                                  weigh_photons<Avx2Lanes>};
 
 }  // namespace caustics

@@ -1,5 +1,6 @@
 #include <immintrin.h>
 
+#include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_avx512.h"
 
@@ -175,9 +176,26 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     sums.add_to(rgb);
 }
 
+/// The formula of phong_factor.
+void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
+               double* rgb) {
+    const Vectors n = all_of(lobe.normal), mirrored = all_of(lobe.mirrored);
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 16) {
+        const Vectors wi = directions(tables, photons.direction + i);
+        const Vectors apart{_mm512_sub_ps(mirrored.x, wi.x), _mm512_sub_ps(mirrored.y, wi.y),
+                            _mm512_sub_ps(mirrored.z, wi.z)};
+        const Floats t = product(all(0.5F), dot(apart, apart));
+        sums.add(photons, i,
+                 _mm512_mask_cmp_ps_mask(counted(photons, i), dot(n, wi), all(0), _CMP_GT_OQ),
+                 cosine_power<Avx512Lanes>(t, lobe.exponent));
+    }
+    sums.add_to(rgb);
+}
+
 }  // namespace
 
-const ShadingKernels avx512_shading{add_arriving, add_facing, add_schlick,
+const ShadingKernels avx512_shading{add_arriving, add_facing, add_schlick, add_phong,
                                     weigh_photons<Avx512Lanes>};
 
 }  // namespace caustics

@@ -14,8 +14,10 @@ struct Lobe {
     float tangent[3];
     float bitangent[3];
     float wo[3];
-    float cosine;  ///< v = n.wo of [J96 (5)], > 0
-    float alpha;   ///< of Schlick's model
+    float cosine;       ///< v = n.wo of [J96 (5)], > 0
+    float alpha;        ///< of Schlick's model
+    float mirrored[3];  ///< of Phong's: wo about the normal
+    float exponent;     ///< of Phong's
 };
 
 /// A run of gathered photons; arrays as in GatheredPhotons.
@@ -30,7 +32,8 @@ struct ShadedPhotons {
 /// Adds to rgb[3] the sum over photons of energy x weight x
 ///   `arriving`: 1;
 ///   `facing`: 1 where n.wi > 0, else 0 (Lambert's law but for the factor 1/pi);
-///   `schlick`: pi f_r (alpha + (1 - alpha) v) / alpha by [J96 (5)], [J96 (6)] where n.wi > 0, else 0.
+///   `schlick`: pi f_r (alpha + (1 - alpha) v) / alpha by [J96 (5)], [J96 (6)] where n.wi > 0, else 0;
+///   `phong`: cos^exponent of the angle to the mirrored direction where n.wi > 0, else 0.
 ///
 /// n.wi is rounded step by step as `evaluate(bsdf, ...)` does it, on every instruction set, so that
 /// all agree on which photons count. Runs should be at most `longest_run` photons, so that sums in
@@ -63,6 +66,7 @@ struct ShadingKernels {
     ShadingKernel* arriving;
     ShadingKernel* facing;
     ShadingKernel* schlick;
+    ShadingKernel* phong;
     WeighingKernel* weigh;
 };
 
@@ -72,6 +76,8 @@ extern const ShadingKernels avx512_shading;
 
 /// What `schlick` multiplies a photon's energy by.
 float schlick_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
+/// What `phong` multiplies a photon's energy by.
+float phong_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
 /// What `facing` multiplies a photon's energy by.
 float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
 

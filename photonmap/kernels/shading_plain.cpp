@@ -1,6 +1,7 @@
 #include <bit>
 #include <cstring>
 
+#include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_plain.h"
 
@@ -54,6 +55,11 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     add(tables, lobe, photons, rgb, schlick_factor);
 }
 
+void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
+               double* rgb) {
+    add(tables, lobe, photons, rgb, phong_factor);
+}
+
 }  // namespace
 
 // [J96 (5)], [J96 (6)] with D(v) = v / G(v) = v + alpha (1 - v), s = wo + wi and t^2 = (n.s)^2 / |s|^2:
@@ -79,10 +85,21 @@ float schlick_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t th
     return (u * v_in + u_in * d + peak * peak) / d_in;
 }
 
+float phong_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi) {
+    const Direction wi = decode(tables, theta, phi);
+    if (!(dot(lobe.normal, wi) > 0)) return 0;
+    const Direction apart{lobe.mirrored[0] - wi.x, lobe.mirrored[1] - wi.y,
+                          lobe.mirrored[2] - wi.z};
+    // |a - b|^2 / 2 of unit vectors: the cosine itself would be rounded where it is near 1.
+    const float square = apart.x * apart.x + (apart.y * apart.y + apart.z * apart.z);
+    return cosine_power<PlainSimd>(0.5F * square, lobe.exponent);
+}
+
 float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi) {
     return dot(lobe.normal, decode(tables, theta, phi)) > 0 ? 1.0F : 0.0F;
 }
 
-const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick, weigh_photons<PlainSimd>};
+const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick, add_phong,
+                                   weigh_photons<PlainSimd>};
 
 }  // namespace caustics

@@ -35,6 +35,16 @@ struct PlainSimd {
     static Floats max(Floats a, Floats b) { return a > b ? a : b; }
     static uint32_t less(Floats a, Floats b) { return a < b ? 1U : 0U; }
     static uint32_t not_above(Floats a, Floats b) { return a <= b ? 1U : 0U; }
+    static uint32_t equal(Floats a, Floats b) { return a == b ? 1U : 0U; }
+    /// Of a positive normal number, m 2^e with m in [1, 2).
+    static Floats exponent_of(Floats a) {
+        return static_cast<float>(static_cast<int32_t>(bits_of(a) >> 23U) - 127);
+    }
+    static Floats mantissa_of(Floats a) { return float_of((bits_of(a) & 0x7FFFFFU) | 0x3F800000U); }
+    /// a 2^n, n whole, from -126 to 127.
+    static Floats times_power_of_2(Floats a, Floats n) {
+        return a * float_of(static_cast<uint32_t>(static_cast<int32_t>(n) + 127) << 23U);
+    }
     static size_t count(uint32_t mask) { return mask; }
     static Floats where(uint32_t mask, Floats a, Floats b) { return mask != 0 ? a : b; }
     static void compress(float* to, uint32_t, Floats a) { *to = a; }
@@ -43,6 +53,10 @@ struct PlainSimd {
     static void compress_halves(uint16_t* to, uint32_t, Words a) { *to = static_cast<uint16_t>(a); }
     static float least(Floats a) { return a; }
     static float greatest(Floats a) { return a; }
+
+private:
+    static uint32_t bits_of(float a) { return __builtin_bit_cast(uint32_t, a); }
+    static float float_of(uint32_t bits) { return __builtin_bit_cast(float, bits); }
 };
 
 }  // namespace caustics

@@ -1,5 +1,5 @@
-// Shading of gathered photons: 100 photons a point, Schlick's law with alpha = 0.1, against the same
-// sum in scalar code. Counters are nanoseconds per photon.
+// Shading of gathered photons: 100 photons a point, Schlick's law with alpha = 0.1 and Phong's with an
+// exponent of 30, against the same sums in scalar code. Counters are nanoseconds per photon.
 
 #include <benchmark/benchmark.h>
 
@@ -22,6 +22,8 @@ namespace {
 
 constexpr std::size_t photons_a_point = 100;
 constexpr std::size_t padded = 112;
+constexpr float alpha = 0.1F;
+constexpr float exponent = 30;
 const Vec3 eye(0.3F, -1.7F, 1.3F);
 /// Against the double sum; the scalar codes decode angles in float and lose some where t is near 1.
 constexpr double scalar_tolerance = 2e-4;
@@ -29,7 +31,7 @@ constexpr double our_tolerance = 1e-5;
 
 /// Points that found all their photons, with what each variant needs.
 struct Work {
-    Bsdf bsdf{Schlick{Spectrum(Spectrum::Ones()), 0.1F}};
+    Bsdf bsdf;
     std::vector<ReceiverPoint> points;
     std::vector<std::uint32_t> energy;     ///< `padded` a point
     std::vector<std::uint16_t> direction;  ///< likewise
@@ -37,16 +39,17 @@ struct Work {
     BrdfLobeTable table;
     std::vector<SpectrumSum> sums;
 
-    explicit Work(Isa isa) : shading(isa) {}
+    Work(Isa isa, Bsdf law) : bsdf(std::move(law)), shading(isa) {}
 
     WeightedPhotons photons(std::size_t i) const {
         return {{nullptr, &energy[i * padded], &direction[i * padded], photons_a_point, 0}};
     }
+    bool is_phong() const { return std::holds_alternative<Phong>(bsdf.model); }
     ScalarQuery scalar(std::size_t i) const {
         const ReceiverPoint& p = points[i];
         const Vec3 &n = p.shading_normal, &wo = p.wo;
         return {&energy[i * padded],   &direction[i * padded],   photons_a_point,
-                {n.x(), n.y(), n.z()}, {wo.x(), wo.y(), wo.z()}, 0.1F};
+                {n.x(), n.y(), n.z()}, {wo.x(), wo.y(), wo.z()}, is_phong() ? exponent : alpha};
     }
 };
 
@@ -66,8 +69,8 @@ void add_point(Work& work, const float* x, const std::vector<Photon>& photons,
     }
 }
 
-std::shared_ptr<Work> make_work(Caustic caustic, const BenchOptions& options) {
-    const auto work = std::make_shared<Work>(options.isa);
+std::shared_ptr<Work> make_work(Caustic caustic, const BenchOptions& options, const Bsdf& law) {
+    const auto work = std::make_shared<Work>(options.isa, law);
     const std::size_t count = 250'677;
     const std::vector<Photon> photons = caustic_photons(caustic, Arrival::random, count);
     const NanoflannTree tree(photons.front().position, count, 5, 10);
@@ -83,20 +86,30 @@ std::shared_ptr<Work> make_work(Caustic caustic, const BenchOptions& options) {
     return work;
 }
 
-/// [J96, eqs. 5-6] in double.
+/// f_r of [J96 (5)], [J96 (6)], or of Phong's law, in double, over the floor.
+double reflection(bool phong, const Vec3d& wo, const Vec3d& wi) {
+    if (phong) {
+        const double cosine = std::max(0.0, 2 * wo.z() * wi.z() - wo.dot(wi));
+        const auto e = static_cast<double>(exponent);
+        return 0.5 / pi_d + 0.5 * (e + 2) / (2 * pi_d) * std::pow(cosine, e);
+    }
+    const auto a = static_cast<double>(alpha);
+    const double v = wo.z(), v_in = wi.z(), t = (wo + wi).normalized().z();
+    const double g = 1 / ((a - a * v + v) * (a - a * v_in + v_in));
+    const double lobe = 1 + a * t * t - t * t;
+    return (1 - g * v * v_in) / pi_d + g / (4 * pi_d) * a / (lobe * lobe);
+}
+
+/// The sum in double.
 SpectrumSum truth(const Work& work, std::size_t i) {
     const Vec3d wo = work.points[i].wo.cast<double>().normalized();
-    const double alpha = static_cast<double>(0.1F), v = wo.z();
     SpectrumSum sum = SpectrumSum::Zero();
     for (std::size_t p = i * padded; p < i * padded + photons_a_point; ++p) {
         const auto code = std::bit_cast<DirectionCode>(work.direction[p]);
         const Vec3d wi = decode_direction(code.theta, code.phi).cast<double>().normalized();
-        const double v_in = wi.z(), t = (wo + wi).normalized().z();
-        if (v_in <= 0) continue;
-        const double g = 1 / ((alpha - alpha * v + v) * (alpha - alpha * v_in + v_in));
-        const double lobe = 1 + alpha * t * t - t * t;
-        const double f = (1 - g * v * v_in) / pi_d + g / (4 * pi_d) * alpha / (lobe * lobe);
-        sum += decode_rgbe(std::bit_cast<Rgbe>(work.energy[p])).cast<double>() * f;
+        if (wi.z() <= 0) continue;
+        sum += decode_rgbe(std::bit_cast<Rgbe>(work.energy[p])).cast<double>() *
+               reflection(work.is_phong(), wo, wi);
     }
     return sum;
 }
@@ -113,8 +126,8 @@ double error_of(const Work& work, const std::string& contestant, double toleranc
     return largest;
 }
 
-Contest make_contest(Caustic caustic, const BenchOptions& options) {
-    const std::shared_ptr<Work> work = make_work(caustic, options);
+Contest make_contest(Caustic caustic, const BenchOptions& options, const Bsdf& law) {
+    const std::shared_ptr<Work> work = make_work(caustic, options, law);
     const std::size_t count = work->points.size();
     Contest contest(static_cast<double>(count * photons_a_point));
     const auto add = [&](const std::string& name, double tolerance, const auto& shade_one) {
@@ -132,8 +145,12 @@ Contest make_contest(Caustic caustic, const BenchOptions& options) {
             w.sums[i] = Spectrum(rgb[0], rgb[1], rgb[2]).cast<double>();
         });
     };
-    add_scalar("libm", shade_by_libm);
-    add_scalar("tables", shade_by_tables);
+    if (work->is_phong()) {
+        add_scalar("tables", shade_phong);
+    } else {
+        add_scalar("libm", shade_by_libm);
+        add_scalar("tables", shade_by_tables);
+    }
     add("ours", our_tolerance,
         [](Work& w, std::size_t i) { w.sums[i] = w.shading.reflected(w.points[i], w.photons(i)); });
     add("ours_tables", our_tolerance, [](Work& w, std::size_t i) {
@@ -147,9 +164,17 @@ Contest make_contest(Caustic caustic, const BenchOptions& options) {
 }  // namespace
 
 void register_benchmarks(const BenchOptions& options) {
-    for (const Caustic caustic : {Caustic::water, Caustic::ball})
-        register_contest(std::string("shading/") + name(caustic), options.quick ? 2 : 10,
-                         [=] { return make_contest(caustic, options); });
+    const Bsdf schlick{Schlick{Spectrum(Spectrum::Ones()), alpha}};
+    const Texture half = Spectrum(Spectrum::Constant(0.5F));
+    const Bsdf phong{
+        Phong{.diffuse_reflectance = half, .specular_reflectance = half, .exponent = exponent}};
+    for (const Caustic caustic : {Caustic::water, Caustic::ball}) {
+        const int rounds = options.quick ? 2 : 10;
+        register_contest(std::string("shading/") + name(caustic), rounds,
+                         [=] { return make_contest(caustic, options, schlick); });
+        register_contest(std::string("shading_phong/") + name(caustic), rounds,
+                         [=] { return make_contest(caustic, options, phong); });
+    }
 }
 
 }  // namespace caustics::bench

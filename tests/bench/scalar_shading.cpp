@@ -38,8 +38,15 @@ float schlick(const ScalarQuery& query, const float* wi, float v, float v_in) {
     return (1 - g) / pi + g / (4 * pi * v * v_in) * query.alpha / (lobe * lobe);
 }
 
-template <typename Direction, typename Power>
-void shade(const ScalarQuery& query, float* rgb, const Direction& direction, const Power& power) {
+float phong(const ScalarQuery& query, const float* wi, float v, float v_in) {
+    const float cosine = 2 * v * v_in - dot(query.wo, wi);
+    const float lobe = cosine > 0 ? std::pow(cosine, query.alpha) : 0;
+    return 0.5F / pi + 0.5F * (query.alpha + 2) / (2 * pi) * lobe;
+}
+
+template <typename Law, typename Direction, typename Power>
+void shade(const ScalarQuery& query, float* rgb, const Law& law, const Direction& direction,
+           const Power& power) {
     const float v = dot(query.normal, query.wo);
     float red = 0, green = 0, blue = 0;
     for (std::size_t i = 0; i < query.count; ++i) {
@@ -48,7 +55,7 @@ void shade(const ScalarQuery& query, float* rgb, const Direction& direction, con
         const float v_in = dot(query.normal, wi);
         if (v_in <= 0) continue;
         const std::uint32_t energy = query.energy[i];
-        const float factor = schlick(query, wi, v, v_in) * power(energy >> 24U);
+        const float factor = law(query, wi, v, v_in) * power(energy >> 24U);
         red += factor * static_cast<float>(energy & 255U);
         green += factor * static_cast<float>((energy >> 8U) & 255U);
         blue += factor * static_cast<float>((energy >> 16U) & 255U);
@@ -62,7 +69,7 @@ void shade(const ScalarQuery& query, float* rgb, const Direction& direction, con
 
 void shade_by_libm(const ScalarQuery& query, float* rgb) {
     shade(
-        query, rgb,
+        query, rgb, schlick,
         [](unsigned theta, unsigned phi, float* wi) {
             const float t = theta_of(theta), p = phi_of(phi);
             wi[0] = std::sin(t) * std::cos(p);
@@ -74,15 +81,24 @@ void shade_by_libm(const ScalarQuery& query, float* rgb) {
         });
 }
 
+namespace {
+
+void direction_by_tables(unsigned theta, unsigned phi, float* wi) {
+    wi[0] = tables.sin_theta[theta] * tables.cos_phi[phi];
+    wi[1] = tables.sin_theta[theta] * tables.sin_phi[phi];
+    wi[2] = tables.cos_theta[theta];
+}
+
+float power_by_table(unsigned exponent) { return tables.power[exponent]; }
+
+}  // namespace
+
 void shade_by_tables(const ScalarQuery& query, float* rgb) {
-    shade(
-        query, rgb,
-        [](unsigned theta, unsigned phi, float* wi) {
-            wi[0] = tables.sin_theta[theta] * tables.cos_phi[phi];
-            wi[1] = tables.sin_theta[theta] * tables.sin_phi[phi];
-            wi[2] = tables.cos_theta[theta];
-        },
-        [](unsigned exponent) { return tables.power[exponent]; });
+    shade(query, rgb, schlick, direction_by_tables, power_by_table);
+}
+
+void shade_phong(const ScalarQuery& query, float* rgb) {
+    shade(query, rgb, phong, direction_by_tables, power_by_table);
 }
 
 }  // namespace caustics::bench

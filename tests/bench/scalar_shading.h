@@ -12,7 +12,7 @@ struct ScalarQuery {
     std::size_t count;
     float normal[3];
     float wo[3];
-    float alpha;
+    float alpha;  ///< of Schlick's law; the exponent of Phong's
 };
 
 /// Sum over the photons of Schlick's f_r x flux, [J96, eqs. 5-6] written down as they are read:
@@ -21,5 +21,8 @@ void shade_by_libm(const ScalarQuery& query, float* rgb);
 
 /// The same with sines and cosines from two tables of 256 entries, powers of two from a third.
 void shade_by_tables(const ScalarQuery& query, float* rgb);
+
+/// Phong's law with k_d = k_s = 1/2 and the exponent `alpha`: directions by tables, powers by libm.
+void shade_phong(const ScalarQuery& query, float* rgb);
 
 }  // namespace caustics::bench

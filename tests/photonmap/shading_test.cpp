@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "photonmap/kernels/cosine_power.h"
+#include "photonmap/kernels/simd_plain.h"
 #include "shading_sets.h"
 
 namespace caustics {
@@ -16,22 +20,43 @@ const Spectrum grey_red(0.9F, 0.5F, 0.25F);
 Bsdf lambert() { return {Diffuse{grey_red}}; }
 Bsdf schlick(float alpha) { return {Schlick{grey_red, alpha}}; }
 
+/// Phong's law with the colours of grey_red, half and half.
+Bsdf phong(float exponent) {
+    return {Phong{
+        .diffuse_reflectance = Spectrum(0.5F * grey_red),
+        .specular_reflectance = Spectrum(0.5F * grey_red),
+        .exponent = exponent,
+    }};
+}
+
+double phong_as_printed(double exponent, const Vec3d& n, const Vec3d& wo, const Vec3d& wi) {
+    const double cosine = (2 * n.dot(wo) * n - wo).dot(wi);
+    return 0.5 / pi_d +
+           0.5 * (exponent + 2) / (2 * pi_d) * std::pow(std::max(0.0, cosine), exponent);
+}
+
+/// f_r over grey_red.
+double reflection_as_printed(const Bsdf& bsdf, const Vec3d& n, const Vec3d& wo, const Vec3d& wi) {
+    if (const auto* schlick = std::get_if<Schlick>(&bsdf.model))
+        return test::schlick_as_printed(static_cast<double>(schlick->alpha), n, wo, wi);
+    if (const auto* phong = std::get_if<Phong>(&bsdf.model))
+        return phong_as_printed(static_cast<double>(phong->exponent), n, wo, wi);
+    return 1 / pi_d;
+}
+
 /// What each photon's flux is multiplied by, in double; which photons count at all is as
 /// evaluate() decides it.
 SpectrumSum oracle(const ReceiverPoint& point, const PhotonArrays& photons, bool weighted,
                    std::size_t left_out) {
     const Vec3d n = point.shading_normal.cast<double>().normalized();
     const Vec3d wo = point.wo.cast<double>().normalized();
-    const auto* const model = std::get_if<Schlick>(&point.bsdf->model);
     SpectrumSum sum = SpectrumSum::Zero();
     for (std::size_t i = 0; i < photons.size(); ++i) {
         const DirectionCode code = photons.direction(i);
         const Vec3 wi = decode_direction(code.theta, code.phi);
         if (i == left_out || point.shading_normal.dot(wi) <= 0) continue;
         const double reflection =
-            model == nullptr ? 1 / pi_d
-                             : test::schlick_as_printed(static_cast<double>(model->alpha), n, wo,
-                                                        wi.cast<double>().normalized());
+            reflection_as_printed(*point.bsdf, n, wo, wi.cast<double>().normalized());
         const double weight = weighted ? static_cast<double>(photons.weight(i)) : 1.0;
         sum += decode_rgbe(photons.energy(i)).cast<double>() * reflection * weight;
     }
@@ -65,6 +90,55 @@ TEST(Shading, IsTheFormulaOnEveryInstructionSet) {
             }
         }
     }
+}
+
+// The direction of a photon is known to a float's rounding, which a lobe of exponent e makes e times larger.
+TEST(Shading, IsPhongsLawOnEveryInstructionSet) {
+    Rng rng(45, Stage::test, 0);
+    for (const float exponent : {0.0F, 0.5F, 1.0F, 7.3F, 30.0F, 200.0F, 5000.0F, 1e6F}) {
+        const Bsdf bsdf = phong(exponent);
+        const double tolerance = 1e-5 * std::max(1.0, 0.02 * static_cast<double>(exponent));
+        for (const std::size_t count : {1U, 16U, 17U, 513U, 1500U}) {
+            const ReceiverPoint point = test::random_point(rng, bsdf);
+            PhotonArrays photons = test::random_photons(count, 46);
+            const Vec3 mirrored =
+                2 * point.shading_normal.dot(point.wo) * point.shading_normal - point.wo;
+            // Half of them in the lobe, where it is narrow.
+            for (std::size_t i = 0; i < count; i += 2) {
+                const float width = 1 / std::sqrt(1 + exponent);
+                const Vec3 near = mirrored + width * test::random_direction(rng);
+                photons.set(i, photons.energy(i), encode_direction(near.normalized()),
+                            photons.weight(i));
+            }
+            const SpectrumSum truth = oracle(point, photons, true, count / 2);
+            const auto expect_near = [&](const SpectrumSum& found, const std::string& what) {
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(found[c], truth[c], tolerance * truth[c])
+                        << what << " " << exponent << " " << count;
+            };
+            for (const Isa isa : supported_isas())
+                expect_near(Shading(isa).reflected(point, photons.photons(true, count / 2)),
+                            name(isa));
+            BrdfLobeTable table;
+            expect_near(
+                Shading(Isa::plain).reflected(point, photons.photons(true, count / 2), table),
+                "table");
+        }
+    }
+}
+
+TEST(Shading, RaisesCosinesToPowers) {
+    for (const float exponent : {0.0F, 0.3F, 1.0F, 30.0F, 1000.0F, 1e6F})
+        for (float t = 1e-9F; t < 1.2F; t = t * 1.37F + 1e-9F) {
+            const double truth =
+                t < 1
+                    ? std::exp(static_cast<double>(exponent) * std::log1p(-static_cast<double>(t)))
+                    : 0;
+            EXPECT_NEAR(static_cast<double>(cosine_power<PlainSimd>(t, exponent)), truth,
+                        3e-5 * truth + 1e-37)
+                << exponent << " " << t;
+        }
+    EXPECT_EQ(cosine_power<PlainSimd>(0, 1e6F), 1);
 }
 
 TEST(Shading, IsTheFormulaWhereTheLobeIsSharpest) {
@@ -118,7 +192,7 @@ TEST(Shading, CountsThePhotonsThatEvaluateCountsForEveryDirectionCode) {
 TEST(Shading, IsBlackFromBelow) {
     Rng rng(35, Stage::test, 0);
     const PhotonArrays photons = test::random_photons(100, 36);
-    for (const Bsdf& bsdf : {lambert(), schlick(0.1F)}) {
+    for (const Bsdf& bsdf : {lambert(), schlick(0.1F), phong(30)}) {
         ReceiverPoint point = test::random_point(rng, bsdf);
         point.wo = -point.wo;
         BrdfLobeTable table;

@@ -171,6 +171,8 @@ KEYS = [
         both("libm", "ours", "shading/"), by_isa(6, 3), 10),
     Key("tables_vs_libm", "the parameter `tables`; scalar code with sinf and cosf", "shading",
         both("libm", "ours_tables", "shading/")),
+    Key("phong_vs_tables", "the same for Phong, exponent 30; scalar code with tables and powf", "shading",
+        both("tables", "ours", "shading_phong/"), 3),
     Key("tracing_vs_raw_embree", "the same rays through nothing but Embree, over photon tracing", "tracing",
         tracing_parts(), marks=tracing_marks()),
     Key("tracing_two_threads", "speed-up by a second thread, as a share of the raw rays' own", "tracing",
