@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
+#include <OpenImageIO/imageio.h>
 
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "core/scene_file/scene_reader.h"
 #include "tests/support/temporary_folder.h"
@@ -29,20 +33,31 @@ TEST_F(MeshShapes, TwoResolutionsAreThoseAlongXAndY) {
     EXPECT_EQ(water.mesh.triangles.size(), 10U);
 }
 
-// Three by two heights of 16 bits, the upper row first.
+/// Three by two pixels of one channel, the upper row first.
+void write_picture(const std::filesystem::path& file, OIIO::TypeDesc type) {
+    constexpr std::array<float, 6> values{1, 0, 0, 0, 32768 / 65535.0F, 0.2F};
+    const auto out = OIIO::ImageOutput::create(file.string());
+    ASSERT_TRUE(out && out->open(file.string(), OIIO::ImageSpec(3, 2, 1, type)));
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, values.data()) && out->close());
+}
+
 TEST_F(MeshShapes, HeightsOfAPictureStandOnItsPixels) {
-    const char bytes[] = "P5 3 2 65535\n\xFF\xFF\x00\x00\x00\x00\x00\x00\x80\x00\x33\x33";
-    std::ofstream(folder_ / "heights.pgm", std::ios::binary).write(bytes, sizeof bytes - 1);
-    const Shape relief = read(
-        R"("type": "heightfield", "filename": "heights.pgm", "height": 2, "half_size": [3, 1])");
+    write_picture(folder_ / "heights.pgm", OIIO::TypeDesc::UINT16);
+    write_picture(folder_ / "heights.png", OIIO::TypeDesc::UINT16);
+    write_picture(folder_ / "heights.exr", OIIO::TypeDesc::FLOAT);
     const std::vector<Vec3> expected = {{-3, -1, 0},   {0, -1, 2 * 32768 / 65535.0F},
                                         {3, -1, 0.4F}, {-3, 1, 2},
                                         {0, 1, 0},     {3, 1, 0}};
-    ASSERT_EQ(relief.mesh.positions.size(), expected.size());
-    // Values of this format are read to one in 65536.
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_LT((relief.mesh.positions[i] - expected[i]).norm(), 1e-4F) << i;
-    EXPECT_EQ(relief.mesh.triangles.size(), 4U);
+    for (const std::string format : {"pgm", "png", "exr"}) {
+        const Shape relief = read(
+            R"("type": "heightfield", "height": 2, "half_size": [3, 1], "filename": "heights.)" +
+            format + '"');
+        ASSERT_EQ(relief.mesh.positions.size(), expected.size());
+        // Of 16 bits one in 65536 is read.
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            EXPECT_LT((relief.mesh.positions[i] - expected[i]).norm(), 1e-4F) << format << i;
+        EXPECT_EQ(relief.mesh.triangles.size(), 4U);
+    }
 }
 
 TEST_F(MeshShapes, TakeTheKeysOfOtherMeshes) {
