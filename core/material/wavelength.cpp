@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace caustics {
 namespace {
@@ -29,6 +30,7 @@ SpectrumSum unscaled_density(double nm) {
 class SpectralTable {
 public:
     static constexpr std::size_t cells = 1400;
+    static constexpr std::size_t guides = 4096;
     static constexpr double width = (longest_wavelength - shortest_wavelength) / cells;
 
     SpectralTable() {
@@ -42,6 +44,10 @@ public:
             weight_[i] = density / density.mean();
         }
         power_.back() = 1;
+        for (std::size_t i = 0, cell = 0; i < guides; ++i) {
+            while (power_[cell + 1] * guides <= static_cast<double>(i)) ++cell;
+            guide_[i] = static_cast<std::uint16_t>(cell);
+        }
     }
 
     static double edge(std::size_t i) {
@@ -51,8 +57,8 @@ public:
 
     // The wavelength below which lies this share of the power.
     double wavelength_at(double power) const {
-        const auto above = std::upper_bound(power_.begin() + 1, power_.end() - 1, power);
-        const auto cell = static_cast<std::size_t>(above - power_.begin()) - 1;
+        std::size_t cell = guide_[std::min(static_cast<std::size_t>(power * guides), guides - 1)];
+        while (cell + 1 < cells && power_[cell + 1] <= power) ++cell;
         const double share = (power - power_[cell]) / (power_[cell + 1] - power_[cell]);
         return edge(cell) + width * share;
     }
@@ -87,6 +93,7 @@ private:
 
     std::array<SpectrumSum, cells + 1> cumulative_;
     std::array<double, cells + 1> power_;
+    std::array<std::uint16_t, guides> guide_;  ///< by steps of power: a cell to search from
     std::array<SpectrumSum, cells + 1> weight_;
     SpectrumSum scale_;
 };

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -11,6 +12,7 @@
 #include "core/render/eye_path.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
+#include "tests/support/flat_pool.h"
 #include "tests/support/fresnel.h"
 #include "tests/support/statistics.h"
 
@@ -155,6 +157,132 @@ TEST(Dispersion, ThePhotonMapHasThemWithinItsBlur) {
                     << at(points[i]) << " " << c;
         }
     }
+}
+
+// What the channels are of a value of the index of refraction.
+template <typename OfIndex>
+SpectrumSum over_wavelengths(const OfIndex& of_index) {
+    constexpr int steps = 700;
+    constexpr double width = (longest_wavelength - shortest_wavelength) / steps;
+    SpectrumSum sum = SpectrumSum::Zero();
+    for (int i = 0; i < steps; ++i) {
+        const double nm = shortest_wavelength + width * (i + 0.5);
+        sum += channel_density(nm) * (width * of_index(heavy.at(static_cast<float>(nm))));
+    }
+    return sum;
+}
+
+// The floor at distances from the axis by beams and by light tracing, over the closed form.
+template <typename OfRadius>
+void expect_on_rings(const Scene& scene, double floor, const std::vector<double>& radii,
+                     const OfRadius& of_radius, const BeamTreeParams& beams, double slack) {
+    const auto tree = build(scene, beams, RunOptions{});
+    const auto light =
+        build(scene, LightTraceParams{.paths = 1'000'000, .max_bounces = beams.max_bounces},
+              RunOptions{});
+    for (const double r : radii) {
+        const SpectrumSum exact = over_wavelengths([&](double n) { return of_radius(r, n); });
+        const auto point = [&](double turn, float disc) {
+            return support::probe(scene, 0, {r * std::cos(turn), r * std::sin(turn), floor},
+                                  Vec3d::UnitZ(), 0, disc);
+        };
+        const Spectrum found = support::irradiance(*tree, {point(0.3, 0)})[0].value;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(static_cast<double>(found[c]) / exact[c], 1, slack) << r << " " << c;
+        // Discs side by side round the axis, which see different paths.
+        constexpr int discs = 24;
+        std::vector<ReceiverPoint> round;
+        for (int i = 0; i < discs; ++i)
+            round.push_back(point(2 * pi_d * i / discs, static_cast<float>(0.1 * r)));
+        std::array<support::Moments, 3> means;
+        for (const Estimate& e : support::irradiance(*light, round))
+            for (std::size_t c = 0; c < 3; ++c)
+                means[c].add(static_cast<double>(e.value[static_cast<Eigen::Index>(c)]));
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double truth = exact[static_cast<Eigen::Index>(c)];
+            EXPECT_NEAR(
+                means[c].mean(), truth,
+                support::sidak_bound(3 * radii.size()) * means[c].standard_error() + 0.01 * truth)
+                << r << " " << c;
+        }
+    }
+}
+
+TEST(Dispersion, StillWaterIsTheClosedFormOverItsWavelengths) {
+    namespace pool = support::flat_pool;
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", -pool::depth, 12, true, support::diffuse(0.5F)),
+                   support::horizontal("water", 0, 6, true, glass_of(heavy))};
+    desc.point_lights = {
+        support::point_light({0, 0, pool::height}, static_cast<float>(pool::intensity))};
+    BeamTreeParams beams;
+    beams.mesh_resolution = 32;
+    beams.intensity = Intensity::refined;
+    expect_on_rings(
+        Scene(std::move(desc)), -pool::depth, {0.5, 1.0, 2.0},
+        [](double r, double n) { return pool::floor_irradiance(r, pool::height, n); }, beams, 1e-3);
+}
+
+/// A ray in the plane of the axis (r, z), and the share of light that is left.
+struct MeridianRay {
+    Vec2d origin, direction;
+    double left = 1;
+
+    // At a surface's normal, on the ray's side.
+    void refract(const Vec2d& normal, double n) {
+        const double cos_i = -direction.dot(normal);
+        const double cos_t = support::refracted_cosine(cos_i, n);
+        left *= 1 - support::fresnel(cos_i, n);
+        direction = direction / n + (cos_i / n - cos_t) * normal;
+    }
+};
+
+constexpr double lamp_height = 3, ball_height = 0.7, ball_radius = 0.5;
+
+// Where light that leaves the lamp at an angle from the axis comes to the floor through the ball.
+MeridianRay through_ball(double angle, double n) {
+    const Vec2d centre(0, ball_height);
+    MeridianRay ray{{0, lamp_height}, {std::sin(angle), -std::cos(angle)}};
+    const Vec2d from = ray.origin - centre;
+    const double along = from.dot(ray.direction);
+    ray.origin -=
+        (along + std::sqrt(along * along - from.squaredNorm() + ball_radius * ball_radius)) *
+        ray.direction;
+    ray.refract((ray.origin - centre) / ball_radius, n);
+    ray.origin -= 2 * (ray.origin - centre).dot(ray.direction) * ray.direction;
+    ray.refract((centre - ray.origin) / ball_radius, 1 / n);
+    ray.origin -= ray.origin.y() / ray.direction.y() * ray.direction;
+    return ray;
+}
+
+// Beyond the focus, where light comes from the other side of the axis, and from one angle alone.
+double below_ball(double r, double n) {
+    double low = 0.1;
+    double high = 0.21;
+    for (int i = 0; i < 100; ++i) {
+        const double angle = (low + high) / 2;
+        (-through_ball(angle, n).origin.x() < r ? low : high) = angle;
+    }
+    constexpr double step = 1e-5;
+    const double slope =
+        (through_ball(low + step, n).origin.x() - through_ball(low - step, n).origin.x()) /
+        (2 * step);
+    return power * std::sin(low) * through_ball(low, n).left / (r * std::abs(slope));
+}
+
+TEST(Dispersion, ABallLensIsTheClosedFormOverItsWavelengths) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)),
+                   support::sphere("ball", {0, 0, ball_height}, ball_radius, glass_of(heavy))};
+    desc.point_lights = {support::point_light({0, 0, lamp_height}, static_cast<float>(power))};
+    BeamTreeParams beams;
+    beams.mesh_resolution = 96;
+    beams.max_bounces = 2;
+    beams.intensity = Intensity::refined;
+    expect_on_rings(Scene(std::move(desc)), 0, {0.06, 0.1, 0.15}, below_ball, beams, 5e-3);
+    // The fringes are there: blue light has gone through a stronger lens.
+    const SpectrumSum edge = over_wavelengths([](double n) { return below_ball(0.06, n); });
+    EXPECT_GT(edge.maxCoeff() / edge.minCoeff(), 1.1);
 }
 
 // Light from everywhere above, where each is asked in its own way.

@@ -17,22 +17,22 @@ inline constexpr double depth = 1;
 inline constexpr double index = 1.333;
 inline constexpr double intensity = 10;
 
-inline double landing_radius(double a, double light = height) {
-    return light * std::tan(a) + depth * std::tan(std::asin(std::sin(a) / index));
+inline double landing_radius(double a, double light = height, double n = index) {
+    return light * std::tan(a) + depth * std::tan(std::asin(std::sin(a) / n));
 }
 
-inline double floor_irradiance(double r, double light = height) {
-    if (r == 0) return intensity * 4 * index / std::pow((index + 1) * (light + depth / index), 2);
+inline double floor_irradiance(double r, double light = height, double n = index) {
+    if (r == 0) return intensity * 4 * n / std::pow((n + 1) * (light + depth / n), 2);
     double low = 0;
     double high = pi_d / 2 - 1e-9;
     for (int i = 0; i < 200; ++i) {
         const double middle = (low + high) / 2;
-        (landing_radius(middle, light) < r ? low : high) = middle;
+        (landing_radius(middle, light, n) < r ? low : high) = middle;
     }
     const double cos_a = std::cos(low);
-    const double cos_b = refracted_cosine(cos_a, index);
-    const double slope = light / (cos_a * cos_a) + depth * cos_a / (index * std::pow(cos_b, 3));
-    return intensity * (1 - fresnel(cos_a, index)) * std::sin(low) / (r * slope);
+    const double cos_b = refracted_cosine(cos_a, n);
+    const double slope = light / (cos_a * cos_a) + depth * cos_a / (n * std::pow(cos_b, 3));
+    return intensity * (1 - fresnel(cos_a, n)) * std::sin(low) / (r * slope);
 }
 
 }  // namespace caustics::support::flat_pool
