@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/interrupt.h"
 #include "core/base/isa.h"
 #include "core/material/bsdf.h"
 #include "core/scene/scene.h"
@@ -76,7 +77,7 @@ struct CameraLayer {
 };
 
 /// How a build and a render are run. Both callbacks may be empty and are called from any thread;
-/// `progress` gets the done share of the current phase and may throw Interrupted.
+/// `progress` gets the done share of the current phase and may throw.
 struct RunOptions {
     std::uint64_t seed = 1;
     int threads = 1;
@@ -91,6 +92,7 @@ struct RunOptions {
         if (begin_phase) begin_phase(name);
     }
     void report(double share) const {
+        throw_if_interrupted();
         if (progress) progress(share);
     }
 };

@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/base/interrupt.h"
 #include "core/geometry/tessellate.h"
 
 namespace caustics {
@@ -124,6 +125,7 @@ std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, Polygo
     }
     leave_out_duplicates(casters);
     for (CasterMesh& caster : casters) {
+        throw_if_interrupted();
         if (kind == PolygonKind::quad) find_quads(caster);
         caster.closed = ClosedParts(caster.mesh, caster.left_out);
     }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "beamtree/beams/solid_angle.h"
+#include "core/base/interrupt.h"
 #include "core/geometry/vertex_normals.h"
 
 namespace caustics {
@@ -66,6 +67,7 @@ std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle, c
 
 ClosedParts::ClosedParts(const TriangleMesh& mesh, const std::vector<bool>& left_out) {
     const std::vector<Edge> edges = edges_of(mesh, left_out);
+    throw_if_interrupted();
     const std::size_t count = mesh.triangles.size();
     Pieces pieces(count);
     std::vector<bool> torn(count);  // a triangle with an edge of another kind

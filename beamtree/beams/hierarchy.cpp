@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/interrupt.h"
+
 namespace caustics {
 namespace {
 
@@ -74,6 +76,7 @@ private:
 
     // Makes a node of what the parts hold: its children are those parts that hold beams.
     void fill(std::uint32_t node, std::vector<Cells> parts) {
+        throw_if_interrupted();
         std::erase_if(parts, [&](const Cells& cells) { return !any_beam(cells); });
         if (parts.empty()) return;
         if (parts.size() == 1) {
@@ -194,6 +197,7 @@ private:
     const Key& key_of(std::uint32_t beam) const { return keys_[beam - first_beam_]; }
 
     void split(std::uint32_t node) {
+        throw_if_interrupted();
         const std::uint32_t first = tree_.nodes[node].first_beam;
         const std::uint32_t count = tree_.nodes[node].beam_count;
         if (count <= 1) return;

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "beamtree/cones/cone_merging.h"
+#include "core/base/interrupt.h"
 
 namespace caustics {
 
@@ -39,6 +40,7 @@ ConeTree::ConeTree(const BeamSet& set, std::uint32_t set_index, const Hierarchy&
     std::vector<MergedCone> merged(from_cones ? nodes_.size() : 0);
     // Children come after their parents.
     for (std::size_t i = nodes_.size(); i-- > 0;) {
+        throw_if_interrupted();
         const Hierarchy::Node& from = hierarchy.nodes[i];
         Node& node = nodes_[i];
         node.first_child = from.first_child;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/interrupt.h"
+
 namespace caustics {
 namespace {
 
@@ -62,6 +64,7 @@ private:
     }
 
     Made make(std::uint32_t node, std::uint32_t depth) {
+        throw_if_interrupted();
         made_.height = std::max(made_.height, depth);
         if (size(node) <= slice_width) return make_leaf(node);
         const std::size_t index = made_.nodes.size();

@@ -17,6 +17,8 @@
 #include <tbb/task_arena.h>
 #endif
 
+#include "core/base/interrupt.h"
+
 namespace caustics {
 
 int available_threads() {
@@ -39,7 +41,10 @@ void parallel_for(int threads, std::size_t count,
     std::mutex first_mutex;
     const auto work = [&](std::size_t worker) {
         try {
-            for (std::size_t i = next++; i < count; i = next++) body(i, worker);
+            for (std::size_t i = next++; i < count; i = next++) {
+                throw_if_interrupted();
+                body(i, worker);
+            }
         } catch (...) {
             next = count;
             const std::lock_guard lock(first_mutex);
@@ -66,7 +71,10 @@ void parallel_for(int threads, std::size_t count,
             [&](const tbb::blocked_range<std::size_t>& range) {
                 const auto worker =
                     static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
-                for (std::size_t i = range.begin(); i != range.end(); ++i) body(i, worker);
+                for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                    throw_if_interrupted();
+                    body(i, worker);
+                }
             },
             tbb::simple_partitioner());
     });

@@ -10,7 +10,7 @@ inline constexpr int most_threads = 4096;
 
 /// Runs body(index, worker) for every index below `count` on up to `threads` threads; `worker` is
 /// below `threads` and no two bodies run with the same one at a time. The first exception is
-/// rethrown after all have stopped. oneTBB, or std::thread where built with CAUSTICS_STD_THREADS
+/// rethrown after all have stopped; it may be Interrupted. oneTBB, or std::thread where built with CAUSTICS_STD_THREADS
 /// (ThreadSanitizer cannot see into the distribution's TBB).
 void parallel_for(int threads, std::size_t count,
                   const std::function<void(std::size_t index, std::size_t worker)>& body);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "core/math/rng.h"
 
 namespace caustics {
@@ -29,6 +30,7 @@ void reverse_bits(Complex* values, std::size_t count) {
 // In place, values[j] = sum of values[m] exp(2 pi i m j / count); turns[m] = exp(2 pi i m / count).
 // Radix 2 [Cooley and Tukey 1965].
 void sum_waves(Complex* values, const std::vector<Complex>& turns) {
+    throw_if_interrupted();
     const std::size_t count = turns.size();
     reverse_bits(values, count);
     for (std::size_t half = 1; half < count; half *= 2)
@@ -77,11 +79,13 @@ private:
 template <class Factor>
 void synthesize(Waves& waves, const FractalField& field, const Factor& factor) {
     const int half = 1 << (field.levels - 1);
-    for (int n = -half; n < half; ++n)
+    for (int n = -half; n < half; ++n) {
+        throw_if_interrupted();
         for (int m = -half; m < half; ++m) {
             const bool resolved = m > -half && n > -half;
             waves.at(m, n) = resolved ? factor(m, n) * fractal_amplitude(field, m, n) : 0;
         }
+    }
     waves.sum();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/interrupt.h"
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/light_path/light_path.h"
@@ -28,6 +29,7 @@ struct OrderedPaths {
         const std::uint64_t end = std::min((index + 1) * chunk, paths);
         std::vector<Deposit> deposits;
         for (std::uint64_t path = index * chunk; path < end; ++path) {
+            throw_if_interrupted();
             Rng rng(seed, stage, path);
             ++counts.emitted;
             const std::optional<LightParticle> particle = emission.emit(rng);

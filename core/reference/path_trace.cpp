@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "core/material/optics.h"
 #include "core/math/rng.h"
 #include "core/reference/direction_mixture.h"
@@ -104,6 +105,7 @@ private:
         SpectrumSum sum = SpectrumSum::Zero();
         SpectrumSum squares = SpectrumSum::Zero();
         for (int path = 0; path < paths_per_point_; ++path) {
+            throw_if_interrupted();
             const SpectrumSum value = sample(receiver, mixture, with_bsdf, rng).cast<double>();
             sum += value;
             squares += value * value;

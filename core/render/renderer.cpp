@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "core/base/parallel.h"
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
@@ -238,6 +239,7 @@ private:
         const int width = tile.x1 - tile.x0;
         for (const std::size_t pixel : worker.pixels)
             for (int i = first; i < first + count; ++i) {
+                throw_if_interrupted();
                 const int x = tile.x0 + static_cast<int>(pixel) % width;
                 const int y = tile.y0 + static_cast<int>(pixel) / width;
                 worker.values.push_back(trace_sample(x, y, i, pixel, sums[pixel], worker));

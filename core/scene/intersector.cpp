@@ -20,6 +20,7 @@
 #include <string>
 #include <variant>
 
+#include "core/base/interrupt.h"
 #include "core/base/parallel.h"
 #include "core/geometry/exact_shape.h"
 #include "core/geometry/surface_offset.h"
@@ -27,7 +28,9 @@
 namespace caustics {
 namespace {
 
+// An interrupted commit is told by throw_if_interrupted() after it.
 void throw_embree_error(void*, RTCError code, const char* text) {
+    if (code == RTC_ERROR_CANCELLED) return;
     throw std::runtime_error("Embree: " + std::string(text) + " (error " +
                              std::to_string(static_cast<int>(code)) + ")");
 }
@@ -267,18 +270,16 @@ void fill_exact_point(const ExactGeometry& exact, const Vec3d& local, SurfacePoi
 struct Intersector::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<std::variant<Mesh, ExactGeometry>> geometries;  ///< of the shapes; never move
+    std::vector<std::variant<Mesh, ExactGeometry>> geometries;  ///< of the shapes
 
-    explicit Embree(const std::vector<Shape>& shapes) {
-        geometries.reserve(shapes.size());
+    explicit Embree(std::size_t shapes) {
+        geometries.reserve(shapes);  // so that none moves
         device = rtcNewDevice(nullptr);
         if (device == nullptr) throw std::runtime_error("Embree: no device");
         rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
         scene = rtcNewScene(device);
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-        for (std::size_t i = 0; i < shapes.size(); ++i) attach(shapes[i], i);
-        run_single_threaded([this] { rtcCommitScene(scene); });
     }
     ~Embree() {
         if (scene != nullptr) rtcReleaseScene(scene);
@@ -286,6 +287,14 @@ struct Intersector::Embree {
     }
     Embree(const Embree&) = delete;
     Embree& operator=(const Embree&) = delete;
+
+    void build(const std::vector<Shape>& shapes) {
+        for (std::size_t i = 0; i < shapes.size(); ++i) attach(shapes[i], i);
+        rtcSetSceneProgressMonitorFunction(
+            scene, [](void*, double) { return !interrupt_requested(); }, nullptr);
+        run_single_threaded([this] { rtcCommitScene(scene); });
+        throw_if_interrupted();
+    }
 
     void attach(const Shape& shape, std::size_t index) {
         RTCGeometry geometry = nullptr;
@@ -304,7 +313,9 @@ struct Intersector::Embree {
 };
 
 Intersector::Intersector(const std::vector<Shape>& shapes)
-    : embree_(std::make_unique<Embree>(shapes)) {}
+    : embree_(std::make_unique<Embree>(shapes.size())) {
+    embree_->build(shapes);
+}
 
 Intersector::~Intersector() = default;
 

@@ -21,8 +21,8 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "experiments/base/file_io.h"
-#include "experiments/base/interrupt.h"
 
 namespace caustics {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "experiments/base/interrupt.h"
+#include "core/base/interrupt.h"
 
 namespace caustics {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "experiments/base/interrupt.h"
+#include "core/base/interrupt.h"
 
 namespace caustics {
 

@@ -8,7 +8,6 @@
 #include "core/light_path/aimed_emission.h"
 #include "core/scene/transport_hash.h"
 #include "experiments/base/file_io.h"
-#include "experiments/base/interrupt.h"
 #include "experiments/base/number_option.h"
 #include "experiments/cli/map_info.h"
 #include "experiments/cli/shape_lines.h"
@@ -107,7 +106,6 @@ RunOptions drawing_options(const Scene& scene) {
     run.threads = available_threads();
     run.samples_per_pixel = scene.sampling().sample_count;
     run.adaptive = false;
-    run.progress = [](double) { throw_if_interrupted(); };
     return run;
 }
 

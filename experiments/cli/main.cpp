@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
-#include "experiments/base/interrupt.h"
+#include "experiments/base/signals.h"
 #include "experiments/cli/verbs.h"
 
 namespace caustics {

@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/interrupt.h"
 #include "experiments/base/child_process.h"
-#include "experiments/base/interrupt.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/picture/previews.h"
 #include "experiments/plan/sweep_plan.h"

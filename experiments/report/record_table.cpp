@@ -6,9 +6,9 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/hash.h"
+#include "core/base/interrupt.h"
 #include "experiments/base/csv.h"
 #include "experiments/base/file_io.h"
-#include "experiments/base/interrupt.h"
 #include "experiments/plan/record.h"
 #include "experiments/report/cell_variance.h"
 #include "experiments/report/table_index.h"

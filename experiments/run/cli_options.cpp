@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "experiments/base/file_io.h"
-#include "experiments/base/interrupt.h"
 #include "experiments/base/number_option.h"
 
 namespace caustics {
@@ -72,7 +71,6 @@ RunOptions RunFlags::options(int samples_per_pixel) const {
     options.threads = machine.threads > 0 ? machine.threads : available_threads();
     options.isa = machine.isa;
     options.samples_per_pixel = samples_per_pixel;
-    options.progress = [](double) { throw_if_interrupted(); };
     return options;
 }
 

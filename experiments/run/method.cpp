@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
-#include "experiments/base/interrupt.h"
 #include "experiments/run/methods.h"
 
 namespace caustics {
@@ -80,7 +79,6 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& 
 
 std::optional<std::string> why_unsupported(const Scene& scene, const Method& method) {
     RunOptions options;
-    options.progress = [](double) { throw_if_interrupted(); };
     try {
         method.configured->with_least_work()->build(scene, options, 0);
         return {};

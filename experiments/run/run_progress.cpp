@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/base/interrupt.h"
 #include "experiments/base/progress.h"
 
 namespace caustics {
@@ -33,7 +32,6 @@ void RunProgress::begin(std::string_view phase) {
 }
 
 void RunProgress::share(double done) {
-    throw_if_interrupted();
     if (!line_.is_due()) return;
     const std::unique_lock lock(showing_, std::try_to_lock);
     if (!lock.owns_lock() || !line_.is_due()) return;

@@ -9,11 +9,11 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "core/base/parallel.h"
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/folder_lock.h"
-#include "experiments/base/interrupt.h"
 #include "experiments/base/progress.h"
 #include "experiments/base/stopwatch.h"
 #include "experiments/report/record_table.h"

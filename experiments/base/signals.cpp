@@ -1,11 +1,11 @@
-#include "experiments/base/interrupt.h"
+#include "experiments/base/signals.h"
 
 #include <atomic>
 #include <csignal>
 #include <cstdint>
 #include <ctime>
 
-#include "core/base/error.h"
+#include "core/base/interrupt.h"
 
 namespace caustics {
 
@@ -25,7 +25,10 @@ std::int64_t now() {
 extern "C" void on_interrupt(int signal) {
     constexpr std::int64_t one_go = 1000;
     std::int64_t not_yet = 0;
-    if (requested_at.compare_exchange_strong(not_yet, now())) return;
+    if (requested_at.compare_exchange_strong(not_yet, now())) {
+        request_interrupt();
+        return;
+    }
     if (now() - requested_at < one_go) return;
     std::signal(signal, SIG_DFL);
     std::raise(signal);
@@ -36,12 +39,6 @@ extern "C" void on_interrupt(int signal) {
 void catch_interrupts() {
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
-}
-
-bool interrupt_requested() { return requested_at != 0; }
-
-void throw_if_interrupted() {
-    if (interrupt_requested()) throw Interrupted();
 }
 
 }  // namespace caustics
