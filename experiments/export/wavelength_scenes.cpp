@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "core/material/wavelength.h"
@@ -9,7 +10,7 @@ namespace caustics {
 
 namespace {
 
-bool is_dispersive(const Shape& shape) {
+bool has_dispersion(const Shape& shape) {
     const auto* glass = std::get_if<Dielectric>(&shape.bsdf.model);
     return glass != nullptr && glass->is_dispersive();
 }
@@ -21,7 +22,7 @@ SceneDesc in_light_of(const WavelengthBin& bin, SceneDesc scene) {
     if (scene.constant_light) scene.constant_light->radiance *= bin.weight;
     for (Shape& shape : scene.shapes) {
         if (shape.radiance) *shape.radiance *= bin.weight;
-        if (!is_dispersive(shape)) continue;
+        if (!has_dispersion(shape)) continue;
         auto& glass = std::get<Dielectric>(shape.bsdf.model);
         glass.int_ior = static_cast<float>(glass.int_ior.at(bin.nm));
         glass.ext_ior = static_cast<float>(glass.ext_ior.at(bin.nm));
@@ -33,7 +34,7 @@ SceneDesc in_light_of(const WavelengthBin& bin, SceneDesc scene) {
 
 ExportedScene to_mitsuba_by_wavelength(const SceneDesc& scene, const ExportSettings& settings,
                                        int wavelengths) {
-    if (std::ranges::none_of(scene.shapes, is_dispersive))
+    if (std::ranges::none_of(scene.shapes, has_dispersion))
         refuse_export(settings, "/", "no glass disperses light; leave out --wavelengths");
     ExportedScene all;
     std::set<std::string> written;

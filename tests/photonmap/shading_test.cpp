@@ -32,7 +32,7 @@ Bsdf phong(float exponent) {
 double phong_as_printed(double exponent, const Vec3d& n, const Vec3d& wo, const Vec3d& wi) {
     const double cosine = (2 * n.dot(wo) * n - wo).dot(wi);
     return 0.5 / pi_d +
-           0.5 * (exponent + 2) / (2 * pi_d) * std::pow(std::max(0.0, cosine), exponent);
+           0.5 * (exponent + 2) / (2 * pi_d) * (cosine > 0 ? std::pow(cosine, exponent) : 0);
 }
 
 /// f_r over grey_red.

@@ -65,7 +65,7 @@ TEST_F(Interrupt, EndsLoopsOverThreads) {
 }
 
 TEST_F(Interrupt, EndsTheBuildOfAScene) {
-    EXPECT_EXIT(interrupt([] { Scene(one_pixel()); }, false),
+    EXPECT_EXIT(interrupt([] { const Scene scene(one_pixel()); }, false),
                 testing::ExitedWithCode(was_interrupted), "");
 }
 

@@ -42,13 +42,12 @@ void write_picture(const std::filesystem::path& file, OIIO::TypeDesc type) {
 }
 
 TEST_F(MeshShapes, HeightsOfAPictureStandOnItsPixels) {
-    write_picture(folder_ / "heights.pgm", OIIO::TypeDesc::UINT16);
     write_picture(folder_ / "heights.png", OIIO::TypeDesc::UINT16);
     write_picture(folder_ / "heights.exr", OIIO::TypeDesc::FLOAT);
     const std::vector<Vec3> expected = {{-3, -1, 0},   {0, -1, 2 * 32768 / 65535.0F},
                                         {3, -1, 0.4F}, {-3, 1, 2},
                                         {0, 1, 0},     {3, 1, 0}};
-    for (const std::string format : {"pgm", "png", "exr"}) {
+    for (const std::string format : {"png", "exr"}) {
         const Shape relief = read(
             R"("type": "heightfield", "height": 2, "half_size": [3, 1], "filename": "heights.)" +
             format + '"');
