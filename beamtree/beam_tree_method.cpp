@@ -53,7 +53,14 @@ std::vector<Parameter<P>> tree_parameters() {
                                       {.key = "footprint",
                                        .meaning = "With two_slice: side of the square round a "
                                                   "point that irradiance is averaged over."})
-            .usually("none")};
+            .usually("none"),
+        parameter::choice<P>(
+            &P::dispersion, {{"bins", Dispersion::bins}, {"intervals", Dispersion::intervals}},
+            {.key = "dispersion",
+             .meaning = "All light of a part of the wavelengths goes one way, or a point asks for "
+                        "which of them a caustic polygon holds it.",
+             .source = "[C11]"})
+            .only_if([](const P& p) { return p.dispersion != Dispersion::bins; })};
 }
 
 void settle_bound(const JsonNode& node, const P& params) {
@@ -65,6 +72,8 @@ void settle_bound(const JsonNode& node, const P& params) {
     if (const auto footprint = node.find("footprint"))
         if (params.bound != Bound::two_slice)
             footprint->fail("only the bound \"two_slice\" averages over squares of its planes");
+    if (params.dispersion == Dispersion::intervals && params.footprint > 0)
+        node.at("dispersion").fail("intervals are of points, not of squares (leave out footprint)");
 }
 
 // What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, and do

@@ -65,6 +65,9 @@ struct BeamSet {
     std::vector<Beam> beams;                         ///< in the order of the mesh's triangles
     /// One a ray where the intensity is `refined`, else none.
     std::vector<RaySpread> spreads;
+    /// One a ray where the light drifts (LightSample::drifts), else none: half of what the ray at the longest
+    /// wavelength of the bin differs by from that at the shortest.
+    std::vector<VertexRay> drifts;
     /// One a beam with `spreads`: the other beam of its pair of triangles, or Beam::none.
     std::vector<std::uint32_t> partners;
 
@@ -73,8 +76,21 @@ struct BeamSet {
         return {&rays[beam.corners[0]], &rays[beam.corners[1 + which]],
                 &rays[beam.corners[2 + which]]};
     }
+    /// A ray at a place in the light's bin of wavelengths, from -1 to 1.
+    VertexRay ray(std::uint32_t number, double place) const {
+        VertexRay ray = rays[number];
+        if (drifts.empty()) return ray;
+        const auto share = static_cast<float>(place);
+        ray.position += share * drifts[number].position;
+        ray.direction = (ray.direction + share * drifts[number].direction).normalized();
+        return ray;
+    }
+    std::array<VertexRay, 3> triangle(const Beam& beam, std::size_t which, double place) const {
+        return {ray(beam.corners[0], place), ray(beam.corners[1 + which], place),
+                ray(beam.corners[2 + which], place)};
+    }
     std::uint64_t bytes() const {
-        return rays.size() * sizeof(VertexRay) + beams.size() * sizeof(Beam) +
+        return (rays.size() + drifts.size()) * sizeof(VertexRay) + beams.size() * sizeof(Beam) +
                spreads.size() * sizeof(RaySpread) + partners.size() * sizeof(std::uint32_t);
     }
 };

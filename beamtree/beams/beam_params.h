@@ -1,6 +1,7 @@
 #pragma once
 
 #include "beamtree/beams/caster_mesh.h"
+#include "beamtree/beams/light_sample.h"
 
 namespace caustics {
 
@@ -11,6 +12,7 @@ struct BeamParams {
     int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
     int max_bounces = 16;      ///< specular events between light and receiver
     int wavelengths = 16;      ///< that white light is divided into where glass disperses it
+    Dispersion dispersion = Dispersion::bins;
 };
 
 }  // namespace caustics

@@ -9,6 +9,12 @@
 
 namespace caustics {
 
+/// How beams tell wavelengths apart.
+enum class Dispersion {
+    bins,      ///< all light of a bin goes the way of its mean wavelength
+    intervals  ///< a point asks for which wavelengths of the bin a caustic polygon holds it
+};
+
 /// What a set of beams starts from: a point light, a direction, or one point of an area light.
 struct LightSample {
     enum class Kind { point, directional, area };
@@ -23,6 +29,7 @@ struct LightSample {
     std::optional<SpotCone> spot;  ///< of a point light that is one
     std::uint32_t light = 0;       ///< index into Scene::lights
     WavelengthBin bin = {};  ///< its part of all wavelengths where glass disperses it; nm 0: all
+    bool drifts = false;     ///< its beams tell each wavelength of the bin apart (BeamSet::drifts)
 };
 
 /// For all lights but constant ones: one sample a point or directional light, `per_area_light` samples an
@@ -31,11 +38,13 @@ struct LightSample {
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
 /// The same light in parts: each sample once a bin of wavelengths (WavelengthBin), with its share of the
 /// strength.
-std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths);
+std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths,
+                                   Dispersion dispersion = Dispersion::bins);
 
-/// What the sample's light counts for a viewer behind glass that has chosen the wavelength nm, for which
-/// light of all others is black; 1 where one of the two has all wavelengths.
-Spectrum share_of_wavelength(const LightSample& light, float nm);
+/// What the sample's light between two places in its bin (WavelengthBin::wavelength_at; all of it where it
+/// does not drift) counts for a viewer, behind glass that has chosen the wavelength nm, for which light of
+/// all others is black, or of all wavelengths (0).
+Spectrum share_of_wavelengths(const LightSample& light, double from, double to, float nm);
 
 /// Unit direction from a point to the light.
 Vec3 to_light(const LightSample& light, const Vec3& point);

@@ -10,21 +10,31 @@ namespace caustics {
 
 NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
     NodeRays rays;
-    std::unordered_map<std::uint32_t, std::uint32_t> number;
-    const auto add = [&](std::uint32_t ray) {
-        const auto next = static_cast<std::uint32_t>(rays.positions.size());
-        const auto [at, is_new] = number.try_emplace(ray, next);
-        if (is_new) {
-            rays.positions.emplace_back(set.rays[ray].position.cast<double>());
-            rays.directions.emplace_back(set.rays[ray].direction.cast<double>());
+    const auto add_beams = [&](double place) {
+        std::unordered_map<std::uint32_t, std::uint32_t> number;
+        const auto add = [&](std::uint32_t corner) {
+            const auto next = static_cast<std::uint32_t>(rays.positions.size());
+            const auto [at, is_new] = number.try_emplace(corner, next);
+            if (is_new) {
+                const VertexRay ray = set.ray(corner, place);
+                rays.positions.emplace_back(ray.position.cast<double>());
+                rays.directions.emplace_back(ray.direction.cast<double>());
+            }
+            return at->second;
+        };
+        for (const std::uint32_t index : beams) {
+            const Beam& beam = set.beams[index];
+            for (std::size_t i = 0; i < beam.triangle_count(); ++i)
+                rays.triangles.push_back(
+                    {add(beam.corners[0]), add(beam.corners[1 + i]), add(beam.corners[2 + i])});
         }
-        return at->second;
     };
-    for (const std::uint32_t index : beams) {
-        const Beam& beam = set.beams[index];
-        for (std::size_t i = 0; i < beam.triangle_count(); ++i)
-            rays.triangles.push_back(
-                {add(beam.corners[0]), add(beam.corners[1 + i]), add(beam.corners[2 + i])});
+    if (set.drifts.empty()) {
+        add_beams(0);
+    } else {
+        // What moves from one end to the other stays between the two.
+        add_beams(-1);
+        add_beams(1);
     }
     return rays;
 }
@@ -117,7 +127,7 @@ bool ConeTree::may_hold(const Node& node, const BeamSet& set, const TestPlane& p
 
 bool ConeTree::single_holds(const Node& node, const BeamSet& set, const Vec3d& p) const {
     const SingleCone& cone = singles_[node.bound];
-    if (node.child_count > 0) return cone.holds(p);
+    if (node.child_count > 0 || !set.drifts.empty()) return cone.holds(p);
     const Beam& beam = set.beams[node.beam];
     std::array<Vec3d, 4> corners;
     const std::size_t count = 2 + beam.triangle_count();

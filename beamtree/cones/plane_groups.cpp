@@ -16,10 +16,16 @@ Vec3 axis_of(std::size_t i) {
     return (i % 2 == 0 ? 1.0F : -1.0F) * Vec3::Unit(static_cast<Eigen::Index>(i / 2));
 }
 
+// Of a ray at all wavelengths of its set.
+float least_along(const BeamSet& set, std::uint32_t ray, const Vec3& axis) {
+    if (set.drifts.empty()) return set.rays[ray].direction.dot(axis);
+    return std::min(set.ray(ray, -1).direction.dot(axis), set.ray(ray, 1).direction.dot(axis));
+}
+
 float least_along(const BeamSet& set, const Beam& beam, const Vec3& axis) {
     float least = 1;
     for (const std::uint32_t corner : beam.corners)
-        if (corner != Beam::none) least = std::min(least, set.rays[corner].direction.dot(axis));
+        if (corner != Beam::none) least = std::min(least, least_along(set, corner, axis));
     return least;
 }
 
@@ -48,16 +54,18 @@ std::vector<PlaneGroup> receiver_planes(const BeamSet& set) {
 std::vector<PlaneGroup> fixed_planes(const BeamSet& set) {
     // Most receivers lie across an axis: then both leaf tests are on the same plane.
     for (std::size_t i = 0; i < 6; ++i) {
-        const bool fits = std::ranges::all_of(set.rays, [&](const VertexRay& ray) {
-            return ray.direction.dot(axis_of(i)) >= good_sine;
-        });
+        bool fits = true;
+        for (std::uint32_t ray = 0; ray < set.rays.size() && fits; ++ray)
+            fits = least_along(set, ray, axis_of(i)) >= good_sine;
         if (!fits) continue;
         std::vector<PlaneGroup> one = receiver_planes(set);
         one[0].normal = -axis_of(i);
         return one;
     }
     std::vector<Vec3d> directions;
-    for (const VertexRay& ray : set.rays) directions.emplace_back(ray.direction.cast<double>());
+    for (std::uint32_t ray = 0; ray < set.rays.size(); ++ray)
+        for (const double place : {-1.0, 1.0})
+            directions.emplace_back(set.ray(ray, place).direction.cast<double>());
     const Cap cap = smallest_cap(directions);
     if (cap.cosine > static_cast<double>(least_sine) + 1e-6) {
         std::vector<PlaneGroup> one = receiver_planes(set);

@@ -32,18 +32,18 @@ bool is_bent_once_by_exact_shape(const Scene& scene, const BeamSet& set) {
 
 ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     const Beam& beam = set.beams[hit.beam];
-    const auto rays = set.triangle(beam, hit.triangle);
+    const auto rays = set.triangle(beam, hit.triangle, hit.place());
     ArrivingRay ray;
     ray.start.position = Vec3::Zero();
     ray.direction = Vec3::Zero();
     for (std::size_t i = 0; i < 3; ++i) {
         const float weight = hit.weights[static_cast<Eigen::Index>(i)];
-        ray.start.position += weight * rays[i]->position;
-        ray.direction += weight * rays[i]->direction;
+        ray.start.position += weight * rays[i].position;
+        ray.direction += weight * rays[i].direction;
     }
     ray.direction.normalize();
     ray.start.geometric_normal =
-        triangle_normal(rays[0]->position, rays[1]->position, rays[2]->position);
+        triangle_normal(rays[0].position, rays[1].position, rays[2].position);
     // Light after several events may be bent all at one place.
     if (ray.start.geometric_normal.isZero(0)) ray.start.geometric_normal = ray.direction;
     ray.start.offset = beam.offset;
@@ -55,7 +55,8 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
 BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
     : scene_(scene), sets_(sets), searches_(sets.size()) {
     for (std::size_t i = 0; i < sets.size(); ++i)
-        if (!sets[i].spreads.empty() && is_bent_once_by_exact_shape(scene, sets[i]))
+        if (!sets[i].spreads.empty() && sets[i].drifts.empty() &&
+            is_bent_once_by_exact_shape(scene, sets[i]))
             searches_[i].emplace(scene, sets[i]);
 }
 
@@ -71,15 +72,15 @@ template <typename Weight>
 Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                         const Weight& weight) const {
     std::sort(hits.begin(), hits.end(), [](const BeamHit& a, const BeamHit& b) {
-        return std::tie(a.set, a.beam, a.triangle) < std::tie(b.set, b.beam, b.triangle);
+        return std::tie(a.set, a.beam, a.triangle, a.from) <
+               std::tie(b.set, b.beam, b.triangle, b.from);
     });
     const SegmentEnd receiver{point.position, point.geometric_normal, point.offset};
     const double least_area = resolvable_area(point.position);
     SpectrumSum sum = SpectrumSum::Zero();
     for (const BeamHit& hit : hits) {
         const BeamSet& set = sets_[hit.set];
-        Spectrum share = Spectrum::Ones();
-        if (point.nm != 0) share = share_of_wavelength(set.light, point.nm);
+        const Spectrum share = share_of_wavelengths(set.light, hit.from, hit.to, point.nm);
         if (is_black(share)) continue;
         const Beam& beam = set.beams[hit.beam];
         ArrivingRay ray = arriving_ray(set, hit);

@@ -7,6 +7,8 @@
 #include <optional>
 #include <tuple>
 
+#include "beamtree/light/drifting_beam.h"
+
 namespace caustics {
 namespace {
 
@@ -322,8 +324,22 @@ int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
     return 1;
 }
 
+std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, std::size_t number,
+                                     const TestPlane& plane) {
+    const Tested tested = test_triangle(Corners{&corners[0], &corners[1], &corners[2]}, plane);
+    if (!tested.is_hit()) return {};
+    return hit_in(tested.found, number, plane);
+}
+
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                   std::vector<BeamHit>& hits, SearchCounts& counts) {
+    if (!set.drifts.empty()) {
+        const std::size_t before = hits.size();
+        find_in_drifting_beam(set, number, plane, hits);
+        ++counts.beam_point_tests;
+        counts.beam_point_hits += hits.size() > before ? 1 : 0;
+        return;
+    }
     std::array<BeamHit, 2> found;
     const int count = test_beam(set, set.beams[number.beam], plane, found);
     ++counts.beam_point_tests;

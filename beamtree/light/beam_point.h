@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "beamtree/beams/beam.h"
@@ -49,6 +50,11 @@ struct BeamHit {
     double area = 0;          ///< of the caustic polygon [m^2], see test_beam
     double flux_share = 1;    ///< of the beam's flux that falls on it
     double coverage = 1;      ///< of a square round the point; 1 where the point itself is asked
+    /// Of a beam that drifts: the places in its bin of wavelengths between which it holds the point.
+    double from = 0;
+    double to = 0;
+
+    double place() const { return (from + to) / 2; }
 };
 
 /// Does the point that the plane goes through lie inside the beam? Writes up to two hits (a polygon
@@ -64,6 +70,10 @@ struct BeamHit {
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits);
 
+/// One triangle of three rays at the point that the plane goes through; `number` is the triangle's.
+std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, std::size_t number,
+                                     const TestPlane& plane);
+
 /// What a search has done [CC95 sec. 3.3].
 struct SearchCounts {
     std::uint64_t cone_point_tests = 0;
@@ -71,7 +81,7 @@ struct SearchCounts {
     std::uint64_t beam_point_hits = 0;
 };
 
-/// test_beam for the beam `number` of `set`: counts the test, and appends its hits with that number.
+/// test_beam for the beam `number` of `set`, or find_in_drifting_beam where it drifts: counts the test, and appends its hits with that number.
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                   std::vector<BeamHit>& hits, SearchCounts& counts);
 

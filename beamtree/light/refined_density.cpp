@@ -41,13 +41,13 @@ std::array<Node, 7> nodes() {
 class SmoothTriangle {
 public:
     static std::optional<SmoothTriangle> on(const TestPlane& plane, const BeamSet& set,
-                                            const Beam& beam, std::size_t which) {
+                                            const Beam& beam, std::size_t which, double place) {
         SmoothTriangle found;
         const std::array<std::uint32_t, 3> rays = {beam.corners[0], beam.corners[1 + which],
                                                    beam.corners[2 + which]};
         std::array<Vec2d, 3> at;
         for (std::size_t i = 0; i < 3; ++i) {
-            const VertexRay& ray = set.rays[rays[i]];
+            const VertexRay ray = set.ray(rays[i], place);
             const double height = plane.height(ray.position);
             const double steepness = plane.steepness(ray.direction);
             if (!(height > 0 && steepness > 0) || !set.spreads[rays[i]].is_known()) return {};
@@ -108,14 +108,14 @@ Partner partner_of(const BeamSet& set, const BeamHit& hit) {
 
 std::optional<double> density_on(const TestPlane& plane, const BeamSet& set, const BeamHit& hit) {
     const Beam& beam = set.beams[hit.beam];
-    const auto own = SmoothTriangle::on(plane, set, beam, hit.triangle);
+    const auto own = SmoothTriangle::on(plane, set, beam, hit.triangle, hit.place());
     if (!own) return {};
     double flux = flux_of(beam, hit.triangle);
     double found = own->flux();
     const Partner partner = partner_of(set, hit);
     std::optional<SmoothTriangle> other;
     if (partner.beam != nullptr)
-        other = SmoothTriangle::on(plane, set, *partner.beam, partner.triangle);
+        other = SmoothTriangle::on(plane, set, *partner.beam, partner.triangle, hit.place());
     if (other) {
         flux += flux_of(*partner.beam, partner.triangle);
         found += other->flux();
@@ -127,10 +127,10 @@ std::optional<double> density_on(const TestPlane& plane, const BeamSet& set, con
 }
 
 Vec3 arriving_direction(const BeamSet& set, const BeamHit& hit) {
-    const auto rays = set.triangle(set.beams[hit.beam], hit.triangle);
+    const auto rays = set.triangle(set.beams[hit.beam], hit.triangle, hit.place());
     Vec3 direction = Vec3::Zero();
     for (std::size_t i = 0; i < 3; ++i)
-        direction += hit.weights[static_cast<Eigen::Index>(i)] * rays[i]->direction;
+        direction += hit.weights[static_cast<Eigen::Index>(i)] * rays[i].direction;
     return direction.stableNormalized();
 }
 

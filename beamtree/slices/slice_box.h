@@ -14,6 +14,11 @@ public:
         const Half at = Eigen::Map<const Half>(ray.data());
         bounds_ << bounds_.head<4>().min(at), bounds_.tail<4>().min(-at);
     }
+    /// By a ray that moves so far along either axis.
+    void extend(const RaySlices& ray, float drift) {
+        const Half at = Eigen::Map<const Half>(ray.data());
+        bounds_ << bounds_.head<4>().min(at - drift), bounds_.tail<4>().min(-at - drift);
+    }
     void extend(const SliceBox& other) { bounds_ = bounds_.min(other.bounds_); }
 
     /// Along an axis (0, 1) of the upper plane (0) or the lower one (1).

@@ -17,7 +17,7 @@ constexpr float rounding = 1e-6F;
 
 SliceBox box_of(const SlicedTriangle& triangle) {
     SliceBox box;
-    for (const RaySlices& corner : triangle.corners) box.extend(corner);
+    for (const RaySlices& corner : triangle.corners) box.extend(corner, triangle.drift);
     return box;
 }
 
@@ -145,7 +145,8 @@ private:
             made_.travel += std::hypot(leaf.growth[0][0][i], leaf.growth[0][1][i]);
             // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin; and
             // moving the point by the reach adds the reach times both extents of the edge.
-            leaf.slack[i] = margin_ * (5 * width + 4 * (margin_ + reach_)) + 2 * reach_ * width;
+            const float reach = reach_ + triangle.drift;
+            leaf.slack[i] = margin_ * (5 * width + 4 * (margin_ + reach)) + 2 * reach * width;
             leaf.begun_from[i] = triangle.begun_from;
             leaf.whole_from[i] = triangle.whole_from;
             made.begun_from = std::min(made.begun_from, triangle.begun_from);

@@ -30,6 +30,12 @@ void for_each_ray(const SlicedBeams& from, const BeamNumber& number, const Do& a
         if (corner != Beam::none) act(corner);
 }
 
+// Those that tell all of a bin of wavelengths.
+std::span<const double> places_of(const BeamSet& set) {
+    static constexpr std::array<double, 3> places = {0, -1, 1};
+    return std::span(places).first(set.drifts.empty() ? 1 : 3);
+}
+
 // The slab from above all polygons to below all receivers, both a little beyond: heights are
 // rounded.
 SliceFrame frame_of(const SlicedBeams& from) {
@@ -37,8 +43,9 @@ SliceFrame frame_of(const SlicedBeams& from) {
     double top = -std::numeric_limits<double>::infinity();
     for (const BeamNumber& number : from.beams)
         for_each_ray(from, number, [&](std::uint32_t ray) {
-            const Vec3& p = from.sets[number.set].rays[ray].position;
-            top = std::max(top, up.dot(p.cast<double>()));
+            for (const double place : places_of(from.sets[number.set]))
+                top = std::max(
+                    top, up.dot(from.sets[number.set].ray(ray, place).position.cast<double>()));
         });
     double bottom = top;
     for (int i = 0; i < 8; ++i) {
@@ -56,22 +63,26 @@ SliceFrame frame_of(const SlicedBeams& from) {
 class Slicer {
 public:
     Slicer(const SlicedBeams& from, const SliceFrame& frame)
-        : from_(from), frame_(frame), slices_(from.sets.size()) {
+        : from_(from), frame_(frame), slices_(from.sets.size()), drifts_(from.sets.size()) {
         const float unknown = std::numeric_limits<float>::quiet_NaN();
         for (const BeamNumber& number : from.beams) {
             const std::vector<VertexRay>& rays = from.sets[number.set].rays;
             std::vector<RaySlices>& of_set = slices_[number.set];
             of_set.resize(rays.size(), {unknown});
+            drifts_[number.set].resize(rays.size());
             for_each_ray(from, number, [&](std::uint32_t ray) {
-                if (std::isnan(of_set[ray][0])) of_set[ray] = frame.slices(rays[ray]);
+                if (!std::isnan(of_set[ray][0])) return;
+                of_set[ray] = frame.slices(rays[ray]);
+                drifts_[number.set][ray] = drift(from.sets[number.set], ray, of_set[ray]);
             });
         }
     }
 
     SliceBox box(const BeamNumber& number) const {
         SliceBox box;
-        for_each_ray(from_, number,
-                     [&](std::uint32_t ray) { box.extend(slices_[number.set][ray]); });
+        for_each_ray(from_, number, [&](std::uint32_t ray) {
+            box.extend(slices_[number.set][ray], drifts_[number.set][ray]);
+        });
         return box;
     }
 
@@ -87,9 +98,12 @@ public:
             double lowest = frame_.top();
             for (std::size_t c = 0; c < 3; ++c) {
                 triangle.corners[c] = slices_[number.set][corners[c]];
-                const double height = frame_.height(set.rays[corners[c]].position);
-                highest = std::max(highest, height);
-                lowest = std::min(lowest, height);
+                triangle.drift = std::max(triangle.drift, drifts_[number.set][corners[c]]);
+                for (const double at : places_of(set)) {
+                    const double height = frame_.height(set.ray(corners[c], at).position);
+                    highest = std::max(highest, height);
+                    lowest = std::min(lowest, height);
+                }
             }
             triangle.begun_from = static_cast<float>(frame_.share(highest)) - rounding;
             triangle.whole_from = static_cast<float>(frame_.share(lowest)) + rounding;
@@ -99,9 +113,21 @@ public:
     }
 
 private:
+    // How far a ray moves on either plane.
+    float drift(const BeamSet& set, std::uint32_t ray, const RaySlices& middle) const {
+        float most = 0;
+        for (const double place : places_of(set).subspan(1)) {
+            const RaySlices end = frame_.slices(set.ray(ray, place));
+            for (std::size_t i = 0; i < end.size(); ++i)
+                most = std::max(most, std::abs(end[i] - middle[i]));
+        }
+        return most;
+    }
+
     const SlicedBeams& from_;
     const SliceFrame& frame_;
     std::vector<std::vector<RaySlices>> slices_;  ///< of the beams' rays
+    std::vector<std::vector<float>> drifts_;      ///< likewise
 };
 
 // Sorts the beams by the hierarchy.

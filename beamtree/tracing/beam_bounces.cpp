@@ -48,11 +48,11 @@ void keep_only(BeamSet& set, const std::vector<bool>& kept) {
 class Follower {
 public:
     Follower(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-             const MeshNeighbours* neighbours, std::size_t max_bounces, TracedBeams& traced)
+             const BeamExtras& extras, std::size_t max_bounces, TracedBeams& traced)
         : scene_(scene),
           boxes_(boxes),
           surface_(surface),
-          neighbours_(neighbours),
+          extras_(extras),
           max_bounces_(max_bounces),
           traced_(traced) {}
 
@@ -75,18 +75,26 @@ public:
                                    beams));
                 }
             }
-            if (neighbours_ != nullptr) refine(set, level.traced.origins, *neighbours_, part.of(0));
+            if (extras_.neighbours != nullptr)
+                refine(set, level.traced.origins, *extras_.neighbours, part.of(0));
             std::vector<bool> kept = std::move(next.stays);
             for (std::size_t i = 0; i < kept.size(); ++i)
                 kept[i] = kept[i] || comes_near_a_receiver(level, set.beams[i]);
+            add_drifts(level, kept);
             keep_only(set, kept);
-        } else if (neighbours_ != nullptr) {
-            refine(set, level.traced.origins, *neighbours_, part.of(1));
+        } else {
+            if (extras_.neighbours != nullptr)
+                refine(set, level.traced.origins, *extras_.neighbours, part.of(1));
+            add_drifts(level, std::vector<bool>(set.beams.size(), true));
         }
         traced_.sets[place] = std::move(set);
     }
 
 private:
+    void add_drifts(Level& level, const std::vector<bool>& kept) {
+        if (extras_.drift != nullptr) traced_.drift.add(extras_.drift->add_to(level, kept));
+    }
+
     bool comes_near_a_receiver(const Level& level, const Beam& beam) const {
         Box box;
         for (const std::uint32_t corner : beam.corners) {
@@ -104,7 +112,7 @@ private:
     const Scene& scene_;
     const SceneBoxes& boxes_;
     const LitCaster& surface_;
-    const MeshNeighbours* neighbours_;
+    BeamExtras extras_;
     std::size_t max_bounces_;
     TracedBeams& traced_;
 };
@@ -112,12 +120,8 @@ private:
 }  // namespace
 
 BeamBounces::BeamBounces(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                         const MeshNeighbours* neighbours, int max_bounces)
-    : scene_(scene),
-      boxes_(boxes),
-      surface_(surface),
-      neighbours_(neighbours),
-      max_bounces_(max_bounces) {}
+                         const BeamExtras& extras, int max_bounces)
+    : scene_(scene), boxes_(boxes), surface_(surface), extras_(extras), max_bounces_(max_bounces) {}
 
 void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& part) {
     double flux = 0;
@@ -132,8 +136,7 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
         level.event = event;
         level.traced = std::move(first[event]);
         level.departures = first_departures(level.traced);
-        Follower(scene_, boxes_, surface_, neighbours_, static_cast<std::size_t>(max_bounces_),
-                 traced_)
+        Follower(scene_, boxes_, surface_, extras_, static_cast<std::size_t>(max_bounces_), traced_)
             .follow(level, flux, flux / static_cast<double>(beams),
                     part.of(static_cast<double>(level.traced.set.beams.size()) /
                             static_cast<double>(beams)));

@@ -9,6 +9,7 @@
 #include "beamtree/beams/mesh_neighbours.h"
 #include "beamtree/beams/ray_origin.h"
 #include "beamtree/beams/trace_progress.h"
+#include "beamtree/tracing/beam_drift.h"
 #include "beamtree/tracing/ray_arrival.h"
 #include "beamtree/tracing/scene_boxes.h"
 
@@ -18,6 +19,13 @@ namespace caustics {
 struct TracedBeams {
     std::vector<BeamSet> sets;
     FluxBalance balance;
+    DriftAccount drift;
+};
+
+/// What sets get beside their rays; each may be null.
+struct BeamExtras {
+    const MeshNeighbours* neighbours = nullptr;  ///< for spreads
+    const BeamDrift* drift = nullptr;            ///< for drifts
 };
 
 /// Follows beams of one caster and light from their first event to others (row B13). Each ray goes
@@ -37,9 +45,8 @@ struct TracedBeams {
 /// light that comes through dark glass is weak, and all there is.
 class BeamBounces {
 public:
-    /// With `neighbours` the sets are refined by them.
     BeamBounces(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                const MeshNeighbours* neighbours, int max_bounces);
+                const BeamExtras& extras, int max_bounces);
 
     /// Keeps the sets of the first events and those of all events after them.
     void follow(std::array<TracedSet, 2> first, const ProgressPart& part);
@@ -52,7 +59,7 @@ private:
     const Scene& scene_;
     const SceneBoxes& boxes_;
     const LitCaster& surface_;
-    const MeshNeighbours* neighbours_;
+    BeamExtras extras_;
     int max_bounces_;
     TracedBeams traced_;
 };

@@ -58,6 +58,8 @@ public:
     /// The point with these barycentric weights.
     PathPoint inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const;
     PathPoint middle(const Piece& piece) const;
+    /// The place that a ray has come from.
+    PathPoint from(const RayOrigin& origin) const { return go(origin.position, origin.normal); }
 
 private:
     PathPoint go(const Vec3& position, const Vec3& normal) const;

@@ -1,6 +1,7 @@
 #include "beamtree/tracing/beam_tracing.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "beamtree/beams/lit_caster.h"
@@ -8,6 +9,7 @@
 #include "beamtree/beams/ray_spread.h"
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/tracing/beam_bounces.h"
+#include "beamtree/tracing/beam_drift.h"
 #include "beamtree/tracing/cut_piece.h"
 #include "core/base/parallel.h"
 
@@ -221,11 +223,14 @@ TracedBeams trace_one(const Scene& scene, const SceneBoxes& boxes, const CasterM
                       const MeshNeighbours* neighbours, const LightSample& light, int max_bounces,
                       const ProgressPart& part) {
     const LitCaster surface(scene, caster, light);
-    const bool follows = max_bounces > 1;
+    std::optional<BeamDrift> drift;
+    if (light.drifts) drift.emplace(scene, caster, light);
+    const bool follows = max_bounces > 1 || drift;
     std::array<TracedSet, 2> first = BeamTracer(surface).run(part.of(follows ? 0.1 : 0.9));
     TracedBeams traced;
     if (follows) {
-        BeamBounces follower(scene, boxes, surface, neighbours, max_bounces);
+        BeamBounces follower(scene, boxes, surface, {neighbours, drift ? &*drift : nullptr},
+                             max_bounces);
         follower.follow(std::move(first), part.of(0.9));
         traced = follower.take();
     } else {
@@ -267,6 +272,7 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
     TracedBeams all;
     for (TracedBeams& part : parts) {
         all.balance.add(part.balance);
+        all.drift.add(part.drift);
         for (BeamSet& set : part.sets)
             if (!set.beams.empty()) all.sets.push_back(std::move(set));
     }

@@ -54,6 +54,10 @@ BuildReport TracedScene::report() const {
         bounces = std::max(bounces, static_cast<double>(set.path.size()));
     report.resolved["most_bounces"] = bounces;
     if (wavelengths > 0) report.resolved["wavelengths"] = wavelengths;
+    if (drift.rays > 0) {
+        report.resolved["drift_bend"] = drift.bend;
+        report.resolved["drift_unknown"] = drift.unknown / drift.rays;
+    }
     return report;
 }
 
@@ -76,13 +80,14 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);
     std::vector<LightSample> lights = sample_lights(scene, params.light_samples, options.seed);
     if (disperses(scene)) {
-        lights = dispersed(lights, params.wavelengths);
+        lights = dispersed(lights, params.wavelengths, params.dispersion);
         traced.wavelengths = params.wavelengths;
     }
     TracedBeams beams =
         trace_all_beams(scene, traced.casters, lights, {intensity, params.max_bounces}, options);
     traced.sets = std::move(beams.sets);
     traced.balance = beams.balance;
+    traced.drift = beams.drift;
     refuse_what_is_lost(method, traced.balance);
     return traced;
 }

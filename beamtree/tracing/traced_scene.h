@@ -14,6 +14,7 @@ struct TracedScene {
     std::vector<CasterMesh> casters;
     std::vector<BeamSet> sets;
     FluxBalance balance;
+    DriftAccount drift;
     int wavelengths = 0;  ///< of each light; 0: nothing disperses it
 
     /// polygons, beams, their bytes and what was left out; how normals and meshes were come by.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "beamtree/beam_tree.h"
 #include "beamtree/caustic_polygons.h"
@@ -135,6 +136,45 @@ TEST(Dispersion, BeamsPaintThemToTheirNumberOfWavelengths) {
     polygons.receiver_resolution = 2;
     polygons.mesh_resolution = 4;
     expect_right(*build(scene, polygons, RunOptions{}), 3.0 / 64);
+}
+
+// Four parts of the wavelengths stand for hundreds: what is left is that corners move linearly within one.
+TEST(Dispersion, BeamsAskForTheIntervalsOfWavelengths) {
+    const Scene scene = lit_from_far(heavy);
+    const std::vector<ReceiverPoint> points = across(scene, 0);
+    BeamTreeParams params;
+    params.mesh_resolution = 4;
+    params.wavelengths = 4;
+    params.dispersion = Dispersion::intervals;
+    const auto expect_right = [&](const std::string& what) {
+        const auto tree = build(scene, params, RunOptions{});
+        const std::vector<Estimate> found = support::irradiance(*tree, points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const SpectrumSum exact = closed_form(at(points[i]));
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(static_cast<double>(found[i].value[c]), exact[c],
+                            0.003 * power * std::cos(incidence))
+                    << what << " " << at(points[i]) << " " << c;
+        }
+        EXPECT_LT(tree->build_report().resolved.at("drift_bend"), 1e-3);
+        EXPECT_EQ(tree->build_report().resolved.at("drift_unknown"), 0);
+    };
+    for (const Bound bound :
+         {Bound::single, Bound::double_cone, Bound::hybrid, Bound::sphere_swept}) {
+        params.bound = bound;
+        expect_right("bound " + std::to_string(static_cast<int>(bound)));
+    }
+    params.merging = ConeTreeSettings::Merging::cones;
+    expect_right("cones");
+    params.merging = ConeTreeSettings::Merging::rays;
+    params.bound = Bound::two_slice;
+    params.leaf = BeamTreeParams::Leaf::k;
+    params.hierarchy = BeamTreeParams::Tree::binned;
+    expect_right("slices");
+    params.intensity = Intensity::refined;
+    expect_right("refined");
+    params.max_bounces = 1;
+    expect_right("one event");
 }
 
 TEST(Dispersion, ThePhotonMapHasThemWithinItsBlur) {

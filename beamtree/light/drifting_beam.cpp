@@ -1,0 +1,174 @@
+#include "beamtree/light/drifting_beam.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace caustics {
+namespace {
+
+// Of a bin where edges do not tell.
+constexpr int narrow_parts = 16;
+// Within an interval the area should change by no more than this share, or there are this many parts.
+constexpr double steady = 0.2;
+constexpr int most_parts = 8;
+
+/// A corner on the plane, at the places -1 to 1 of the bin.
+struct MovingCorner {
+    Vec2d middle;
+    Vec2d half;
+
+    Vec2d at(double place) const { return middle + place * half; }
+};
+
+using MovingTriangle = std::array<MovingCorner, 3>;
+
+/// Where a ray meets the plane, if it comes down to it, and how steeply.
+struct Landing {
+    Vec2d at;
+    double steepness;
+};
+
+std::optional<Landing> land_on(const TestPlane& plane, const VertexRay& ray) {
+    const double height = plane.height(ray.position);
+    const double steepness = plane.steepness(ray.direction);
+    if (!(height > 0 && steepness > 1e-4)) return {};
+    return Landing{plane.project(ray.position, height / steepness, ray.direction), steepness};
+}
+
+// Empty where the plane cuts the triangle or its light is uneven.
+std::optional<MovingTriangle> on_plane(const BeamSet& set, const Beam& beam, std::size_t which,
+                                       const TestPlane& plane) {
+    const std::array<VertexRay, 3> first = set.triangle(beam, which, -1);
+    const std::array<VertexRay, 3> last = set.triangle(beam, which, 1);
+    MovingTriangle triangle;
+    double least = 1;
+    double most = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto a = land_on(plane, first[i]);
+        const auto b = land_on(plane, last[i]);
+        if (!a || !b) return {};
+        triangle[i] = {(a->at + b->at) / 2, (b->at - a->at) / 2};
+        least = std::min({least, a->steepness, b->steepness});
+        most = std::max({most, a->steepness, b->steepness});
+    }
+    if (most > most_uneven * least) return {};
+    return triangle;
+}
+
+/// Places in (-1, 1) where a point changes sides, in order; -1 first and 1 last.
+class Places {
+public:
+    // Where the edge from a to b runs through the origin: roots of a x b.
+    void add_crossings(const MovingCorner& a, const MovingCorner& b) {
+        const double constant = cross(a.middle, b.middle);
+        const double linear = cross(a.middle, b.half) + cross(a.half, b.middle);
+        const double square = cross(a.half, b.half);
+        const double discriminant = linear * linear - 4 * square * constant;
+        if (!(discriminant >= 0)) return;
+        // Without cancellation.
+        const double q = -(linear + std::copysign(std::sqrt(discriminant), linear)) / 2;
+        if (square != 0) add(q / square);
+        if (q != 0) add(constant / q);
+    }
+    void sort() { std::sort(places_.begin(), places_.begin() + count_); }
+    std::size_t count() const { return static_cast<std::size_t>(count_); }
+    double operator[](std::size_t i) const { return places_[i]; }
+
+private:
+    void add(double place) {
+        if (place > -1 && place < 1) places_[static_cast<std::size_t>(count_++)] = place;
+    }
+
+    std::array<double, 8> places_ = {-1, 1};
+    std::ptrdiff_t count_ = 2;
+};
+
+/// The triangle at one place.
+class Still {
+public:
+    Still(const MovingTriangle& triangle, double place)
+        : corners_{triangle[0].at(place), triangle[1].at(place), triangle[2].at(place)} {}
+
+    double area() const { return (side(0) + side(1) + side(2)) / 2; }
+    // Half-open: of two triangles with a common edge one holds a point on it.
+    bool holds_origin() const {
+        const auto& [a, b, c] = corners_;
+        return edge_crossing(a, b) + edge_crossing(b, c) + edge_crossing(c, a) != 0;
+    }
+    Vec3d weights() const { return Vec3d(side(1), side(2), side(0)) / (2 * area()); }
+
+private:
+    double side(std::size_t i) const { return cross(corners_[i], corners_[(i + 1) % 3]); }
+
+    std::array<Vec2d, 3> corners_;
+};
+
+void add_hits(const MovingTriangle& triangle, double from, double to, const BeamHit& like,
+              const TestPlane& plane, std::vector<BeamHit>& hits) {
+    const Still middle(triangle, (from + to) / 2);
+    if (!middle.holds_origin()) return;
+    const double change = std::abs(Still(triangle, to).area() - Still(triangle, from).area()) /
+                          std::abs(middle.area());
+    const int parts =
+        static_cast<int>(std::clamp(std::ceil(change / steady), 1.0, 1.0 * most_parts));
+    for (int i = 0; i < parts; ++i) {
+        BeamHit hit = like;
+        hit.from = from + (to - from) * i / parts;
+        hit.to = from + (to - from) * (i + 1) / parts;
+        const Still still(triangle, hit.place());
+        if (!still.holds_origin()) continue;
+        hit.winding = still.area() > 0 ? 1 : -1;
+        hit.area = std::abs(still.area()) * plane.area_scale();
+        hit.weights = still.weights().cast<float>();
+        hits.push_back(hit);
+    }
+}
+
+void add_narrow_hits(const BeamSet& set, const BeamHit& like, const TestPlane& plane,
+                     std::vector<BeamHit>& hits) {
+    for (int i = 0; i < narrow_parts; ++i) {
+        const double from = -1 + 2.0 * i / narrow_parts;
+        const double to = -1 + 2.0 * (i + 1) / narrow_parts;
+        auto hit = test_triangle(set.triangle(set.beams[like.beam], like.triangle, (from + to) / 2),
+                                 like.triangle, plane);
+        if (!hit) continue;
+        hit->set = like.set;
+        hit->beam = like.beam;
+        hit->flux_share *= like.flux_share;
+        hit->from = from;
+        hit->to = to;
+        hits.push_back(*hit);
+    }
+}
+
+}  // namespace
+
+void find_in_drifting_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
+                           std::vector<BeamHit>& hits) {
+    const Beam& beam = set.beams[number.beam];
+    for (std::size_t which = 0; which < beam.triangle_count(); ++which) {
+        BeamHit like;
+        like.set = number.set;
+        like.beam = number.beam;
+        like.triangle = static_cast<std::uint8_t>(which);
+        like.plane_normal = plane.normal().cast<float>();
+        if (beam.triangle_count() == 2)
+            like.flux_share =
+                static_cast<double>(which == 0 ? beam.first_share : 1 - beam.first_share);
+        const auto triangle = on_plane(set, beam, which, plane);
+        if (!triangle) {
+            add_narrow_hits(set, like, plane, hits);
+            continue;
+        }
+        Places places;
+        for (std::size_t i = 0; i < 3; ++i)
+            places.add_crossings((*triangle)[i], (*triangle)[(i + 1) % 3]);
+        places.sort();
+        for (std::size_t i = 0; i + 1 < places.count(); ++i)
+            add_hits(*triangle, places[i], places[i + 1], like, plane, hits);
+    }
+}
+
+}  // namespace caustics

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "beamtree/beams/lit_caster.h"
+#include "beamtree/tracing/beam_path.h"
+
+namespace caustics {
+
+/// How well drifts tell where light of a wavelength goes.
+struct DriftAccount {
+    double rays = 0;
+    double unknown = 0;  ///< of them: at neither end of the bin do they go the beam's way
+    /// How far the direction at the bin's middle is from the mean of those at its ends, at most [rad].
+    double bend = 0;
+
+    void add(const DriftAccount& other);
+};
+
+/// Finds how the rays of a set move with the wavelength (BeamSet::drifts): each is sent again, from its place on
+/// the first surface and along its beam's way, at both ends of the light's bin. Where at one end it
+/// comes to another piece of a surface, the other end tells; where at both, the other corners of a beam do.
+class BeamDrift {
+public:
+    /// All outlive this.
+    BeamDrift(const Scene& scene, const CasterMesh& caster, const LightSample& light);
+    BeamDrift(const BeamDrift&) = delete;
+    BeamDrift& operator=(const BeamDrift&) = delete;
+
+    /// Of the rays of the beams that are kept.
+    DriftAccount add_to(Level& level, const std::vector<bool>& kept) const;
+
+private:
+    const Scene& scene_;
+    std::array<LightSample, 2> lights_;
+    std::array<LitCaster, 2> ends_;
+};
+
+}  // namespace caustics
