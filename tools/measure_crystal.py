@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Measures what dispersion costs photons and what splitting at the eye gains, and writes results/crystal/README.md.
+"""Measures what dispersion costs, and what splitting at the eye and intervals of wavelengths gain, and writes results/crystal/README.md.
 
-Runs the sweeps experiments/sweeps/dispersion_photons.json and split_depth.json on one thread,
+Runs the sweeps experiments/sweeps/dispersion_photons.json, split_depth.json and dispersion_beams.json on one thread,
 one after another; their trials stay in results/crystal/trials (not in git). Ratios are of CPU times of one thread on one
 machine. Needs build/release (tools/build.sh release causticbench). Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
@@ -22,7 +22,7 @@ from report.report_files import write
 PAGE = """# Crystal and colour
 
 Made by `tools/measure_crystal.py` on {machine} Times are CPU times of one thread, medians over the repeats; what is not measured
-here: other machines, area lights, memory, beams by wavelengths.
+here: other machines, area lights, memory.
 
 ## Photons with and without dispersion
 
@@ -39,7 +39,16 @@ against 256. The last column is the error at equal time over that of `split_dept
 
 | scene | split_depth | rmse | s | error at equal time |
 |---|---|---|---|---|
-{split}"""
+{split}
+## Beams by intervals of wavelengths
+
+`beamtree` with `dispersion` bins and intervals (experiments/sweeps/dispersion_beams.json) against `lighttrace`. Errors level off where
+they are not of the wavelengths any more. The last column: the time of the cheapest bins whose error is at most 5 % above that of
+the intervals, over the intervals' time.
+
+| scene | dispersion | wavelengths | caustic rmse | s | bins over it |
+|---|---|---|---|---|---|
+{beams}"""
 
 
 def arguments():
@@ -81,15 +90,29 @@ def split_lines(rows):
             yield f"| {scene} | {depth} | {error:.4g} | {seconds:.2f} | {cost / first:.2f} |\n"
 
 
+def beam_lines(rows):
+    for scene in sorted({row["scene"] for row in rows}):
+        found = []
+        for how, count in sorted({(row["dispersion"], int(row["wavelengths"])) for row in rows}):
+            where = {"scene": scene, "dispersion": how, "wavelengths": count}
+            seconds = sum(median(rows, phase, **where) for phase in ("precompute_cpu_s", "render_cpu_s"))
+            found.append((how, count, median(rows, "rmse", **where), seconds))
+        for how, count, error, seconds in found:
+            as_good = [each[3] for each in found if each[0] == "bins" and each[2] <= 1.05 * error]
+            ratio = "" if how == "bins" else f"{min(as_good) / seconds:.1f}" if as_good else "more"
+            yield f"| {scene} | {how} | {count} | {error:.4g} | {seconds:.1f} | {ratio} |\n"
+
+
 def main():
     options = arguments()
     try:
         program = Program("measure_crystal", options.program)
         dispersion, photons = sweep(program, options, "dispersion_photons")
         splitting, split = sweep(program, options, "split_depth")
+        intervals, beams = sweep(program, options, "dispersion_beams")
         write(options.output / "README.md",
-              PAGE.format(machine=machine([dispersion, splitting]), photons="".join(photon_lines(photons)),
-                          split="".join(split_lines(split))))
+              PAGE.format(machine=machine([dispersion, splitting, intervals]), photons="".join(photon_lines(photons)),
+                          split="".join(split_lines(split)), beams="".join(beam_lines(beams))))
     except records.RecordsError as error:
         print(f"measure_crystal: {error}", file=sys.stderr)
         return 2

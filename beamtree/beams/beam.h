@@ -65,9 +65,9 @@ struct BeamSet {
     std::vector<Beam> beams;                         ///< in the order of the mesh's triangles
     /// One a ray where the intensity is `refined`, else none.
     std::vector<RaySpread> spreads;
-    /// One a ray where the light drifts (LightSample::drifts), else none: half of what the ray at the longest
-    /// wavelength of the bin differs by from that at the shortest.
-    std::vector<VertexRay> drifts;
+    /// One a ray where the light drifts (LightSample::drifts), else none: the ray at the shortest wavelength of
+    /// the bin, and at the longest. Between them rays move linearly.
+    std::array<std::vector<VertexRay>, 2> ends;
     /// One a beam with `spreads`: the other beam of its pair of triangles, or Beam::none.
     std::vector<std::uint32_t> partners;
 
@@ -76,22 +76,24 @@ struct BeamSet {
         return {&rays[beam.corners[0]], &rays[beam.corners[1 + which]],
                 &rays[beam.corners[2 + which]]};
     }
+    bool drifts() const { return !ends[0].empty(); }
     /// A ray at a place in the light's bin of wavelengths, from -1 to 1.
     VertexRay ray(std::uint32_t number, double place) const {
-        VertexRay ray = rays[number];
-        if (drifts.empty()) return ray;
-        const auto share = static_cast<float>(place);
-        ray.position += share * drifts[number].position;
-        ray.direction = (ray.direction + share * drifts[number].direction).normalized();
-        return ray;
+        if (!drifts()) return rays[number];
+        const VertexRay& first = ends[0][number];
+        const VertexRay& last = ends[1][number];
+        const auto share = static_cast<float>((1 + place) / 2);
+        return {(1 - share) * first.position + share * last.position,
+                ((1 - share) * first.direction + share * last.direction).normalized()};
     }
     std::array<VertexRay, 3> triangle(const Beam& beam, std::size_t which, double place) const {
         return {ray(beam.corners[0], place), ray(beam.corners[1 + which], place),
                 ray(beam.corners[2 + which], place)};
     }
     std::uint64_t bytes() const {
-        return (rays.size() + drifts.size()) * sizeof(VertexRay) + beams.size() * sizeof(Beam) +
-               spreads.size() * sizeof(RaySpread) + partners.size() * sizeof(std::uint32_t);
+        return (rays.size() + 2 * ends[0].size()) * sizeof(VertexRay) +
+               beams.size() * sizeof(Beam) + spreads.size() * sizeof(RaySpread) +
+               partners.size() * sizeof(std::uint32_t);
     }
 };
 

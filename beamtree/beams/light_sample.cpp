@@ -60,19 +60,26 @@ std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, s
     return samples;
 }
 
-std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths,
-                                   Dispersion dispersion) {
+std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths) {
     std::vector<LightSample> parts;
-    std::vector<WavelengthBin> bins = wavelength_bins(wavelengths);
-    if (dispersion == Dispersion::intervals)
-        for (WavelengthBin& bin : bins) bin.nm = static_cast<float>(bin.wavelength_at(0));
+    const std::vector<WavelengthBin> bins = wavelength_bins(wavelengths);
     for (const LightSample& sample : samples)
         for (const WavelengthBin& bin : bins) {
             parts.push_back(sample);
             parts.back().bin = bin;
-            parts.back().drifts = dispersion == Dispersion::intervals;
             parts.back().strength *= bin.weight;
         }
+    return parts;
+}
+
+std::vector<LightSample> drifting(const std::vector<LightSample>& samples, int wavelengths,
+                                  const Ior& glass) {
+    std::vector<LightSample> parts = dispersed(samples, wavelengths);
+    for (LightSample& part : parts) {
+        part.drifts = true;
+        part.places = BinPlaces(part.bin, glass);
+        part.bin.nm = static_cast<float>(part.places.wavelength_at(0));
+    }
     return parts;
 }
 
@@ -81,12 +88,13 @@ Spectrum share_of_wavelengths(const LightSample& light, double from, double to, 
     if (bin.nm == 0 || (nm == 0 && !light.drifts)) return Spectrum::Ones();
     const Spectrum of_bin = (bin.weight > 0).select(1 / bin.weight, black());
     if (nm == 0)
-        return channel_integral(bin.wavelength_at(from), bin.wavelength_at(to)).cast<float>() *
+        return channel_integral(light.places.wavelength_at(from), light.places.wavelength_at(to))
+                   .cast<float>() *
                of_bin;
     const bool is_last = bin.to >= float{longest_wavelength};
     if (nm < bin.from || (nm >= bin.to && !is_last)) return black();
     if (light.drifts) {
-        const double place = bin.place_of(static_cast<double>(nm));
+        const double place = light.places.place_of(static_cast<double>(nm));
         if (place < from || place >= to) return black();
     }
     // The light of one wavelength that the picture without dispersion has: the bin's, but for its colour.

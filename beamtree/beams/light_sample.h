@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/material/wavelength.h"
+#include "beamtree/beams/bin_places.h"
 #include "core/scene/scene.h"
 
 namespace caustics {
@@ -29,7 +29,8 @@ struct LightSample {
     std::optional<SpotCone> spot;  ///< of a point light that is one
     std::uint32_t light = 0;       ///< index into Scene::lights
     WavelengthBin bin = {};  ///< its part of all wavelengths where glass disperses it; nm 0: all
-    bool drifts = false;     ///< its beams tell each wavelength of the bin apart (BeamSet::drifts)
+    bool drifts = false;     ///< its beams tell each wavelength of the bin apart (BeamSet::ends)
+    BinPlaces places = {};   ///< of wavelengths, where it drifts
 };
 
 /// For all lights but constant ones: one sample a point or directional light, `per_area_light` samples an
@@ -38,10 +39,12 @@ struct LightSample {
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
 /// The same light in parts: each sample once a bin of wavelengths (WavelengthBin), with its share of the
 /// strength.
-std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths,
-                                   Dispersion dispersion = Dispersion::bins);
+std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int wavelengths);
+/// Likewise, of light that drifts, with places by a glass.
+std::vector<LightSample> drifting(const std::vector<LightSample>& samples, int wavelengths,
+                                  const Ior& glass);
 
-/// What the sample's light between two places in its bin (WavelengthBin::wavelength_at; all of it where it
+/// What the sample's light between two places in its bin (BinPlaces; all of it where it
 /// does not drift) counts for a viewer, behind glass that has chosen the wavelength nm, for which light of
 /// all others is black, or of all wavelengths (0).
 Spectrum share_of_wavelengths(const LightSample& light, double from, double to, float nm);

@@ -29,7 +29,7 @@ NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
                     {add(beam.corners[0]), add(beam.corners[1 + i]), add(beam.corners[2 + i])});
         }
     };
-    if (set.drifts.empty()) {
+    if (!set.drifts()) {
         add_beams(0);
     } else {
         // What moves from one end to the other stays between the two.
@@ -127,7 +127,7 @@ bool ConeTree::may_hold(const Node& node, const BeamSet& set, const TestPlane& p
 
 bool ConeTree::single_holds(const Node& node, const BeamSet& set, const Vec3d& p) const {
     const SingleCone& cone = singles_[node.bound];
-    if (node.child_count > 0 || !set.drifts.empty()) return cone.holds(p);
+    if (node.child_count > 0 || set.drifts()) return cone.holds(p);
     const Beam& beam = set.beams[node.beam];
     std::array<Vec3d, 4> corners;
     const std::size_t count = 2 + beam.triangle_count();

@@ -18,7 +18,7 @@ Vec3 axis_of(std::size_t i) {
 
 // Of a ray at all wavelengths of its set.
 float least_along(const BeamSet& set, std::uint32_t ray, const Vec3& axis) {
-    if (set.drifts.empty()) return set.rays[ray].direction.dot(axis);
+    if (!set.drifts()) return set.rays[ray].direction.dot(axis);
     return std::min(set.ray(ray, -1).direction.dot(axis), set.ray(ray, 1).direction.dot(axis));
 }
 

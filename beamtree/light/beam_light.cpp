@@ -55,7 +55,7 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
 BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
     : scene_(scene), sets_(sets), searches_(sets.size()) {
     for (std::size_t i = 0; i < sets.size(); ++i)
-        if (!sets[i].spreads.empty() && sets[i].drifts.empty() &&
+        if (!sets[i].spreads.empty() && !sets[i].drifts() &&
             is_bent_once_by_exact_shape(scene, sets[i]))
             searches_[i].emplace(scene, sets[i]);
 }

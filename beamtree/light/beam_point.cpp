@@ -333,7 +333,7 @@ std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, st
 
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                   std::vector<BeamHit>& hits, SearchCounts& counts) {
-    if (!set.drifts.empty()) {
+    if (set.drifts()) {
         const std::size_t before = hits.size();
         find_in_drifting_beam(set, number, plane, hits);
         ++counts.beam_point_tests;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace caustics {
@@ -40,14 +41,14 @@ std::optional<Landing> land_on(const TestPlane& plane, const VertexRay& ray) {
 // Empty where the plane cuts the triangle or its light is uneven.
 std::optional<MovingTriangle> on_plane(const BeamSet& set, const Beam& beam, std::size_t which,
                                        const TestPlane& plane) {
-    const std::array<VertexRay, 3> first = set.triangle(beam, which, -1);
-    const std::array<VertexRay, 3> last = set.triangle(beam, which, 1);
+    const std::array<std::uint32_t, 3> corners = {beam.corners[0], beam.corners[1 + which],
+                                                  beam.corners[2 + which]};
     MovingTriangle triangle;
     double least = 1;
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const auto a = land_on(plane, first[i]);
-        const auto b = land_on(plane, last[i]);
+        const auto a = land_on(plane, set.ends[0][corners[i]]);
+        const auto b = land_on(plane, set.ends[1][corners[i]]);
         if (!a || !b) return {};
         triangle[i] = {(a->at + b->at) / 2, (b->at - a->at) / 2};
         least = std::min({least, a->steepness, b->steepness});
@@ -55,6 +56,18 @@ std::optional<MovingTriangle> on_plane(const BeamSet& set, const Beam& beam, std
     }
     if (most > most_uneven * least) return {};
     return triangle;
+}
+
+// Most beams that a tree has found do: on one axis all corners stay on one side of the point.
+bool passes_by(const MovingTriangle& triangle) {
+    Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
+    Eigen::Array2d high = -low;
+    for (const MovingCorner& corner : triangle) {
+        const Eigen::Array2d far = corner.half.array().abs();
+        low = low.min(corner.middle.array() - far);
+        high = high.max(corner.middle.array() + far);
+    }
+    return (low > 0).any() || (high < 0).any();
 }
 
 /// Places in (-1, 1) where a point changes sides, in order; -1 first and 1 last.
@@ -105,6 +118,15 @@ private:
     std::array<Vec2d, 3> corners_;
 };
 
+// Over an interval, by Simpson's rule where the polygon does not turn over.
+double mean_inverse_area(const MovingTriangle& triangle, double from, double to) {
+    const double first = Still(triangle, from).area();
+    const double middle = Still(triangle, (from + to) / 2).area();
+    const double last = Still(triangle, to).area();
+    if (first * middle <= 0 || last * middle <= 0) return 1 / std::abs(middle);
+    return std::abs(1 / first + 4 / middle + 1 / last) / 6;
+}
+
 void add_hits(const MovingTriangle& triangle, double from, double to, const BeamHit& like,
               const TestPlane& plane, std::vector<BeamHit>& hits) {
     const Still middle(triangle, (from + to) / 2);
@@ -120,7 +142,7 @@ void add_hits(const MovingTriangle& triangle, double from, double to, const Beam
         const Still still(triangle, hit.place());
         if (!still.holds_origin()) continue;
         hit.winding = still.area() > 0 ? 1 : -1;
-        hit.area = std::abs(still.area()) * plane.area_scale();
+        hit.area = plane.area_scale() / mean_inverse_area(triangle, hit.from, hit.to);
         hit.weights = still.weights().cast<float>();
         hits.push_back(hit);
     }
@@ -162,6 +184,7 @@ void find_in_drifting_beam(const BeamSet& set, const BeamNumber& number, const T
             add_narrow_hits(set, like, plane, hits);
             continue;
         }
+        if (passes_by(*triangle)) continue;
         Places places;
         for (std::size_t i = 0; i < 3; ++i)
             places.add_crossings((*triangle)[i], (*triangle)[(i + 1) % 3]);

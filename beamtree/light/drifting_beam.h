@@ -7,7 +7,7 @@
 namespace caustics {
 
 /// The wavelengths for which a beam that drifts holds the point that the plane goes through. A corner of a
-/// caustic polygon moves over the plane nearly linearly with the place in the bin (BeamSet::drifts), so that the
+/// caustic polygon moves over the plane nearly linearly with the place in the bin (BeamSet::ends), so that the
 /// point passes from one side of an edge to the other at the roots of a quadratic. Appends a hit for each
 /// interval between them in which the polygon holds it, parted where the polygon's area changes. Edges that
 /// two polygons share have the same roots, whatever the rounding. Where the plane cuts the polygon or its

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "beamtree/slices/slice_frame.h"
 
 namespace caustics {
+
+/// How far a ray moves with the wavelength along both axes of the planes, to either side [m].
+using SliceDrift = std::array<float, 2>;
 
 /// The two boxes, on both planes of a slab, that hold some rays there; interpolated between the
 /// planes they hold them at every height, because the least of linear functions is concave.
@@ -14,10 +18,11 @@ public:
         const Half at = Eigen::Map<const Half>(ray.data());
         bounds_ << bounds_.head<4>().min(at), bounds_.tail<4>().min(-at);
     }
-    /// By a ray that moves so far along either axis.
-    void extend(const RaySlices& ray, float drift) {
+    /// By a ray that moves so far along the axes.
+    void extend(const RaySlices& ray, const SliceDrift& drift) {
         const Half at = Eigen::Map<const Half>(ray.data());
-        bounds_ << bounds_.head<4>().min(at - drift), bounds_.tail<4>().min(-at - drift);
+        const Half far(drift[0], drift[1], drift[0], drift[1]);
+        bounds_ << bounds_.head<4>().min(at - far), bounds_.tail<4>().min(-at - far);
     }
     void extend(const SliceBox& other) { bounds_ = bounds_.min(other.bounds_); }
 

@@ -21,6 +21,10 @@ SliceBox box_of(const SlicedTriangle& triangle) {
     return box;
 }
 
+float widest(const SliceBox& box, int axis) {
+    return std::max(box.size(axis, 0), box.size(axis, 1));
+}
+
 class Widener {
 public:
     Widener(const Hierarchy& from, std::span<const SlicedTriangle> triangles, float reach)
@@ -140,13 +144,16 @@ private:
                     leaf.corner[c][axis][i] = at[k];
                     leaf.growth[c][axis][i] = at[2 + k] - at[k];
                 }
-                width = std::max({width, box.size(axis, 0), box.size(axis, 1)});
+                width = std::max(width, widest(box, axis));
             }
             made_.travel += std::hypot(leaf.growth[0][0][i], leaf.growth[0][1][i]);
             // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin; and
             // moving the point by the reach adds the reach times both extents of the edge.
-            const float reach = reach_ + triangle.drift;
-            leaf.slack[i] = margin_ * (5 * width + 4 * (margin_ + reach)) + 2 * reach * width;
+            leaf.slack[i] = margin_ * (5 * width + 4 * (margin_ + reach_)) + 2 * reach_ * width;
+            // Likewise for corners that move.
+            const auto& [along, across] = triangle.drift;
+            leaf.slack[i] +=
+                2 * (along * widest(box, 1) + across * widest(box, 0) + along * across);
             leaf.begun_from[i] = triangle.begun_from;
             leaf.whole_from[i] = triangle.whole_from;
             made.begun_from = std::min(made.begun_from, triangle.begun_from);

@@ -12,9 +12,9 @@ namespace caustics {
 /// A triangle of a beam as a leaf holds it.
 struct SlicedTriangle {
     std::array<RaySlices, 3> corners;
-    float drift = 0;       ///< how far any of them moves along either axis with the wavelength [m]
-    float begun_from = 0;  ///< share of the way down from which one of its rays has begun
-    float whole_from = 0;  ///< and from which all have
+    SliceDrift drift = {};   ///< of any of them
+    float begun_from = 0;    ///< share of the way down from which one of its rays has begun
+    float whole_from = 0;    ///< and from which all have
     std::uint32_t beam = 0;  ///< as the tree numbers them
 };
 

@@ -33,7 +33,7 @@ void for_each_ray(const SlicedBeams& from, const BeamNumber& number, const Do& a
 // Those that tell all of a bin of wavelengths.
 std::span<const double> places_of(const BeamSet& set) {
     static constexpr std::array<double, 3> places = {0, -1, 1};
-    return std::span(places).first(set.drifts.empty() ? 1 : 3);
+    return std::span(places).first(set.drifts() ? 3 : 1);
 }
 
 // The slab from above all polygons to below all receivers, both a little beyond: heights are
@@ -71,9 +71,8 @@ public:
             of_set.resize(rays.size(), {unknown});
             drifts_[number.set].resize(rays.size());
             for_each_ray(from, number, [&](std::uint32_t ray) {
-                if (!std::isnan(of_set[ray][0])) return;
-                of_set[ray] = frame.slices(rays[ray]);
-                drifts_[number.set][ray] = drift(from.sets[number.set], ray, of_set[ray]);
+                if (std::isnan(of_set[ray][0]))
+                    slice(from.sets[number.set], ray, of_set[ray], drifts_[number.set][ray]);
             });
         }
     }
@@ -98,7 +97,9 @@ public:
             double lowest = frame_.top();
             for (std::size_t c = 0; c < 3; ++c) {
                 triangle.corners[c] = slices_[number.set][corners[c]];
-                triangle.drift = std::max(triangle.drift, drifts_[number.set][corners[c]]);
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    triangle.drift[axis] =
+                        std::max(triangle.drift[axis], drifts_[number.set][corners[c]][axis]);
                 for (const double at : places_of(set)) {
                     const double height = frame_.height(set.ray(corners[c], at).position);
                     highest = std::max(highest, height);
@@ -113,21 +114,22 @@ public:
     }
 
 private:
-    // How far a ray moves on either plane.
-    float drift(const BeamSet& set, std::uint32_t ray, const RaySlices& middle) const {
-        float most = 0;
-        for (const double place : places_of(set).subspan(1)) {
-            const RaySlices end = frame_.slices(set.ray(ray, place));
-            for (std::size_t i = 0; i < end.size(); ++i)
-                most = std::max(most, std::abs(end[i] - middle[i]));
+    // Of a ray that moves, the middle of its way and half of it.
+    void slice(const BeamSet& set, std::uint32_t ray, RaySlices& middle, SliceDrift& drift) const {
+        middle = frame_.slices(set.rays[ray]);
+        if (!set.drifts()) return;
+        const RaySlices first = frame_.slices(set.ends[0][ray]);
+        const RaySlices last = frame_.slices(set.ends[1][ray]);
+        for (std::size_t i = 0; i < middle.size(); ++i) {
+            middle[i] = (first[i] + last[i]) / 2;
+            drift[i % 2] = std::max(drift[i % 2], std::abs(last[i] - first[i]) / 2);
         }
-        return most;
     }
 
     const SlicedBeams& from_;
     const SliceFrame& frame_;
     std::vector<std::vector<RaySlices>> slices_;  ///< of the beams' rays
-    std::vector<std::vector<float>> drifts_;      ///< likewise
+    std::vector<std::vector<SliceDrift>> drifts_;
 };
 
 // Sorts the beams by the hierarchy.

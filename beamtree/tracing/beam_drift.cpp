@@ -6,13 +6,21 @@ namespace caustics {
 namespace {
 
 LightSample at_end(LightSample light, double place) {
-    light.bin.nm = static_cast<float>(light.bin.wavelength_at(place));
+    light.bin.nm = static_cast<float>(light.places.wavelength_at(place));
     return light;
 }
 
-VertexRay half_way(const VertexRay& from, const VertexRay& to, float share) {
-    return {share * (to.position - from.position), share * (to.direction - from.direction)};
+// As far from a ray as another one, on the other side.
+VertexRay beyond(const VertexRay& from, const VertexRay& middle) {
+    return {2 * middle.position - from.position,
+            (2 * middle.direction - from.direction).normalized()};
 }
+
+/// Half of what the ray at the longest wavelength differs by from that at the shortest.
+struct Drift {
+    Vec3 position = Vec3::Zero();
+    Vec3 direction = Vec3::Zero();
+};
 
 }  // namespace
 
@@ -28,56 +36,56 @@ BeamDrift::BeamDrift(const Scene& scene, const CasterMesh& caster, const LightSa
       ends_{LitCaster(scene, caster, lights_[0]), LitCaster(scene, caster, lights_[1])} {}
 
 DriftAccount BeamDrift::add_to(Level& level, const std::vector<bool>& kept) const {
-    const VertexRay none{Vec3::Zero(), Vec3::Zero()};
     BeamSet& set = level.traced.set;
-    set.drifts.assign(set.rays.size(), none);
-    std::vector<bool> asked(set.rays.size());
-    std::vector<bool> known(set.rays.size());
+    set.ends = {set.rays, set.rays};
+    std::vector<Known> known(set.rays.size(), Known::not_asked);
     DriftAccount account;
     for (std::uint32_t beam = 0; beam < set.beams.size(); ++beam) {
         if (!kept[beam]) continue;
         const Path first(scene_, ends_[0], level, beam);
         const Path last(scene_, ends_[1], level, beam);
         for (const std::uint32_t ray : set.beams[beam].corners) {
-            if (ray == Beam::none || asked[ray]) continue;
-            asked[ray] = true;
+            if (ray == Beam::none || known[ray] != Known::not_asked) continue;
             const PathPoint a = first.from(level.traced.origins[ray]);
             const PathPoint b = last.from(level.traced.origins[ray]);
             const VertexRay& middle = set.rays[ray];
             account.rays += 1;
-            known[ray] = a.alive || b.alive;
-            if (a.alive && b.alive) {
-                set.drifts[ray] = half_way(a.ray, b.ray, 0.5F);
-                const Vec3 mean = (a.ray.direction + b.ray.direction) / 2;
-                account.bend =
-                    std::max(account.bend, static_cast<double>((mean - middle.direction).norm()));
-            } else if (a.alive) {
-                set.drifts[ray] = half_way(a.ray, middle, 1);
-            } else if (b.alive) {
-                set.drifts[ray] = half_way(middle, b.ray, 1);
-            } else {
-                account.unknown += 1;
-            }
+            known[ray] = a.alive || b.alive ? Known::yes : Known::no;
+            if (known[ray] == Known::no) continue;
+            set.ends[0][ray] = a.alive ? a.ray : beyond(b.ray, middle);
+            set.ends[1][ray] = b.alive ? b.ray : beyond(a.ray, middle);
+            if (!a.alive || !b.alive) continue;
+            const Vec3 mean = (a.ray.direction + b.ray.direction) / 2;
+            account.bend =
+                std::max(account.bend, static_cast<double>((mean - middle.direction).norm()));
         }
     }
-    for (std::uint32_t beam = 0; beam < set.beams.size(); ++beam) {
-        if (!kept[beam]) continue;
-        VertexRay sum = none;
-        float count = 0;
-        for (const std::uint32_t ray : set.beams[beam].corners) {
-            if (ray == Beam::none || !known[ray]) continue;
-            sum.position += set.drifts[ray].position;
-            sum.direction += set.drifts[ray].direction;
-            ++count;
-        }
-        if (count == 0) continue;
-        for (const std::uint32_t ray : set.beams[beam].corners)
-            if (ray != Beam::none && asked[ray] && !known[ray]) {
-                set.drifts[ray] = half_way(none, sum, 1 / count);
-                asked[ray] = false;  // it is the first beam's that knows
-            }
-    }
+    for (std::uint32_t beam = 0; beam < set.beams.size(); ++beam)
+        if (kept[beam]) account.unknown += guess(set, set.beams[beam], known);
     return account;
+}
+
+double BeamDrift::guess(BeamSet& set, const Beam& beam, std::vector<Known>& known) {
+    Drift mean;
+    float count = 0;
+    for (const std::uint32_t ray : beam.corners) {
+        if (ray == Beam::none || known[ray] != Known::yes) continue;
+        mean.position += (set.ends[1][ray].position - set.ends[0][ray].position) / 2;
+        mean.direction += (set.ends[1][ray].direction - set.ends[0][ray].direction) / 2;
+        ++count;
+    }
+    double guessed = 0;
+    for (const std::uint32_t ray : beam.corners) {
+        if (ray == Beam::none || known[ray] != Known::no) continue;
+        guessed += 1;
+        known[ray] = Known::guessed;
+        if (count == 0) continue;
+        const VertexRay& middle = set.rays[ray];
+        set.ends[0][ray] = {middle.position - mean.position / count,
+                            (middle.direction - mean.direction / count).normalized()};
+        set.ends[1][ray] = beyond(set.ends[0][ray], middle);
+    }
+    return guessed;
 }
 
 }  // namespace caustics

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "beamtree/beams/lit_caster.h"
@@ -18,7 +19,7 @@ struct DriftAccount {
     void add(const DriftAccount& other);
 };
 
-/// Finds how the rays of a set move with the wavelength (BeamSet::drifts): each is sent again, from its place on
+/// Finds how the rays of a set move with the wavelength (BeamSet::ends): each is sent again, from its place on
 /// the first surface and along its beam's way, at both ends of the light's bin. Where at one end it
 /// comes to another piece of a surface, the other end tells; where at both, the other corners of a beam do.
 class BeamDrift {
@@ -32,8 +33,12 @@ public:
     DriftAccount add_to(Level& level, const std::vector<bool>& kept) const;
 
 private:
+    enum class Known : std::uint8_t { not_asked, yes, no, guessed };
+    // How rays move that go no way at either end; returns their number.
+    static double guess(BeamSet& set, const Beam& beam, std::vector<Known>& known);
+
     const Scene& scene_;
-    std::array<LightSample, 2> lights_;
+    std::array<LightSample, 2> lights_;  ///< at the ends of the bin
     std::array<LitCaster, 2> ends_;
 };
 

@@ -21,6 +21,19 @@ void refuse_what_is_lost(const std::string& method, const FluxBalance& balance) 
         "photonmap)");
 }
 
+Ior most_dispersive_glass(const Scene& scene) {
+    const auto spread = [](const Ior& ior) {
+        return std::abs(ior.at(static_cast<float>(shortest_wavelength)) -
+                        ior.at(static_cast<float>(longest_wavelength)));
+    };
+    Ior most = 1;
+    for (const Shape& shape : scene.shapes())
+        if (const auto* glass = std::get_if<Dielectric>(&shape.bsdf.model))
+            for (const Ior& ior : {glass->int_ior, glass->ext_ior})
+                if (spread(ior) > spread(most)) most = ior;
+    return most;
+}
+
 }  // namespace
 
 BuildReport TracedScene::report() const {
@@ -80,7 +93,9 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);
     std::vector<LightSample> lights = sample_lights(scene, params.light_samples, options.seed);
     if (disperses(scene)) {
-        lights = dispersed(lights, params.wavelengths, params.dispersion);
+        lights = params.dispersion == Dispersion::intervals
+                     ? drifting(lights, params.wavelengths, most_dispersive_glass(scene))
+                     : dispersed(lights, params.wavelengths);
         traced.wavelengths = params.wavelengths;
     }
     TracedBeams beams =

@@ -98,8 +98,6 @@ private:
     SpectrumSum scale_;
 };
 
-double inverse_square(double nm) { return 1 / (nm * nm); }
-
 const SpectralTable& table() {
     static const SpectralTable made;
     return made;
@@ -115,19 +113,6 @@ SpectrumSum channel_density(double nm) {
 SampledWavelength sample_wavelength(double u) {
     const double nm = table().wavelength_at(u);
     return {static_cast<float>(nm), table().weight_at(nm).cast<float>()};
-}
-
-double WavelengthBin::wavelength_at(double place) const {
-    return 1 / std::sqrt(((1 - place) * inverse_square(static_cast<double>(from)) +
-                          (1 + place) * inverse_square(static_cast<double>(to))) /
-                         2);
-}
-
-double WavelengthBin::place_of(double wavelength) const {
-    const double first = inverse_square(static_cast<double>(from));
-    return 2 * (inverse_square(wavelength) - first) /
-               (inverse_square(static_cast<double>(to)) - first) -
-           1;
 }
 
 SpectrumSum channel_integral(double from, double to) {

@@ -38,12 +38,6 @@ struct WavelengthBin {
     float from = 0;                      ///< [nm]
     float to = 0;                        ///< [nm]; the next bin's `from`
     Spectrum weight = Spectrum::Ones();  ///< integral of c_k; those of all bins add up to 1
-
-    /// The wavelength at a place of the bin, -1 at `from` and 1 at `to`: linear in its inverse square, as an
-    /// index of refraction nearly is.
-    double wavelength_at(double place) const;
-    /// Where in the bin a wavelength [nm] lies; the inverse.
-    double place_of(double wavelength) const;
 };
 /// Integral of c_k between two wavelengths [nm].
 SpectrumSum channel_integral(double from, double to);

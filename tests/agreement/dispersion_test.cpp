@@ -138,13 +138,13 @@ TEST(Dispersion, BeamsPaintThemToTheirNumberOfWavelengths) {
     expect_right(*build(scene, polygons, RunOptions{}), 3.0 / 64);
 }
 
-// Four parts of the wavelengths stand for hundreds: what is left is that corners move linearly within one.
+// Eight parts of the wavelengths stand for hundreds: what is left is that corners move linearly within one.
 TEST(Dispersion, BeamsAskForTheIntervalsOfWavelengths) {
     const Scene scene = lit_from_far(heavy);
     const std::vector<ReceiverPoint> points = across(scene, 0);
     BeamTreeParams params;
     params.mesh_resolution = 4;
-    params.wavelengths = 4;
+    params.wavelengths = 8;
     params.dispersion = Dispersion::intervals;
     const auto expect_right = [&](const std::string& what) {
         const auto tree = build(scene, params, RunOptions{});

@@ -220,8 +220,8 @@ TEST(Knobs, AreAllTurnedAbove) {
           "load"}},  // these three: photonmap/progressive_test, kept_photons_test
         {"beamtree",
          {"bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity", "footprint",
-          "polygons", "light_samples", "mesh_resolution", "max_bounces",
-          "wavelengths"}},  // the last: agreement/dispersion_test
+          "polygons", "light_samples", "mesh_resolution", "max_bounces", "wavelengths",
+          "dispersion"}},  // the last two: agreement/dispersion_test
         {"causticpolygons",
          {"polygons", "light_samples", "mesh_resolution", "max_bounces", "wavelengths",
           "receiver_resolution"}},
