@@ -5,6 +5,7 @@
 #include "beamtree/beam_estimator.h"
 #include "beamtree/beam_parameters.h"
 #include "beamtree/beams/trace_progress.h"
+#include "beamtree/light/find_in_beam.h"
 #include "beamtree/receiver_polygons.h"
 #include "core/base/parallel.h"
 

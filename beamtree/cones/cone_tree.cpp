@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "beamtree/cones/cone_merging.h"
+#include "beamtree/light/find_in_beam.h"
 #include "core/base/interrupt.h"
 
 namespace caustics {

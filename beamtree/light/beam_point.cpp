@@ -7,8 +7,6 @@
 #include <optional>
 #include <tuple>
 
-#include "beamtree/light/drifting_beam.h"
-
 namespace caustics {
 namespace {
 
@@ -329,26 +327,6 @@ std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, st
     const Tested tested = test_triangle(Corners{&corners[0], &corners[1], &corners[2]}, plane);
     if (!tested.is_hit()) return {};
     return hit_in(tested.found, number, plane);
-}
-
-void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
-                  std::vector<BeamHit>& hits, SearchCounts& counts) {
-    if (set.drifts()) {
-        const std::size_t before = hits.size();
-        find_in_drifting_beam(set, number, plane, hits);
-        ++counts.beam_point_tests;
-        counts.beam_point_hits += hits.size() > before ? 1 : 0;
-        return;
-    }
-    std::array<BeamHit, 2> found;
-    const int count = test_beam(set, set.beams[number.beam], plane, found);
-    ++counts.beam_point_tests;
-    counts.beam_point_hits += count > 0 ? 1 : 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        found[i].set = number.set;
-        found[i].beam = number.beam;
-        hits.push_back(found[i]);
-    }
 }
 
 }  // namespace caustics

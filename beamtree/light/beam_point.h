@@ -81,10 +81,6 @@ struct SearchCounts {
     std::uint64_t beam_point_hits = 0;
 };
 
-/// test_beam for the beam `number` of `set`, or find_in_drifting_beam where it drifts: counts the test, and appends its hits with that number.
-void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
-                  std::vector<BeamHit>& hits, SearchCounts& counts);
-
 /// Where the light goes down to a plane more than this times as steeply in one corner of a polygon as in
 /// another, it is not evenly lit.
 inline constexpr double most_uneven = 2;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "beamtree/light/find_in_beam.h"
+
 namespace caustics {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "beamtree/light/find_in_beam.h"
 #include "beamtree/slices/beam_square.h"
 #include "beamtree/slices/slice_build.h"
 #include "beamtree/slices/slice_hierarchy.h"

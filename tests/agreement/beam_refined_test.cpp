@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "beamtree/beam_tree.h"
+#include "beamtree/light/find_in_beam.h"
 #include "beamtree/light/refined_density.h"
 #include "beamtree/tracing/beam_tracing.h"
 #include "core/geometry/tessellate.h"

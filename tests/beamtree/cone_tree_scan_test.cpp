@@ -10,6 +10,7 @@
 
 #include "beamtree/cones/cone_tree.h"
 #include "beamtree/cones/plane_groups.h"
+#include "beamtree/light/find_in_beam.h"
 #include "beamtree/slices/slice_tree.h"
 #include "core/math/sampling.h"
 #include "tests/beamtree/beam_scenes.h"

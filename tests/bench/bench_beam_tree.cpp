@@ -18,6 +18,7 @@
 #include <string>
 
 #include "beamtree/cones/cone_tree.h"
+#include "beamtree/light/find_in_beam.h"
 #include "beamtree/slices/slice_tree.h"
 #include "core/base/parallel.h"
 #include "tests/bench/beam_scan_peer.h"
