@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/interrupt.h"
+
 namespace caustics {
 namespace {
 
@@ -42,6 +44,7 @@ DriftAccount BeamDrift::add_to(Level& level, const std::vector<bool>& kept) cons
     DriftAccount account;
     for (std::uint32_t beam = 0; beam < set.beams.size(); ++beam) {
         if (!kept[beam]) continue;
+        throw_if_interrupted();
         const Path first(scene_, ends_[0], level, beam);
         const Path last(scene_, ends_[1], level, beam);
         for (const std::uint32_t ray : set.beams[beam].corners) {
