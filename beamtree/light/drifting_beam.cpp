@@ -85,17 +85,19 @@ public:
         if (square != 0) add(q / square);
         if (q != 0) add(constant / q);
     }
-    void sort() { std::sort(places_.begin(), places_.begin() + count_); }
-    std::size_t count() const { return static_cast<std::size_t>(count_); }
+    std::size_t count() const { return count_; }
     double operator[](std::size_t i) const { return places_[i]; }
 
 private:
     void add(double place) {
-        if (place > -1 && place < 1) places_[static_cast<std::size_t>(count_++)] = place;
+        if (!(place > -1 && place < 1) || count_ == places_.size()) return;
+        std::size_t i = count_++;
+        for (; i > 0 && places_[i - 1] > place; --i) places_[i] = places_[i - 1];
+        places_[i] = place;
     }
 
-    std::array<double, 8> places_ = {-1, 1};
-    std::ptrdiff_t count_ = 2;
+    std::array<double, 8> places_ = {-1, 1};  // and two for each edge
+    std::size_t count_ = 2;
 };
 
 /// The triangle at one place.
@@ -188,7 +190,6 @@ void find_in_drifting_beam(const BeamSet& set, const BeamNumber& number, const T
         Places places;
         for (std::size_t i = 0; i < 3; ++i)
             places.add_crossings((*triangle)[i], (*triangle)[(i + 1) % 3]);
-        places.sort();
         for (std::size_t i = 0; i + 1 < places.count(); ++i)
             add_hits(*triangle, places[i], places[i + 1], like, plane, hits);
     }
