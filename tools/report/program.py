@@ -35,5 +35,6 @@ def machine(folders):
     found = [json.loads((folder / "environment.json").read_text(encoding="utf-8")) for folder in folders]
     loads = [float(each["load"].split()[0]) for each in found]
     first = found[0]
-    return (f"{first['cpu']}, {first['threads_available']} threads, {first['compiler']}, commit {first['commit']}; load "
+    commits = ", ".join(dict.fromkeys(each["commit"] for each in found))
+    return (f"{first['cpu']}, {first['threads_available']} threads, {first['compiler']}, commit {commits}; load "
             f"average {min(loads):.1f} to {max(loads):.1f} while the sweeps began ({first['date'][:10]}).")
