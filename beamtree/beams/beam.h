@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "beamtree/beams/light_sample.h"
@@ -45,6 +46,15 @@ struct Beam {
     bool inside = false;  ///< goes through the medium behind the last caster's front side
 
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
+    /// Corners of one of its triangles.
+    std::array<std::uint32_t, 3> triangle_corners(std::size_t which) const {
+        return {corners[0], corners[1 + which], corners[2 + which]};
+    }
+    /// Of the flux, in one of its triangles.
+    double share_of(std::size_t which) const {
+        if (triangle_count() == 1) return 1;
+        return static_cast<double>(which == 0 ? first_share : 1 - first_share);
+    }
 };
 
 /// What a caster has done with light.
@@ -73,10 +83,15 @@ struct BeamSet {
 
     /// Rays of one of a beam's triangles.
     std::array<const VertexRay*, 3> triangle(const Beam& beam, std::size_t which) const {
-        return {&rays[beam.corners[0]], &rays[beam.corners[1 + which]],
-                &rays[beam.corners[2 + which]]};
+        const auto [a, b, c] = beam.triangle_corners(which);
+        return {&rays[a], &rays[b], &rays[c]};
     }
     bool drifts() const { return !ends[0].empty(); }
+    /// Places in the bin between which are all of its rays.
+    std::span<const double> places() const {
+        static constexpr std::array<double, 3> all = {0, -1, 1};
+        return drifts() ? std::span(all).last(2) : std::span(all).first(1);
+    }
     /// A ray at a place in the light's bin of wavelengths, from -1 to 1.
     VertexRay ray(std::uint32_t number, double place) const {
         if (!drifts()) return rays[number];
@@ -87,8 +102,8 @@ struct BeamSet {
                 ((1 - share) * first.direction + share * last.direction).normalized()};
     }
     std::array<VertexRay, 3> triangle(const Beam& beam, std::size_t which, double place) const {
-        return {ray(beam.corners[0], place), ray(beam.corners[1 + which], place),
-                ray(beam.corners[2 + which], place)};
+        const auto [a, b, c] = beam.triangle_corners(which);
+        return {ray(a, place), ray(b, place), ray(c, place)};
     }
     std::uint64_t bytes() const {
         return (rays.size() + 2 * ends[0].size()) * sizeof(VertexRay) +

@@ -74,11 +74,13 @@ std::vector<LightSample> dispersed(const std::vector<LightSample>& samples, int 
 
 std::vector<LightSample> drifting(const std::vector<LightSample>& samples, int wavelengths,
                                   const Ior& glass) {
+    std::vector<BinPlaces> places;
+    for (const WavelengthBin& bin : wavelength_bins(wavelengths)) places.emplace_back(bin, glass);
     std::vector<LightSample> parts = dispersed(samples, wavelengths);
-    for (LightSample& part : parts) {
-        part.drifts = true;
-        part.places = BinPlaces(part.bin, glass);
-        part.bin.nm = static_cast<float>(part.places.wavelength_at(0));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i].drifts = true;
+        parts[i].places = places[i % places.size()];
+        parts[i].bin.nm = static_cast<float>(parts[i].places.wavelength_at(0));
     }
     return parts;
 }

@@ -25,18 +25,14 @@ NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
         };
         for (const std::uint32_t index : beams) {
             const Beam& beam = set.beams[index];
-            for (std::size_t i = 0; i < beam.triangle_count(); ++i)
-                rays.triangles.push_back(
-                    {add(beam.corners[0]), add(beam.corners[1 + i]), add(beam.corners[2 + i])});
+            for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
+                const auto [a, b, c] = beam.triangle_corners(i);
+                rays.triangles.push_back({add(a), add(b), add(c)});
+            }
         }
     };
-    if (!set.drifts()) {
-        add_beams(0);
-    } else {
-        // What moves from one end to the other stays between the two.
-        add_beams(-1);
-        add_beams(1);
-    }
+    // What moves from one end to the other stays between the two.
+    for (const double place : set.places()) add_beams(place);
     return rays;
 }
 

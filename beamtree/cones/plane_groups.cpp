@@ -18,8 +18,10 @@ Vec3 axis_of(std::size_t i) {
 
 // Of a ray at all wavelengths of its set.
 float least_along(const BeamSet& set, std::uint32_t ray, const Vec3& axis) {
-    if (!set.drifts()) return set.rays[ray].direction.dot(axis);
-    return std::min(set.ray(ray, -1).direction.dot(axis), set.ray(ray, 1).direction.dot(axis));
+    float least = 1;
+    for (const double place : set.places())
+        least = std::min(least, set.ray(ray, place).direction.dot(axis));
+    return least;
 }
 
 float least_along(const BeamSet& set, const Beam& beam, const Vec3& axis) {
@@ -64,7 +66,7 @@ std::vector<PlaneGroup> fixed_planes(const BeamSet& set) {
     }
     std::vector<Vec3d> directions;
     for (std::uint32_t ray = 0; ray < set.rays.size(); ++ray)
-        for (const double place : {-1.0, 1.0})
+        for (const double place : set.places())
             directions.emplace_back(set.ray(ray, place).direction.cast<double>());
     const Cap cap = smallest_cap(directions);
     if (cap.cosine > static_cast<double>(least_sine) + 1e-6) {

@@ -7,49 +7,10 @@
 #include <optional>
 #include <tuple>
 
+#include "beamtree/light/projected.h"
+
 namespace caustics {
 namespace {
-
-// Rays flatter than this to the plane count as going along it.
-constexpr double least_steepness = 1e-4;
-
-/// A ray as the plane sees it.
-struct RayOnPlane {
-    const VertexRay* ray;
-    double height;
-    double steepness;
-    Vec2d at;  ///< where it meets the plane, from the point; only of rays that come down
-
-    bool comes_down() const { return height > 0 && steepness > least_steepness; }
-};
-
-inline RayOnPlane on_plane(const VertexRay& ray, const TestPlane& plane) {
-    RayOnPlane found{&ray, plane.height(ray.position), plane.steepness(ray.direction),
-                     Vec2d::Zero()};
-    if (found.comes_down())
-        found.at = plane.project(ray.position, found.height / found.steepness, ray.direction);
-    return found;
-}
-
-/// A triangle of a beam projected on the plane.
-struct Projected {
-    int winding = 0;
-    double area = 0;  ///< signed, in the two coordinates
-    Vec3d weights = Vec3d::Zero();
-    double share = 1;  ///< of the triangle that is not clipped away
-};
-
-Projected project_whole(const std::array<RayOnPlane, 3>& rays) {
-    Projected found;
-    const Vec2d& a = rays[0].at;
-    const Vec2d& b = rays[1].at;
-    const Vec2d& c = rays[2].at;
-    found.winding = edge_crossing(a, b) + edge_crossing(b, c) + edge_crossing(c, a);
-    found.area = cross(b - a, c - a) / 2;
-    if (found.winding != 0)
-        found.weights = Vec3d(cross(b, c), cross(c, a), cross(a, b)) / (2 * found.area);
-    return found;
-}
 
 /// What cuts a clipped triangle: nothing (its own corner), the plane, or rays that run along it.
 enum class Limit { none, height, steepness };
@@ -269,14 +230,16 @@ struct Tested {
     Projected found;
     bool apart;  ///< clipped, or not lit evenly
 
-    bool is_hit() const { return found.winding != 0 && found.area != 0; }
+    bool is_hit() const { return found.is_hit(); }
 };
 
 inline Tested test_triangle(const Corners& corners, const TestPlane& plane) {
     const std::array<RayOnPlane, 3> rays = on_plane(corners, plane);
     const bool whole = rays[0].comes_down() && rays[1].comes_down() && rays[2].comes_down();
     const bool uneven = is_uneven(rays);
-    Tested tested{whole ? project_whole(rays) : project_clipped(plane, rays), !whole || uneven};
+    Tested tested{
+        whole ? projected(rays[0].at, rays[1].at, rays[2].at) : project_clipped(plane, rays),
+        !whole || uneven};
     if (uneven && tested.found.winding != 0) measure_across(corners, plane, tested.found);
     return tested;
 }
@@ -296,22 +259,13 @@ int test_quad(const BeamSet& set, const Beam& beam, const TestPlane& plane,
         if (together)
             hit.area = std::abs(parts[0].found.area + parts[1].found.area) * plane.area_scale();
         else
-            hit.flux_share *= static_cast<double>(i == 0 ? beam.first_share : 1 - beam.first_share);
+            hit.flux_share *= beam.share_of(i);
         hits[static_cast<std::size_t>(written++)] = hit;
     }
     return written;
 }
 
 }  // namespace
-
-TestPlane::TestPlane(const Vec3& point, const Vec3& normal)
-    : point_(point.cast<double>()), normal_(normal.cast<double>()) {
-    int longest = 0;
-    normal_.cwiseAbs().maxCoeff(&longest);
-    u_ = (longest + 1) % 3;
-    v_ = (longest + 2) % 3;
-    area_scale_ = normal_.norm() / std::abs(normal_[longest]);
-}
 
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "beamtree/light/projected.h"
+
 namespace caustics {
 namespace {
 
@@ -25,34 +27,20 @@ struct MovingCorner {
 
 using MovingTriangle = std::array<MovingCorner, 3>;
 
-/// Where a ray meets the plane, if it comes down to it, and how steeply.
-struct Landing {
-    Vec2d at;
-    double steepness;
-};
-
-std::optional<Landing> land_on(const TestPlane& plane, const VertexRay& ray) {
-    const double height = plane.height(ray.position);
-    const double steepness = plane.steepness(ray.direction);
-    if (!(height > 0 && steepness > 1e-4)) return {};
-    return Landing{plane.project(ray.position, height / steepness, ray.direction), steepness};
-}
-
 // Empty where the plane cuts the triangle or its light is uneven.
-std::optional<MovingTriangle> on_plane(const BeamSet& set, const Beam& beam, std::size_t which,
-                                       const TestPlane& plane) {
-    const std::array<std::uint32_t, 3> corners = {beam.corners[0], beam.corners[1 + which],
-                                                  beam.corners[2 + which]};
+std::optional<MovingTriangle> moving_triangle(const BeamSet& set, const Beam& beam,
+                                              std::size_t which, const TestPlane& plane) {
+    const std::array<std::uint32_t, 3> corners = beam.triangle_corners(which);
     MovingTriangle triangle;
     double least = 1;
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const auto a = land_on(plane, set.ends[0][corners[i]]);
-        const auto b = land_on(plane, set.ends[1][corners[i]]);
-        if (!a || !b) return {};
-        triangle[i] = {(a->at + b->at) / 2, (b->at - a->at) / 2};
-        least = std::min({least, a->steepness, b->steepness});
-        most = std::max({most, a->steepness, b->steepness});
+        const RayOnPlane a = on_plane(set.ends[0][corners[i]], plane);
+        const RayOnPlane b = on_plane(set.ends[1][corners[i]], plane);
+        if (!a.comes_down() || !b.comes_down()) return {};
+        triangle[i] = {(a.at + b.at) / 2, (b.at - a.at) / 2};
+        least = std::min({least, a.steepness, b.steepness});
+        most = std::max({most, a.steepness, b.steepness});
     }
     if (most > most_uneven * least) return {};
     return triangle;
@@ -100,52 +88,36 @@ private:
     std::size_t count_ = 2;
 };
 
-/// The triangle at one place.
-class Still {
-public:
-    Still(const MovingTriangle& triangle, double place)
-        : corners_{triangle[0].at(place), triangle[1].at(place), triangle[2].at(place)} {}
+Projected projected_at(const MovingTriangle& triangle, double place) {
+    return projected(triangle[0].at(place), triangle[1].at(place), triangle[2].at(place));
+}
 
-    double area() const { return (side(0) + side(1) + side(2)) / 2; }
-    // Half-open: of two triangles with a common edge one holds a point on it.
-    bool holds_origin() const {
-        const auto& [a, b, c] = corners_;
-        return edge_crossing(a, b) + edge_crossing(b, c) + edge_crossing(c, a) != 0;
-    }
-    Vec3d weights() const { return Vec3d(side(1), side(2), side(0)) / (2 * area()); }
-
-private:
-    double side(std::size_t i) const { return cross(corners_[i], corners_[(i + 1) % 3]); }
-
-    std::array<Vec2d, 3> corners_;
-};
-
-// Over an interval, by Simpson's rule where the polygon does not turn over.
-double mean_inverse_area(const MovingTriangle& triangle, double from, double to) {
-    const double first = Still(triangle, from).area();
-    const double middle = Still(triangle, (from + to) / 2).area();
-    const double last = Still(triangle, to).area();
+// Over an interval with this area in its middle, by Simpson's rule where the polygon does not turn over.
+double mean_inverse_area(const MovingTriangle& triangle, double from, double to, double middle) {
+    const double first = projected_at(triangle, from).area;
+    const double last = projected_at(triangle, to).area;
     if (first * middle <= 0 || last * middle <= 0) return 1 / std::abs(middle);
     return std::abs(1 / first + 4 / middle + 1 / last) / 6;
 }
 
 void add_hits(const MovingTriangle& triangle, double from, double to, const BeamHit& like,
               const TestPlane& plane, std::vector<BeamHit>& hits) {
-    const Still middle(triangle, (from + to) / 2);
-    if (!middle.holds_origin()) return;
-    const double change = std::abs(Still(triangle, to).area() - Still(triangle, from).area()) /
-                          std::abs(middle.area());
+    const Projected middle = projected_at(triangle, (from + to) / 2);
+    if (!middle.is_hit()) return;
+    const double change =
+        std::abs(projected_at(triangle, to).area - projected_at(triangle, from).area) /
+        std::abs(middle.area);
     const int parts =
         static_cast<int>(std::clamp(std::ceil(change / steady), 1.0, 1.0 * most_parts));
     for (int i = 0; i < parts; ++i) {
         BeamHit hit = like;
         hit.from = from + (to - from) * i / parts;
         hit.to = from + (to - from) * (i + 1) / parts;
-        const Still still(triangle, hit.place());
-        if (!still.holds_origin()) continue;
-        hit.winding = still.area() > 0 ? 1 : -1;
-        hit.area = plane.area_scale() / mean_inverse_area(triangle, hit.from, hit.to);
-        hit.weights = still.weights().cast<float>();
+        const Projected still = parts == 1 ? middle : projected_at(triangle, hit.place());
+        if (!still.is_hit()) continue;
+        hit.winding = still.area > 0 ? 1 : -1;
+        hit.area = plane.area_scale() / mean_inverse_area(triangle, hit.from, hit.to, still.area);
+        hit.weights = still.weights.cast<float>();
         hits.push_back(hit);
     }
 }
@@ -178,10 +150,8 @@ void find_in_drifting_beam(const BeamSet& set, const BeamNumber& number, const T
         like.beam = number.beam;
         like.triangle = static_cast<std::uint8_t>(which);
         like.plane_normal = plane.normal().cast<float>();
-        if (beam.triangle_count() == 2)
-            like.flux_share =
-                static_cast<double>(which == 0 ? beam.first_share : 1 - beam.first_share);
-        const auto triangle = on_plane(set, beam, which, plane);
+        like.flux_share = beam.share_of(which);
+        const auto triangle = moving_triangle(set, beam, which, plane);
         if (!triangle) {
             add_narrow_hits(set, like, plane, hits);
             continue;

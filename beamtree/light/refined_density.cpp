@@ -43,8 +43,7 @@ public:
     static std::optional<SmoothTriangle> on(const TestPlane& plane, const BeamSet& set,
                                             const Beam& beam, std::size_t which, double place) {
         SmoothTriangle found;
-        const std::array<std::uint32_t, 3> rays = {beam.corners[0], beam.corners[1 + which],
-                                                   beam.corners[2 + which]};
+        const std::array<std::uint32_t, 3> rays = beam.triangle_corners(which);
         std::array<Vec2d, 3> at;
         for (std::size_t i = 0; i < 3; ++i) {
             const VertexRay ray = set.ray(rays[i], place);

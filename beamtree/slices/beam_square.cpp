@@ -119,8 +119,7 @@ void find_on_square(const BeamSet& set, const BeamNumber& number, const TestPlan
         hit.weights = weights_at(part.middle, triangles[i], areas[i]);
         hit.area = std::abs(together ? areas[0] + areas[1] : areas[i]);
         hit.coverage = std::abs(part.area) / (4 * square.half * square.half);
-        if (count == 2 && !together)
-            hit.flux_share = static_cast<double>(i == 0 ? beam.first_share : 1 - beam.first_share);
+        if (count == 2 && !together) hit.flux_share = beam.share_of(i);
         hits.push_back(hit);
     }
     counts.beam_point_hits += hits.size() > before ? 1 : 0;

@@ -14,12 +14,7 @@ using SliceDrift = std::array<float, 2>;
 /// planes they hold them at every height, because the least of linear functions is concave.
 class SliceBox {
 public:
-    void extend(const RaySlices& ray) {
-        const Half at = Eigen::Map<const Half>(ray.data());
-        bounds_ << bounds_.head<4>().min(at), bounds_.tail<4>().min(-at);
-    }
-    /// By a ray that moves so far along the axes.
-    void extend(const RaySlices& ray, const SliceDrift& drift) {
+    void extend(const RaySlices& ray, const SliceDrift& drift = {}) {
         const Half at = Eigen::Map<const Half>(ray.data());
         const Half far(drift[0], drift[1], drift[0], drift[1]);
         bounds_ << bounds_.head<4>().min(at - far), bounds_.tail<4>().min(-at - far);

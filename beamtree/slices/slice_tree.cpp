@@ -31,12 +31,6 @@ void for_each_ray(const SlicedBeams& from, const BeamNumber& number, const Do& a
         if (corner != Beam::none) act(corner);
 }
 
-// Those that tell all of a bin of wavelengths.
-std::span<const double> places_of(const BeamSet& set) {
-    static constexpr std::array<double, 3> places = {0, -1, 1};
-    return std::span(places).first(set.drifts() ? 3 : 1);
-}
-
 // The slab from above all polygons to below all receivers, both a little beyond: heights are
 // rounded.
 SliceFrame frame_of(const SlicedBeams& from) {
@@ -44,7 +38,7 @@ SliceFrame frame_of(const SlicedBeams& from) {
     double top = -std::numeric_limits<double>::infinity();
     for (const BeamNumber& number : from.beams)
         for_each_ray(from, number, [&](std::uint32_t ray) {
-            for (const double place : places_of(from.sets[number.set]))
+            for (const double place : from.sets[number.set].places())
                 top = std::max(
                     top, up.dot(from.sets[number.set].ray(ray, place).position.cast<double>()));
         });
@@ -92,8 +86,7 @@ public:
         const Beam& beam = set.beams[number.beam];
         for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
             SlicedTriangle triangle;
-            const std::array<std::uint32_t, 3> corners = {beam.corners[0], beam.corners[1 + i],
-                                                          beam.corners[2 + i]};
+            const std::array<std::uint32_t, 3> corners = beam.triangle_corners(i);
             double highest = frame_.bottom();
             double lowest = frame_.top();
             for (std::size_t c = 0; c < 3; ++c) {
@@ -101,7 +94,7 @@ public:
                 for (std::size_t axis = 0; axis < 2; ++axis)
                     triangle.drift[axis] =
                         std::max(triangle.drift[axis], drifts_[number.set][corners[c]][axis]);
-                for (const double at : places_of(set)) {
+                for (const double at : set.places()) {
                     const double height = frame_.height(set.ray(corners[c], at).position);
                     highest = std::max(highest, height);
                     lowest = std::min(lowest, height);
@@ -117,8 +110,10 @@ public:
 private:
     // Of a ray that moves, the middle of its way and half of it.
     void slice(const BeamSet& set, std::uint32_t ray, RaySlices& middle, SliceDrift& drift) const {
-        middle = frame_.slices(set.rays[ray]);
-        if (!set.drifts()) return;
+        if (!set.drifts()) {
+            middle = frame_.slices(set.rays[ray]);
+            return;
+        }
         const RaySlices first = frame_.slices(set.ends[0][ray]);
         const RaySlices last = frame_.slices(set.ends[1][ray]);
         for (std::size_t i = 0; i < middle.size(); ++i) {

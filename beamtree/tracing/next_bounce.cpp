@@ -70,8 +70,7 @@ private:
 
     void follow_triangle(std::uint32_t beam, std::size_t which) {
         const Beam& parent = set_.beams[beam];
-        const std::array<std::uint32_t, 3> rays = {parent.corners[0], parent.corners[1 + which],
-                                                   parent.corners[2 + which]};
+        const std::array<std::uint32_t, 3> rays = parent.triangle_corners(which);
         const RayArrival& a = level_.arrivals[rays[0]];
         const RayArrival& b = level_.arrivals[rays[1]];
         const RayArrival& c = level_.arrivals[rays[2]];

@@ -1,4 +1,5 @@
 #include "beamtree/light/beam_point.h"
+#include "beamtree/light/projected.h"
 
 #include <gtest/gtest.h>
 
