@@ -10,11 +10,6 @@ namespace caustics {
 
 namespace {
 
-bool has_dispersion(const Shape& shape) {
-    const auto* glass = std::get_if<Dielectric>(&shape.bsdf.model);
-    return glass != nullptr && glass->is_dispersive();
-}
-
 /// The scene in the light of one bin, whose glass has one index.
 SceneDesc in_light_of(const WavelengthBin& bin, SceneDesc scene) {
     for (PointLight& light : scene.point_lights) light.intensity *= bin.weight;
@@ -22,7 +17,7 @@ SceneDesc in_light_of(const WavelengthBin& bin, SceneDesc scene) {
     if (scene.constant_light) scene.constant_light->radiance *= bin.weight;
     for (Shape& shape : scene.shapes) {
         if (shape.radiance) *shape.radiance *= bin.weight;
-        if (!has_dispersion(shape)) continue;
+        if (!is_dispersive(shape.bsdf)) continue;
         auto& glass = std::get<Dielectric>(shape.bsdf.model);
         glass.int_ior = static_cast<float>(glass.int_ior.at(bin.nm));
         glass.ext_ior = static_cast<float>(glass.ext_ior.at(bin.nm));
@@ -34,7 +29,7 @@ SceneDesc in_light_of(const WavelengthBin& bin, SceneDesc scene) {
 
 ExportedScene to_mitsuba_by_wavelength(const SceneDesc& scene, const ExportSettings& settings,
                                        int wavelengths) {
-    if (std::ranges::none_of(scene.shapes, has_dispersion))
+    if (std::ranges::none_of(scene.shapes, [](const Shape& s) { return is_dispersive(s.bsdf); }))
         refuse_export(settings, "/", "no glass disperses light; leave out --wavelengths");
     ExportedScene all;
     std::set<std::string> written;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "beamtree/beam_tree.h"
@@ -11,6 +12,7 @@
 #include "core/reference/light_trace.h"
 #include "core/reference/path_trace.h"
 #include "core/render/eye_path.h"
+#include "experiments/gallery/meridian.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/flat_pool.h"
@@ -263,51 +265,24 @@ TEST(Dispersion, StillWaterIsTheClosedFormOverItsWavelengths) {
         [](double r, double n) { return pool::floor_irradiance(r, pool::height, n); }, beams, 1e-3);
 }
 
-/// A ray in the plane of the axis (r, z), and the share of light that is left.
-struct MeridianRay {
-    Vec2d origin, direction;
-    double left = 1;
-
-    // At a surface's normal, on the ray's side.
-    void refract(const Vec2d& normal, double n) {
-        const double cos_i = -direction.dot(normal);
-        const double cos_t = support::refracted_cosine(cos_i, n);
-        left *= 1 - support::fresnel(cos_i, n);
-        direction = direction / n + (cos_i / n - cos_t) * normal;
-    }
-};
-
 constexpr double lamp_height = 3, ball_height = 0.7, ball_radius = 0.5;
 
 // Where light that leaves the lamp at an angle from the axis comes to the floor through the ball.
-MeridianRay through_ball(double angle, double n) {
+std::optional<Landing> through_ball(double angle, double n) {
     const Vec2d centre(0, ball_height);
-    MeridianRay ray{{0, lamp_height}, {std::sin(angle), -std::cos(angle)}};
-    const Vec2d from = ray.origin - centre;
-    const double along = from.dot(ray.direction);
-    ray.origin -=
-        (along + std::sqrt(along * along - from.squaredNorm() + ball_radius * ball_radius)) *
-        ray.direction;
+    PlaneRay ray{{0, lamp_height}, {std::sin(angle), -std::cos(angle)}};
+    if (!ray.reach_circle(ball_height, ball_radius, true)) return {};
     ray.refract((ray.origin - centre) / ball_radius, n);
-    ray.origin -= 2 * (ray.origin - centre).dot(ray.direction) * ray.direction;
-    ray.refract((centre - ray.origin) / ball_radius, 1 / n);
-    ray.origin -= ray.origin.y() / ray.direction.y() * ray.direction;
-    return ray;
+    ray.reach_circle(ball_height, ball_radius, false);
+    if (!ray.refract((ray.origin - centre) / ball_radius, 1 / n) || !ray.reach_plane(0)) return {};
+    return Landing{ray.origin.x(), ray.share};
 }
 
-// Beyond the focus, where light comes from the other side of the axis, and from one angle alone.
 double below_ball(double r, double n) {
-    double low = 0.1;
-    double high = 0.21;
-    for (int i = 0; i < 100; ++i) {
-        const double angle = (low + high) / 2;
-        (-through_ball(angle, n).origin.x() < r ? low : high) = angle;
-    }
-    constexpr double step = 1e-5;
-    const double slope =
-        (through_ball(low + step, n).origin.x() - through_ball(low - step, n).origin.x()) /
-        (2 * step);
-    return power * std::sin(low) * through_ball(low, n).left / (r * std::abs(slope));
+    const Meridian light{[n](double angle) { return through_ball(angle, n); },
+                         [](double angle) { return 2 * pi_d * power * std::sin(angle); }, 0,
+                         std::asin(ball_radius / (lamp_height - ball_height))};
+    return light.irradiance(r);
 }
 
 TEST(Dispersion, ABallLensIsTheClosedFormOverItsWavelengths) {
