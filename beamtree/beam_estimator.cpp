@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace caustics {
+namespace caustics::beamtree {
 
 void BeamSearch::add_to(Counters& counters) const {
     counters["beam_point_tests"] += counts.beam_point_tests;
@@ -40,4 +40,4 @@ void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Esti
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -5,7 +5,7 @@
 #include "beamtree/light/beam_light.h"
 #include "beamtree/tracing/traced_scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// A thread's scratch and counters of a method that works with beams.
 class BeamSearch : public QueryContext {
@@ -49,4 +49,4 @@ private:
     BeamLight light_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

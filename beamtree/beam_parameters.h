@@ -5,7 +5,7 @@
 #include "beamtree/beams/beam_params.h"
 #include "core/method/parameter.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The rows of BeamParams in a method's table.
 template <class Params>
@@ -41,4 +41,4 @@ std::vector<Parameter<Params>> beam_parameters() {
             })};
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

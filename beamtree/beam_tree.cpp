@@ -2,7 +2,7 @@
 
 #include "beamtree/forest.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTree
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -2,7 +2,7 @@
 
 #include "beamtree/beam_parameters.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 namespace {
 
@@ -109,4 +109,4 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
     return method;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

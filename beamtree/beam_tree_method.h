@@ -3,8 +3,8 @@
 #include "beamtree/beam_tree.h"
 #include "core/method/described_method.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 const DescribedMethod<BeamTreeParams>& beamtree_method();
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

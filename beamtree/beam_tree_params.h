@@ -4,7 +4,7 @@
 #include "beamtree/cones/cone_tree.h"
 #include "beamtree/tracing/beam_tracing.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// `beamtree` [CC95]: the light that each specular polygon sends on is a beam; the beams of each
 /// light are found from a receiver point through a tree of cones.
@@ -30,4 +30,4 @@ struct BeamTreeParams : BeamParams {
     float footprint = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

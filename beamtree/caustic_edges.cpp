@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// Place and direction of a ray. Beams that share a point share these bits, even where a cut has
@@ -100,4 +100,4 @@ std::vector<CausticEdge> caustic_edges(const Scene& scene, const TracedScene& tr
     return edges;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

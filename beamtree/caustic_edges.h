@@ -4,7 +4,7 @@
 
 #include "beamtree/tracing/traced_scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// An edge of a caustic polygon where it falls on a receiver.
 struct CausticEdge {
@@ -22,4 +22,4 @@ struct CausticEdge {
 /// receiver, past no caster: where they meet another one they belong to further beams.
 std::vector<CausticEdge> caustic_edges(const Scene& scene, const TracedScene& traced);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

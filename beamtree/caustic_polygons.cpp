@@ -9,7 +9,7 @@
 #include "beamtree/receiver_polygons.h"
 #include "core/base/parallel.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 namespace {
 
@@ -170,4 +170,4 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene,
                                              std::move(lists));
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 #include "core/caustic_estimator.h"
 #include "core/method/described_method.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// `causticpolygons` [Watt 1990, as CC95 tells it]: every beam is swept through every diffuse polygon
 /// of the polygonised receivers, and those it meets keep it; a point is lit by the caustic polygons
@@ -25,4 +25,4 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene,
                                               const CausticPolygonsParams& params,
                                               const RunOptions& options);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

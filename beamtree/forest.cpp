@@ -7,7 +7,7 @@
 #include "beamtree/cones/plane_groups.h"
 #include "core/base/parallel.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// One tree to be built.
@@ -139,4 +139,4 @@ void Forest::add_to(BuildReport& report) const {
     report.resolved["trees_quadtree"] = static_cast<double>(trees - binned_);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

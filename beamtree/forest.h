@@ -9,7 +9,7 @@
 #include "beamtree/slices/slice_tree.h"
 #include "beamtree/tracing/traced_scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The trees that find a scene's beams. Each beam is in one of them: cone trees have the beams of
 /// one light sample, caster and event; trees of slices those of all that share the normal of the
@@ -32,4 +32,4 @@ private:
     std::uint64_t binned_ = 0;  ///< trees over `binned`
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

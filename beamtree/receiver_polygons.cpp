@@ -7,7 +7,7 @@
 #include "beamtree/beams/caster_mesh.h"
 #include "core/geometry/tessellate.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 Vec3 middle(const ReceiverPolygon& p) { return (p.a + p.b + p.c) / 3; }
@@ -122,4 +122,4 @@ std::uint32_t ReceiverPolygons::nearest(const Vec3& point, const Vec3& normal,
     return found;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -5,7 +5,7 @@
 
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// A diffuse polygon.
 struct ReceiverPolygon {
@@ -45,4 +45,4 @@ private:
     std::vector<Node> nodes_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

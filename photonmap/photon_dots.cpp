@@ -6,7 +6,7 @@
 #include "photonmap/photons/rgbe.h"
 #include "photonmap/tree/build_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::unique_ptr<const CausticEstimator> photon_dots(const Scene& scene, TracedPh
     return std::make_unique<PhotonDots>(scene, std::move(photons), radius, isa);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

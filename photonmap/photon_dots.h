@@ -5,7 +5,7 @@
 #include "core/caustic_estimator.h"
 #include "photonmap/photons/photon_tracing.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A drawing of the photons themselves, to be rendered in place of their caustic: a receiver point is
 /// as bright as 1 + log2 of the number of photons within `radius` pixels of it, as wide as a pixel is
@@ -15,4 +15,4 @@ namespace caustics {
 std::unique_ptr<const CausticEstimator> photon_dots(const Scene& scene, TracedPhotons photons,
                                                     double radius, Isa isa);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -11,7 +11,7 @@
 #include "photonmap/progressive.h"
 #include "photonmap/tree/build_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -176,4 +176,4 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
                                        params.tables);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -5,7 +5,7 @@
 #include "core/caustic_estimator.h"
 #include "photonmap/photons/photon_map_params.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Builds the map of pass 0, 1, ..., passes - 1; the passes' radiance is to be averaged.
 std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
@@ -21,4 +21,4 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PhotonMapParams& params,
                                               const RunOptions& options);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

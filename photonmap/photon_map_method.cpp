@@ -5,7 +5,7 @@
 
 #include "photonmap/photons/photon_map_file.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -216,4 +216,4 @@ const DescribedMethod<PhotonMapParams>& photonmap_method() {
     return method;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,10 +3,10 @@
 #include "core/method/described_method.h"
 #include "photonmap/photon_map.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Relative names of files start at the folder of the file that names them (a sweep file), or at the
 /// working folder.
 const DescribedMethod<PhotonMapParams>& photonmap_method();
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -2,7 +2,7 @@
 
 #include "core/math/rng.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 double pass_share(int pass) {
     constexpr double a = 2.0 / 3;
@@ -21,4 +21,4 @@ std::uint64_t pass_seed(std::uint64_t seed, int pass) {
     return std::uint64_t{words[1]} << 32U | words[0];
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Progressive photon mapping by independent passes [Knaus & Zwicker 2011]: the mean of the
 /// estimates of many maps, each with smaller discs, so that noise and blur both vanish while the
@@ -19,4 +19,4 @@ double pass_share(int pass);
 /// The seed of a pass; that of pass 0 is the run's own, so that one pass is an ordinary map.
 std::uint64_t pass_seed(std::uint64_t seed, int pass);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -53,6 +53,9 @@ MOST_FILES, MOST_NOUNS, MOST_README_LINES = 40, 25, 15
 FLAT = {"tests/agreement"}
 ROOMS_WITH_ROWS = {"photonmap", "beamtree"}
 SUFFIXES = {".h", ".hpp", ".cpp", ".inl"}
+NAMESPACES = {"photonmap": "caustics::photonmap", "beamtree": "caustics::beamtree",
+              "experiments": "caustics::experiments"}
+OPENED = re.compile(r"^(?:inline )?namespace (caustics[\w:]*) \{")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -165,6 +168,18 @@ def check(root):
     return files, wrong, others
 
 
+def strays(root, files):
+    """Namespaces opened in a top-level folder that has its own; what core declares may be named first."""
+    for source in sorted(files):
+        own = NAMESPACES.get(source.split("/")[0])
+        if own is None:
+            continue
+        opened = [match[1] for line in (root / source).read_text(encoding="utf-8").splitlines()
+                  if (match := OPENED.match(line))]
+        if opened and not any((name + "::").startswith(own + "::") for name in opened):
+            yield f"{source}: opens {', '.join(opened)}, not {own}"
+
+
 def self_test():
     """Every planted wrong arrow must be found, and no right one."""
     right = [
@@ -198,8 +213,14 @@ def self_test():
             with open(root / name, "a", encoding="utf-8") as file:
                 file.write(line + "\n")
         _, wrong, others = check(root)
+        (root / "photonmap/stray.h").write_text("namespace caustics {\n}\n", encoding="utf-8")
+        (root / "photonmap/home.h").write_text("namespace caustics {\nclass Film;\n}\n\n"
+                                               "namespace caustics::photonmap {\n}\n", encoding="utf-8")
+        strayed = list(strays(root, {"photonmap/stray.h", "photonmap/home.h"}))
         missed = [] if any("circle of units" in line for line in others) and any(
             "circle of folders" in line for line in others) else ["self-test: a planted circle went unseen"]
+    if len(strayed) != 1:
+        missed.append(f"self-test: one header opens a wrong namespace, {len(strayed)} found")
     found = {(line.split(":")[0], line.split(": ")[1]) for line in wrong}
     expected = {(name, re.search(r'[<"](.+)[>"]', header).group(1)) for name, header in planted}
     for line in missed:
@@ -224,7 +245,7 @@ def main(arguments):
         print(f"check_layering: no sources under {root}", file=sys.stderr)
         return 2
     scripts = {path.relative_to(root).as_posix() for path in (root / "tools").rglob("*.py")}
-    others += [*crowds(files | scripts), *unexplained(root, files | scripts)]
+    others += [*crowds(files | scripts), *unexplained(root, files | scripts), *strays(root, files)]
     for line in wrong + others:
         print(line)
     print(f"check_layering: {len(files)} files, {len(wrong)} wrong arrows, {len(others)} other complaints")

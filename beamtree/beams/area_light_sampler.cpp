@@ -9,7 +9,7 @@
 #include "core/geometry/surface_offset.h"
 #include "core/math/sampling.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Running sums over the total.
@@ -163,4 +163,4 @@ AreaLightSampler::Sample AreaLightSampler::sample_square(float u0, float u1) con
             static_cast<float>(1 / density_[row * cells + column])};
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

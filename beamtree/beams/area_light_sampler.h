@@ -4,7 +4,7 @@
 
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Points of an area light from which it can shine on casters: half of a spherical lamp is turned
 /// away from them, and beams that start there bring nothing. The density follows the light that a
@@ -40,4 +40,4 @@ private:
     std::vector<std::vector<double>> row_cumulative_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

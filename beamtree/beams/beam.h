@@ -9,7 +9,7 @@
 #include "core/math/spectrum.h"
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What a specular surface has made of the light at one vertex: a ray that leaves it.
 struct VertexRay {
@@ -118,4 +118,4 @@ struct BeamNumber {
     std::uint32_t beam = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

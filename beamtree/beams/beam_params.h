@@ -3,7 +3,7 @@
 #include "beamtree/beams/caster_mesh.h"
 #include "beamtree/beams/light_sample.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What both methods that work with beams ask of them.
 struct BeamParams {
@@ -15,4 +15,4 @@ struct BeamParams {
     Dispersion dispersion = Dispersion::bins;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace caustics {
+namespace caustics::beamtree {
 
 BinPlaces::BinPlaces(const WavelengthBin& bin, const Ior& glass) {
     const double first = glass.at(bin.from);
@@ -37,4 +37,4 @@ double BinPlaces::place_of(double wavelength) const {
     return 2 * (static_cast<double>(step) + share) / steps - 1;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

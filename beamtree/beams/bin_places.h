@@ -4,7 +4,7 @@
 
 #include "core/material/ior.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The wavelengths of a bin by their places in it, -1 for the shortest and 1 for the longest: linear in a glass's
 /// index of refraction (to 16 steps), because then beams move nearly linearly with the place.
@@ -21,4 +21,4 @@ private:
     std::array<double, steps + 1> nm_{};
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

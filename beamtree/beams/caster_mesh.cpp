@@ -8,7 +8,7 @@
 #include "core/base/interrupt.h"
 #include "core/geometry/tessellate.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 using Position = std::tuple<float, float, float>;
@@ -132,4 +132,4 @@ std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, Polygo
     return casters;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -8,7 +8,7 @@
 #include "core/geometry/mesh.h"
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What a specular polygon is.
 enum class PolygonKind {
@@ -47,4 +47,4 @@ std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution,
 /// Unit normal of a triangle, by its winding; zero when it has no area.
 Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -10,7 +10,7 @@
 #include "core/base/interrupt.h"
 #include "core/geometry/vertex_normals.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// A triangle's side from one place to another.
@@ -125,4 +125,4 @@ bool ClosedParts::Hidden::operator()(std::uint32_t triangle, bool front) const {
     return part != open && front_[part] == front;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 #include "beamtree/beams/light_sample.h"
 #include "core/geometry/mesh.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The parts of a mesh that enclose a volume: pieces joined by edges each of which exactly two
 /// triangles run along, in opposite ways. From outside such a part no light comes straight to the
@@ -40,4 +40,4 @@ private:
     std::vector<bool> outward_;           ///< one a part: fronts face outwards
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

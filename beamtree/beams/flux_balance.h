@@ -1,6 +1,6 @@
 #pragma once
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What becomes of the light that casters bend [W, mean of channels].
 struct FluxBalance {
@@ -17,4 +17,4 @@ struct FluxBalance {
     double captured() const { return lit > 0 ? 1 - lost / lit : 1; }
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

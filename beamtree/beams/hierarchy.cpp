@@ -9,7 +9,7 @@
 
 #include "core/base/interrupt.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// A rectangle of cells.
@@ -300,4 +300,4 @@ Hierarchy binned_hierarchy(const BeamSet& set, std::span<const std::uint32_t> be
     return BinnedBuilder(set, beams, reach).take();
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

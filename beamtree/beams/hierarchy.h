@@ -7,7 +7,7 @@
 #include "beamtree/beams/beam.h"
 #include "core/geometry/mesh.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Which beams belong together: nodes whose children lie side by side, leaves of one beam each.
 struct Hierarchy {
@@ -34,4 +34,4 @@ Hierarchy quadtree(const BeamSet& set, std::span<const std::uint32_t> beams,
 /// `reach` is a typical distance to the receivers [m]; 0 splits by position alone.
 Hierarchy binned_hierarchy(const BeamSet& set, std::span<const std::uint32_t> beams, float reach);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/beams/solid_angle.h"
 #include "core/math/rng.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 float fraction(float x) { return std::min(x - std::floor(x), 0x1.fffffep-1F); }
@@ -140,4 +140,4 @@ bool sees(const Scene& scene, const SegmentEnd& point, const LightSample& light)
     return !scene.occluded(point, {light.position, light.normal, light.offset});
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/beams/bin_places.h"
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// How beams tell wavelengths apart.
 enum class Dispersion {
@@ -62,4 +62,4 @@ double measure(const LightSample& light, const Vec3& a, const Vec3& b, const Vec
 /// Whether nothing stands between a surface point and the light.
 bool sees(const Scene& scene, const SegmentEnd& point, const LightSample& light);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -4,7 +4,7 @@
 
 #include "core/geometry/surface_offset.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 bool is_flat_between(const Vec3& normal, const Vec3& other) {
     constexpr float flat = 1e-3F;
@@ -71,4 +71,4 @@ float LitCaster::offset(std::uint32_t triangle) const {
     return corner_offset(triangle) + bulge / 4;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

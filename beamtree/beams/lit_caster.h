@@ -5,7 +5,7 @@
 #include "beamtree/beams/caster_mesh.h"
 #include "beamtree/beams/specular_vertex.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// How a triangle of a caster's mesh stands to the light.
 struct Facing {
@@ -46,4 +46,4 @@ private:
     ClosedParts::Hidden hidden_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

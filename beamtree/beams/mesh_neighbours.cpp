@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// A triangle at one of its edges, whose ends are in ascending order.
@@ -111,4 +111,4 @@ void MeshNeighbours::pair_others(const CasterMesh& caster) {
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 
 #include "beamtree/beams/caster_mesh.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What lies side by side on a caster's mesh.
 class MeshNeighbours {
@@ -31,4 +31,4 @@ private:
     std::vector<std::uint32_t> partners_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

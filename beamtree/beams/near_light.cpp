@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // The angle under which the light may see an edge, and one in flat glass of a mesh as it is: what a
@@ -96,4 +96,4 @@ void NearLight::divide(const MeshPiece& piece, std::vector<MeshPiece>& pieces) c
     divide({ab, bc, ca}, pieces);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

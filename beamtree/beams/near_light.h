@@ -4,7 +4,7 @@
 
 #include "beamtree/beams/lit_caster.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Divides triangles of a caster's mesh to which a light is so near that their corners tell little of
 /// what lies between: below a lamp just above water all corners of a triangle are lit at a grazing
@@ -35,4 +35,4 @@ private:
     bool is_glass_mesh_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -5,7 +5,7 @@
 
 #include "beamtree/beams/beam.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Where on the first caster's mesh a ray of a set has come from.
 struct RayOrigin {
@@ -23,4 +23,4 @@ struct TracedSet {
     std::vector<RayOrigin> origins;  ///< one a ray
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

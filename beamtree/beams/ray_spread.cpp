@@ -11,7 +11,7 @@
 
 #include "core/math/frame.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Below this share of the largest, a pivot says that the vertices round one do not tell its derivatives.
@@ -189,4 +189,4 @@ void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbou
     set.partners = find_partners(set, origins, neighbours);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

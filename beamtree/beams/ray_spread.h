@@ -7,7 +7,7 @@
 #include "beamtree/beams/ray_origin.h"
 #include "beamtree/beams/trace_progress.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Gives the set its spreads and partners (`intensity: refined`). A vertex ray's spread comes from
 /// the derivatives of first surface, place and direction, of a quadratic surface fitted to the rays
@@ -16,4 +16,4 @@ namespace caustics {
 void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
             const ProgressPart& part);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

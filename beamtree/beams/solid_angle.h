@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Solid angle of a triangle from the vectors to its corners [sr; Van Oosterom and Strackee 1983]:
 /// positive where u, v, w turn to the right as they are seen, which is the back of the triangle.
@@ -18,4 +18,4 @@ inline double solid_angle(const Vec3d& u, const Vec3d& v, const Vec3d& w) {
            std::atan2(determinant, lu * lv * lw + u.dot(v) * lw + u.dot(w) * lv + v.dot(w) * lu);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

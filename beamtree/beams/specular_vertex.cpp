@@ -4,7 +4,7 @@
 
 #include "core/material/optics.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 MeshPoint LightBender::at(const Vec3& position, const Vec3& normal) const {
     MeshPoint point{position, normal.squaredNorm() > 0 ? Vec3(normal.normalized()) : normal, {}};
@@ -98,4 +98,4 @@ bool weights_differ(const PieceCorners& corners, Event event) {
     return weights_differ({weight(0), weight(1), weight(2)});
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 #include "beamtree/beams/light_sample.h"
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What a specular surface does with light.
 enum Event : std::size_t { reflection, refraction };
@@ -62,4 +62,4 @@ private:
 bool weights_differ(const std::array<float, 3>& weights);
 bool weights_differ(const PieceCorners& corners, Event event);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 
 #include "core/caustic_estimator.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Adds up the done shares of a phase that many threads work on, and reports their sum.
 class TraceProgress {
@@ -56,4 +56,4 @@ private:
     std::size_t told_ = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

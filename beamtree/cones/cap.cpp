@@ -6,7 +6,7 @@
 
 #include "core/math/rng.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Points are on the boundary, not outside, up to here.
@@ -123,4 +123,4 @@ Circle smallest_circle(std::span<const Vec2d> points) {
     return circle;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

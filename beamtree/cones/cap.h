@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Unit vectors within an angle of an axis, by the cosine of that angle. A cap of less than a right
 /// angle is convex: what holds the vertex rays of a beam holds every positive combination of them.
@@ -35,4 +35,4 @@ struct Circle {
 /// The minimum spanning circle [Welzl 1991; Toussaint 1985 in CC95].
 Circle smallest_circle(std::span<const Vec2d> points);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Bounds are kept in float and asked in double: these cover their rounding.
@@ -116,4 +116,4 @@ std::optional<bool> DoubleCone::holds(const Vec3d& p, const Vec3d& plane_normal)
     return y <= static_cast<double>(radius) + std::abs(x) * slope + slack + rounding;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -9,7 +9,7 @@
 #include "beamtree/cones/cap.h"
 #include "beamtree/light/beam_point.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The bounds of a group of beams that [CC95] and its corrections know. Each cone holds every point
 /// that test_beam can accept for a beam of the group, on a plane of any tilt.
@@ -85,4 +85,4 @@ struct DoubleCone {
 /// Spreads from 60 degrees on get none.
 DoubleCone double_cone(const NodeRays& rays, const Cap& cap, double reach);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

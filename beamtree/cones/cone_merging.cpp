@@ -5,7 +5,7 @@
 
 #include "beamtree/cones/neck.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // [CC95 (4)], with the axis by the box of the children's axes.
@@ -133,4 +133,4 @@ MergedCone merge_cones(std::span<const MergedCone> children, const NodeRays& ray
     return parent;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -5,7 +5,7 @@
 
 #include "beamtree/cones/cone.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// A node's cones where parents are made from their children's [CC95 sec. 3.1.2]. Both kinds are
 /// kept all the way up, so that a double parent can enclose a child that `hybrid` tests as single.
@@ -39,4 +39,4 @@ struct ConeSection {
 std::optional<ConeSection> cone_section(const Vec3d& apex, const Vec3d& cone_axis, double spread,
                                         const Vec3d& plane_axis, double height);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

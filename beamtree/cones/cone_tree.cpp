@@ -7,7 +7,7 @@
 #include "beamtree/light/find_in_beam.h"
 #include "core/base/interrupt.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
     NodeRays rays;
@@ -138,4 +138,4 @@ std::uint64_t ConeTree::bytes() const {
            doubles_.size() * sizeof(DoubleCone) + singles_.size() * sizeof(SingleCone);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

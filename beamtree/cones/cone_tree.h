@@ -9,7 +9,7 @@
 #include "beamtree/cones/cone.h"
 #include "beamtree/light/beam_point.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// How nodes get their bounds.
 struct ConeTreeSettings {
@@ -65,4 +65,4 @@ private:
 /// The rays of the beams under a node.
 NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

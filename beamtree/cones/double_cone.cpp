@@ -4,7 +4,7 @@
 #include "beamtree/cones/cone.h"
 #include "beamtree/cones/neck.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// Rays as lines over the axial distance t: across(t) = start + t slope.
@@ -77,4 +77,4 @@ DoubleCone double_cone(const NodeRays& rays, const Cap& cap, double reach) {
     return cone;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

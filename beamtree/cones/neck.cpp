@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 struct Plane {
@@ -62,4 +62,4 @@ double find_neck(const std::function<double(double)>& size, double first, double
     return best.depth;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

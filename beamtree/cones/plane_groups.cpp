@@ -5,7 +5,7 @@
 
 #include "beamtree/cones/cap.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr float least_sine = 0.25F;
@@ -82,4 +82,4 @@ std::vector<PlaneGroup> fixed_planes(const BeamSet& set) {
     return groups;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

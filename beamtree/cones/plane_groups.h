@@ -6,7 +6,7 @@
 
 #include "beamtree/beams/beam.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Beams that are tested on planes across one fixed normal, which points against their light; or,
 /// without one, across the receiver's.
@@ -24,4 +24,4 @@ std::vector<PlaneGroup> receiver_planes(const BeamSet& set);
 /// run along, and a last one without a fixed normal for beams that spread too far for any.
 std::vector<PlaneGroup> fixed_planes(const BeamSet& set);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -9,7 +9,7 @@
 #include "beamtree/light/refined_density.h"
 #include "core/material/optics.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Areas between float positions mean nothing below this. At a perfect focus, where a caustic polygon
@@ -122,4 +122,4 @@ Spectrum BeamLight::radiance(const ReceiverPoint& point, std::vector<BeamHit>& h
     });
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

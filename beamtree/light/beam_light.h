@@ -8,7 +8,7 @@
 #include "beamtree/light/specular_point.h"
 #include "core/caustic_estimator.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What beams bring to a receiver point that lies inside them (row B8): each the irradiance
 /// flux / area of its caustic polygon [CC95 (11)], whose flux is exact because it is counted by the
@@ -40,4 +40,4 @@ private:
         searches_;  ///< one a set; none where it cannot serve
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

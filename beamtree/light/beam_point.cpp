@@ -9,7 +9,7 @@
 
 #include "beamtree/light/projected.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// What cuts a clipped triangle: nothing (its own corner), the plane, or rays that run along it.
@@ -283,4 +283,4 @@ std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, st
     return hit_in(tested.found, number, plane);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

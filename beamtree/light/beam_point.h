@@ -8,7 +8,7 @@
 #include "beamtree/beams/beam.h"
 #include "beamtree/light/test_plane.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// A point inside (a triangle of) a beam.
 struct BeamHit {
@@ -56,4 +56,4 @@ struct SearchCounts {
 /// another, it is not evenly lit.
 inline constexpr double most_uneven = 2;
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

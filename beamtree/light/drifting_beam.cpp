@@ -8,7 +8,7 @@
 
 #include "beamtree/light/projected.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Of a bin where edges do not tell.
@@ -165,4 +165,4 @@ void find_in_drifting_beam(const BeamSet& set, const BeamNumber& number, const T
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

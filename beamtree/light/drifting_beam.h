@@ -4,7 +4,7 @@
 
 #include "beamtree/light/beam_point.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The wavelengths for which a beam that drifts holds the point that the plane goes through. A corner of a
 /// caustic polygon moves over the plane nearly linearly with the place in the bin (BeamSet::ends), so that the
@@ -15,4 +15,4 @@ namespace caustics {
 void find_in_drifting_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                            std::vector<BeamHit>& hits);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -4,7 +4,7 @@
 
 #include "beamtree/light/drifting_beam.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                   std::vector<BeamHit>& hits, SearchCounts& counts) {
@@ -24,4 +24,4 @@ void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane&
     counts.beam_point_hits += hits.size() > before ? 1 : 0;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

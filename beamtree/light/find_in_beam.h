@@ -4,11 +4,11 @@
 
 #include "beamtree/light/beam_point.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// test_beam for the beam `number` of `set`, or find_in_drifting_beam where it drifts: counts the test, and
 /// appends its hits with that number.
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                   std::vector<BeamHit>& hits, SearchCounts& counts);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

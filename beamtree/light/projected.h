@@ -3,7 +3,7 @@
 #include "beamtree/beams/beam.h"
 #include "beamtree/light/test_plane.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Rays flatter than this to the plane count as going along it.
 inline constexpr double least_steepness = 1e-4;
@@ -57,4 +57,4 @@ inline Projected projected(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
     return found;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

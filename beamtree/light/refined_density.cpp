@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Corners' spreads between which the light is taken as smooth differ by no more than this.
@@ -145,4 +145,4 @@ std::optional<double> refined_density(const BeamSet& set, const BeamHit& hit, co
     return *across * plane.steepness(direction);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

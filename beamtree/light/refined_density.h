@@ -5,7 +5,7 @@
 #include "beamtree/beams/beam.h"
 #include "beamtree/light/beam_point.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Of the light of the beam that a hit has found: its share for an area [m^-2] at the point, on the
 /// plane of the hit, to second order (`intensity: refined`). The spreads of the corners' rays, taken as linear
@@ -17,4 +17,4 @@ namespace caustics {
 /// differ by a factor of four, and where the plane clips the polygon.
 std::optional<double> refined_density(const BeamSet& set, const BeamHit& hit, const Vec3& point);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/light/beam_point.h"
 #include "core/geometry/exact_shape.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr int most_steps = 10;
@@ -218,4 +218,4 @@ std::optional<SpecularPoint> SpecularSearch::find(const std::array<const VertexR
     return {};
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

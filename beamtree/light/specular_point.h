@@ -6,7 +6,7 @@
 #include "beamtree/beams/beam.h"
 #include "beamtree/beams/specular_vertex.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Where a surface bends light so that it comes to a given point, and how dense it is there.
 struct SpecularPoint {
@@ -51,4 +51,4 @@ private:
     double step_;  ///< of derivatives, in the shape's frame
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

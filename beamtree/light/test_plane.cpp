@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace caustics {
+namespace caustics::beamtree {
 
 TestPlane::TestPlane(const Vec3& point, const Vec3& normal)
     : point_(point.cast<double>()), normal_(normal.cast<double>()) {
@@ -13,4 +13,4 @@ TestPlane::TestPlane(const Vec3& point, const Vec3& normal)
     area_scale_ = normal_.norm() / std::abs(normal_[longest]);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

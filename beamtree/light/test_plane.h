@@ -2,7 +2,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The plane through a point on which caustic polygons are formed [CC95 sec. 3.2.2]: across the
 /// receiver's normal, or across a fixed one. `normal` points against the light that arrives.
@@ -34,4 +34,4 @@ private:
     double area_scale_ = 1;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

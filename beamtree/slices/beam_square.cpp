@@ -6,7 +6,7 @@
 
 #include "beamtree/light/find_in_beam.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 using Triangle = std::array<Vec2d, 3>;
@@ -125,4 +125,4 @@ void find_on_square(const BeamSet& set, const BeamNumber& number, const TestPlan
     counts.beam_point_hits += hits.size() > before ? 1 : 0;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -3,7 +3,7 @@
 #include "beamtree/light/beam_point.h"
 #include "beamtree/slices/slice_frame.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Squares on the planes of a frame, along its axes: where irradiance is averaged instead of being
 /// asked at a point (`footprint`).
@@ -19,4 +19,4 @@ struct BeamSquare {
 void find_on_square(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                     const BeamSquare& square, std::vector<BeamHit>& hits, SearchCounts& counts);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -5,7 +5,7 @@
 
 #include "beamtree/slices/slice_frame.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// How far a ray moves with the wavelength along both axes of the planes, to either side [m].
 using SliceDrift = std::array<float, 2>;
@@ -42,4 +42,4 @@ private:
         Eigen::Array<float, 8, 1>::Constant(std::numeric_limits<float>::infinity());
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 
 #include "core/base/interrupt.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -180,4 +180,4 @@ SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> tri
     return Widener(hierarchy, triangles, reach).run();
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

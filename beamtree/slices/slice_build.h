@@ -7,7 +7,7 @@
 #include "beamtree/slices/slice_box.h"
 #include "beamtree/slices/slice_nodes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// A triangle of a beam as a leaf holds it.
 struct SlicedTriangle {
@@ -34,4 +34,4 @@ struct SliceNodes {
 SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles,
                  float reach);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -1,6 +1,6 @@
 #include "beamtree/slices/slice_frame.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 SliceFrame::SliceFrame(const Vec3& normal, double top, double bottom, const Vec3& origin)
     : normal_(normal),
@@ -27,4 +27,4 @@ RaySlices SliceFrame::slices(const VertexRay& ray) const {
             static_cast<float>(below.x()), static_cast<float>(below.y())};
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

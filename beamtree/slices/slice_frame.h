@@ -5,7 +5,7 @@
 #include "beamtree/beams/beam.h"
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Where a ray, as a line, meets the upper and the lower plane of a slab: (x, y) above, (x, y)
 /// below, in the frame's coordinates [m].
@@ -42,4 +42,4 @@ private:
     double bottom_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

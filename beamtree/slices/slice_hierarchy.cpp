@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr int bins = 16;
@@ -111,4 +111,4 @@ Hierarchy binned_slices(std::span<BoxedBeam> beams, std::uint32_t leaf_size) {
     return tree;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

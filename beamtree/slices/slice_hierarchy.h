@@ -5,7 +5,7 @@
 #include "beamtree/beams/hierarchy.h"
 #include "beamtree/slices/slice_box.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// A beam of a slice tree and the boxes that hold it.
 struct BoxedBeam {
@@ -19,4 +19,4 @@ struct BoxedBeam {
 /// `leaf_size` beams. Sorts the beams into the order of the tree.
 Hierarchy binned_slices(std::span<BoxedBeam> beams, std::uint32_t leaf_size);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The memory of a tree of slices (slice_tree.h), eight things side by side: plain data, so that a
 /// source compiled for wide registers includes no inline code of Eigen or the standard library.
@@ -85,4 +85,4 @@ using WalkSlices = void (*)(const SliceView&, SliceWalk&);
 void walk_slices_plain(const SliceView&, SliceWalk&);
 void walk_slices_avx2(const SliceView&, SliceWalk&);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -11,7 +11,7 @@
 #include "beamtree/slices/slice_build.h"
 #include "beamtree/slices/slice_hierarchy.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr float rounding = 1e-6F;  // more than a share is rounded by
@@ -277,4 +277,4 @@ std::uint64_t SliceTree::bytes() const {
            leaves_.size() * sizeof(SliceLeaf);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -9,7 +9,7 @@
 #include "beamtree/slices/slice_nodes.h"
 #include "core/caustic_estimator.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Beams of any sets that are tested on planes across one normal, and the slab in which they can be
 /// asked for.
@@ -69,4 +69,4 @@ private:
     float travel_ = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -2,7 +2,7 @@
 
 #include "beamtree/slices/slice_nodes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The walk, for the tests of one instruction set. `Eight` is made from a walk and answers, as
 /// bits, which boxes of a node its points' box meets, and which triangles of a leaf may hold a
@@ -37,4 +37,4 @@ void walk_slices(const SliceView& tree, SliceWalk& walk) {
     walk.tests = tests;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

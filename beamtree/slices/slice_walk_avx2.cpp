@@ -2,7 +2,7 @@
 
 #include "beamtree/slices/slice_walk.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 class Avx2Eight {
@@ -73,4 +73,4 @@ void walk_slices_avx2(const SliceView& tree, SliceWalk& walk) {
     walk_slices<Avx2Eight>(tree, walk);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

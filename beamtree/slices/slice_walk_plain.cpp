@@ -1,6 +1,6 @@
 #include "beamtree/slices/slice_walk.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 float least(float a, float b) { return a < b ? a : b; }
@@ -62,4 +62,4 @@ void walk_slices_plain(const SliceView& tree, SliceWalk& walk) {
     walk_slices<PlainEight>(tree, walk);
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -5,7 +5,7 @@
 #include "beamtree/beams/ray_spread.h"
 #include "beamtree/tracing/next_bounce.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Of the flux of all first events, and of one of their beams on average: less is not followed.
@@ -160,4 +160,4 @@ std::vector<Departure> BeamBounces::first_departures(const TracedSet& first) con
     return departures;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

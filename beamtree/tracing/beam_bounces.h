@@ -13,7 +13,7 @@
 #include "beamtree/tracing/ray_arrival.h"
 #include "beamtree/tracing/scene_boxes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Beams, and the light that they do not carry.
 struct TracedBeams {
@@ -64,4 +64,4 @@ private:
     TracedBeams traced_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

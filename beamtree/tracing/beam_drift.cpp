@@ -4,7 +4,7 @@
 
 #include "core/base/interrupt.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 LightSample at_end(LightSample light, double place) {
@@ -91,4 +91,4 @@ double BeamDrift::guess(BeamSet& set, const Beam& beam, std::vector<Known>& know
     return guessed;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/beams/lit_caster.h"
 #include "beamtree/tracing/beam_path.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// How well drifts tell where light of a wavelength goes.
 struct DriftAccount {
@@ -42,4 +42,4 @@ private:
     std::array<LitCaster, 2> ends_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace caustics {
+namespace caustics::beamtree {
 
 Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam)
     : scene_(scene),
@@ -64,4 +64,4 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
     return point;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -8,7 +8,7 @@
 #include "beamtree/beams/ray_origin.h"
 #include "beamtree/tracing/ray_arrival.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// One more event on a beam's way, after the first.
 struct Step {
@@ -72,4 +72,4 @@ private:
     std::vector<Step> steps_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -13,7 +13,7 @@
 #include "beamtree/tracing/cut_piece.h"
 #include "core/base/parallel.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // How often a triangle is quartered whose corners do not tell what it does.
@@ -285,4 +285,4 @@ std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<Caste
     return trace_all_beams(scene, casters, lights, TraceSettings{}, options).sets;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

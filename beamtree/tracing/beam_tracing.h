@@ -7,7 +7,7 @@
 #include "beamtree/tracing/beam_bounces.h"
 #include "core/caustic_estimator.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Beams of one caster lit by one light sample: those reflected and those refracted (row B1).
 /// Vertex rays follow the vertex normals; their Fresnel shares, colours and the absorption on the
@@ -42,4 +42,4 @@ std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<Caste
                                      const std::vector<LightSample>& lights,
                                      const RunOptions& options);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -4,7 +4,7 @@
 
 #include "beamtree/tracing/cut_piece.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // How often an edge is halved.
@@ -43,4 +43,4 @@ CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b) {
     return edge;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -2,7 +2,7 @@
 
 #include "beamtree/tracing/beam_path.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Whether the light of a point has come to a caster after its path.
 bool goes_on(const PathPoint& point);
@@ -22,4 +22,4 @@ struct CutEdge {
 /// both begin at the same end.
 CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The part of a triangle where light does one thing: none, three or four corners.
 template <typename Point>
@@ -63,4 +63,4 @@ CutPiece<Point> cut_piece(const std::array<Point, 3>& piece, int steps, const Ho
     return cut;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 #include "beamtree/tracing/cut_piece.h"
 #include "beamtree/tracing/piece_detail.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // How often a polygon is quartered.
@@ -98,13 +98,13 @@ private:
 
     bool is_coarse(const std::array<std::uint32_t, 3>& rays) const {
         const auto coarse = [this](std::uint32_t i, std::uint32_t j) {
-            return caustics::is_coarse(level_.traced.origins[i], level_.arrivals[i],
+            return beamtree::is_coarse(level_.traced.origins[i], level_.arrivals[i],
                                        level_.traced.origins[j], level_.arrivals[j]);
         };
         return coarse(rays[0], rays[1]) || coarse(rays[1], rays[2]) || coarse(rays[2], rays[0]);
     }
     static bool is_coarse(const PathPoint& a, const PathPoint& b) {
-        return goes_on(a) && goes_on(b) && caustics::is_coarse(a.origin, a.next, b.origin, b.next);
+        return goes_on(a) && goes_on(b) && beamtree::is_coarse(a.origin, a.next, b.origin, b.next);
     }
 
     // Where no corner goes on.
@@ -424,4 +424,4 @@ NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster&
     return NextBounce(scene, boxes, surface, level, least_flux, balance, part).run();
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/tracing/beam_path.h"
 #include "beamtree/tracing/scene_boxes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// What one set's light does next.
 struct NextSets {
@@ -22,4 +22,4 @@ struct NextSets {
 NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
                    Level& level, double least_flux, FluxBalance& balance, const ProgressPart& part);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr float most_turn = 0.1F;  // between unit normals
@@ -34,4 +34,4 @@ bool may_pass_round_caster(const SceneBoxes& boxes, const Piece& piece) {
     });
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -5,7 +5,7 @@
 #include "beamtree/tracing/beam_path.h"
 #include "beamtree/tracing/scene_boxes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 // Whether a piece of a flat first surface is too large for what its light meets: a pane of two
 // triangles shines on a ball that turns away within a hundredth of them. (Curved surfaces are as fine as
@@ -19,4 +19,4 @@ bool is_coarse(const RayOrigin& from, const RayArrival& a, const RayOrigin& othe
 /// one to the other, and about where their light goes.
 bool may_pass_round_caster(const SceneBoxes& boxes, const Piece& piece);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

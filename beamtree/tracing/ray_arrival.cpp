@@ -5,7 +5,7 @@
 
 #include "core/material/optics.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr float crease = 0.766F;        // cosine of its angle
@@ -54,4 +54,4 @@ bool same_piece(const RayArrival& a, const RayArrival& b) {
     return std::abs(way.dot(normal)) <= most_step * way.norm() * normal.norm() + 4 * a.offset;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/beams/specular_vertex.h"
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// How a ray starts: off the surface it leaves, by that surface's normal.
 struct Departure {
@@ -43,4 +43,4 @@ RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from,
 /// two. Two rays that meet no caster are alike too.
 bool same_piece(const RayArrival& a, const RayArrival& b);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

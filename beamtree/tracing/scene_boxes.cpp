@@ -1,6 +1,6 @@
 #include "beamtree/tracing/scene_boxes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 SceneBoxes scene_boxes(const Scene& scene) {
     SceneBoxes boxes;
@@ -12,4 +12,4 @@ SceneBoxes scene_boxes(const Scene& scene) {
     return boxes;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

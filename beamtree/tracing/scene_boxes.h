@@ -4,7 +4,7 @@
 
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Bounds that every beam's way is held against: taken once a scene, since a mesh's take all its
 /// vertices.
@@ -16,4 +16,4 @@ struct SceneBoxes {
 
 SceneBoxes scene_boxes(const Scene& scene);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

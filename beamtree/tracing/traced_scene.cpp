@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // With most of the light missing it would be another picture.
@@ -107,4 +107,4 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     return traced;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/beams/flux_balance.h"
 #include "beamtree/tracing/beam_tracing.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// The beams of a scene, all lights and casters.
 struct TracedScene {
@@ -28,4 +28,4 @@ struct TracedScene {
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity = Intensity::area);
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

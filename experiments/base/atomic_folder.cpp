@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -53,4 +53,4 @@ void AtomicFolder::commit() {
     temporary_.clear();
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

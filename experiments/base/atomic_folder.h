@@ -5,7 +5,7 @@
 
 #include "experiments/base/folder_lock.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A folder of files that are all there or not at all: they are written into TARGET.part, which
 /// commit() renames. Without commit() nothing is left behind; what a killed process left there, the
@@ -31,4 +31,4 @@ private:
     std::optional<FolderLock> lock_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

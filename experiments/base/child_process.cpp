@@ -24,7 +24,7 @@
 #include "core/base/interrupt.h"
 #include "experiments/base/file_io.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -312,4 +312,4 @@ std::string run_in_child(const ChildProcess::Work& work, const ChildProcess::Tel
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

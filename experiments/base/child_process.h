@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What a child process may use; 0 or empty: no limit.
 struct ChildLimits {
@@ -93,4 +93,4 @@ void wait_for_any(const std::vector<ChildProcess*>& children);
 /// that died), and Interrupted, having killed the child, when somebody asked this process to stop.
 std::string run_in_child(const ChildProcess::Work& work, const ChildProcess::Tell& tell = {});
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -150,4 +150,4 @@ NumberTable read_numbers(const std::filesystem::path& file,
     return table;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// The shortest decimal text that reads back as the same number, independent of the locale.
 /// NaN and infinities have no place in a table: throws std::logic_error.
@@ -35,4 +35,4 @@ NumberTable read_numbers(const std::filesystem::path& file,
                          const std::vector<std::string>& required,
                          const std::vector<std::string>& optional);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -16,7 +16,7 @@
 #include "core/base/isa.h"
 #include "core/base/parallel.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -114,4 +114,4 @@ void reset_peak_resident_bytes() {
     std::ofstream("/proc/self/clear_refs") << 5;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// "1.2.3 (0123abc)", with "-dirty" after the commit of a changed tree.
 std::string code_version();
@@ -27,4 +27,4 @@ std::uint64_t peak_resident_bytes();
 /// Returns freed memory to the system and begins a new peak.
 void reset_peak_resident_bytes();
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -99,4 +99,4 @@ void write_stdout(const std::string& text) {
     if (!written) throw InputError("standard output: cannot be written");
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -6,7 +6,7 @@
 
 #include "core/base/atomic_file.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What a file holds or a pipe brings until it ends; "-" is standard input. Waits for a pipe, and
 /// throws Interrupted when asked to stop meanwhile. Throws InputError for folders and devices.
@@ -30,4 +30,4 @@ void write_stderr(std::string_view text);
 /// Writes to standard output; throws InputError when that fails (a full disk, a closed pipe).
 void write_stdout(const std::string& text);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

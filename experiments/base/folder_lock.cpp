@@ -11,7 +11,7 @@
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -73,4 +73,4 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
 
 FolderLock::~FolderLock() { close(file_); }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Keeps a folder of results for this process: a lock of the system on FOLDER/.lock, which ends with
 /// the process, however that ends, and is not passed on to children.
@@ -24,4 +24,4 @@ private:
 /// leave to write there.
 std::string runner_at_work_on(const std::filesystem::path& folder);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -55,4 +55,4 @@ nlohmann::json MachineLoad::record() const {
     return load;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// How busy the machine is with other work than this process's, from construction to record().
 class MachineLoad {
@@ -26,4 +26,4 @@ private:
     Moment start_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -47,4 +47,4 @@ template int number_in(const std::string&, const std::string&, int, int);
 template std::uint64_t number_in(const std::string&, const std::string&, std::uint64_t,
                                  std::uint64_t);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

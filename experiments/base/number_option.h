@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A whole number or a finite number in decimal, as sweep files write it: no "010", "0x10", "nan", "inf"
 /// or "1e400", nothing before or after. Empty where the text is no such number, or the type cannot
@@ -41,4 +41,4 @@ CLI::Option* add_number(CLI::App& verb, const std::string& name, Value& value, N
         ->type_name("NUMBER");
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

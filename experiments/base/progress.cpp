@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -34,4 +34,4 @@ void Progress::end(const std::string& result, bool notable, const std::optional<
         note(fmt::format("[{}/{}] {}, ETA {}", finished_, steps_, result, eta(remaining)));
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -6,7 +6,7 @@
 
 #include "experiments/base/status_line.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What is known of the time that a job will still take.
 struct Eta {
@@ -40,4 +40,4 @@ private:
 /// "1:02:03" or "2:03" for a number of seconds.
 std::string clock_text(double seconds);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

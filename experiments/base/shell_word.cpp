@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -44,4 +44,4 @@ std::string shell_path(const std::filesystem::path& file) {
     return shell_word(name.starts_with('-') ? "./" + name : name);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 
 #include "core/base/interrupt.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -41,4 +41,4 @@ void catch_interrupts() {
     std::signal(SIGTERM, on_interrupt);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

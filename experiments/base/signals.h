@@ -1,9 +1,9 @@
 #pragma once
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// From now on SIGINT or SIGTERM only asks the program to stop (request_interrupt); another, a second
 /// later, ends it.
 void catch_interrupts();
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 
 #include "experiments/base/file_io.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -64,4 +64,4 @@ void StatusLine::note(const std::string& line) {
     write_stderr(line + "\n");
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

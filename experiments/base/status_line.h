@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// One line on stderr on the state of a long job: kept up to date on a terminal, added to the log
 /// now and then elsewhere. Any thread may ask is_due(); the rest is for one thread at a time.
@@ -37,4 +37,4 @@ private:
 /// The first characters of a UTF-8 text, at most `count`.
 std::string first_characters(const std::string& text, std::size_t count);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

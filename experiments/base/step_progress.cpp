@@ -4,7 +4,7 @@
 
 #include "core/base/interrupt.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::optional<Eta> StepProgress::remaining_of_step(double share) const {
     return Eta(std::max(0.0, *expected_ - spent), spent > *expected_);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -8,7 +8,7 @@
 
 #include "experiments/base/progress.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// The progress of some steps in a row. Where nothing else is known, steps take about as long as
 /// each other, so that those done tell how long the others will take.
@@ -40,4 +40,4 @@ private:
     std::chrono::steady_clock::time_point begun_ = start_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-namespace caustics {
+namespace caustics::experiments {
 
 Seconds& Seconds::operator+=(const Seconds& other) {
     wall += other.wall;
@@ -47,4 +47,4 @@ Seconds Stopwatch::of(const std::string& phase) const {
 
 Seconds Stopwatch::total() const { return now() - start_; }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Seconds of a stretch of work: on the wall and summed over the process's threads.
 struct Seconds {
@@ -42,4 +42,4 @@ private:
     Seconds begun_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

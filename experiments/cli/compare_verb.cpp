@@ -14,7 +14,7 @@
 #include "experiments/run/cli_options.h"
 #include "experiments/run/light_differences.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -151,4 +151,4 @@ Verb add_compare(CLI::App& app) {
     return {verb, [options] { return compare(*options); }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

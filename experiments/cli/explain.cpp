@@ -16,7 +16,7 @@
 #include "experiments/plan/trial_store.h"
 #include "experiments/run/render_and_score.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -175,4 +175,4 @@ std::string explain(const fs::path& folder, const std::string& trial) {
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

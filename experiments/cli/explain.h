@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// The command that makes a trial's picture again, one line for a shell, between remarks, lines that
 /// begin with #. `trial`: its id, the beginning of one, or the hash at its end. Every word is one for
@@ -11,4 +11,4 @@ namespace caustics {
 /// not run, or its record does not say what a run needs.
 std::string explain(const std::filesystem::path& folder, const std::string& trial);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

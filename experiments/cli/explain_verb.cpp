@@ -4,7 +4,7 @@
 #include "experiments/cli/explain.h"
 #include "experiments/cli/verbs.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 Verb add_explain(CLI::App& app) {
     struct Flags {
@@ -26,4 +26,4 @@ Verb add_explain(CLI::App& app) {
             }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -11,7 +11,7 @@
 #include "experiments/export/exported_scene.h"
 #include "experiments/run/cli_options.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -92,4 +92,4 @@ Verb add_export(CLI::App& app) {
     return {verb, [options] { return export_scene(*options); }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -12,7 +12,7 @@
 #include "experiments/run/method.h"
 #include "experiments/run/methods.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -127,4 +127,4 @@ std::string help_text(const std::string& topic) {
         fmt::format("unknown topic \"{}\" (known: {})", topic, fmt::join(help_topics(), ", ")));
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What `help` tells about: each method, and the kinds of files.
 std::vector<std::string> help_topics();
@@ -12,4 +12,4 @@ std::vector<std::string> help_topics();
 /// InputError naming the topics for one that is unknown.
 std::string help_text(const std::string& topic);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

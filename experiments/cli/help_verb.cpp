@@ -4,7 +4,7 @@
 #include "experiments/cli/help_text.h"
 #include "experiments/cli/verbs.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 Verb add_help(CLI::App& app) {
     auto topic = std::make_shared<std::string>();
@@ -18,4 +18,4 @@ Verb add_help(CLI::App& app) {
             }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -16,7 +16,7 @@
 #include "experiments/run/cli_options.h"
 #include "experiments/run/notes.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -130,10 +130,10 @@ void info_on_scene(const InfoOptions& options) {
     write_stdout(describe_scene(options.scene, file, scene));
 }
 
-void draw(const InfoOptions& options, SavedPhotons saved) {
+void draw(const InfoOptions& options, photonmap::SavedPhotons saved) {
     const SceneFile file = load_scene(options.map_scene, options.scene.overrides());
     const Scene scene(file.desc);
-    require_transport(saved.origin, scene, options.scene.file);
+    photonmap::require_transport(saved.origin, scene, options.scene.file);
     if (options.output.empty()) return;
     write_png(draw_photons(scene, std::move(saved.photons), options.dot, drawing_options(scene)),
               options.output);
@@ -145,7 +145,7 @@ void info_on_map(const InfoOptions& options) {
     if (options.beams || !options.params.empty())
         throw InputError("--beams and --param are for scenes");
     if (!options.output.empty()) require_png(options.output, "photons");
-    SavedPhotons saved = load_photon_map(options.scene.file);
+    photonmap::SavedPhotons saved = photonmap::load_photon_map(options.scene.file);
     const std::string text = describe_map(options.scene.file, saved);
     if (!options.map_scene.empty()) draw(options, std::move(saved));
     write_stdout(text);
@@ -179,7 +179,7 @@ Verb add_info(CLI::App& app) {
         "  causticbench info pool.json --beams --set /water/resolution=32 -o beams.png\n"
         "  causticbench info pool.photons --scene pool.json -o photons.png");
     return {verb, [options] {
-                if (is_photon_map(options->scene.file))
+                if (photonmap::is_photon_map(options->scene.file))
                     info_on_map(*options);
                 else
                     info_on_scene(*options);
@@ -187,4 +187,4 @@ Verb add_info(CLI::App& app) {
             }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -15,7 +15,7 @@
 #include "experiments/base/signals.h"
 #include "experiments/cli/verbs.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -104,10 +104,11 @@ int parse_and_run(int argc, char** argv) {
 
 }  // namespace
 
-}  // namespace caustics
+}  // namespace caustics::experiments
 
 int main(int argc, char** argv) {
     using namespace caustics;
+    using namespace caustics::experiments;
     std::setlocale(LC_ALL, "C");
     hold_standard_streams();
     catch_interrupts();

@@ -9,7 +9,7 @@
 #include "core/render/renderer.h"
 #include "photonmap/photon_dots.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -23,12 +23,12 @@ std::string point(const Vec3& p) {
 double luminance(const Spectrum& s) { return static_cast<double>(s.mean()); }
 
 /// Flux of all photons [W] and the box that holds them.
-std::string extent(const TracedPhotons& photons) {
+std::string extent(const photonmap::TracedPhotons& photons) {
     SpectrumSum energy = SpectrumSum::Zero();
     Box box;
-    for (const Photon& photon : photons.store.photons()) {
-        energy += decode_rgbe(photon.energy).cast<double>();
-        box.extend(position(photon));
+    for (const photonmap::Photon& photon : photons.store.photons()) {
+        energy += photonmap::decode_rgbe(photon.energy).cast<double>();
+        box.extend(photonmap::position(photon));
     }
     const SpectrumSum flux = energy * photons.flux_per_energy().cast<double>();
     std::string text =
@@ -41,10 +41,10 @@ std::string extent(const TracedPhotons& photons) {
 
 }  // namespace
 
-std::string describe_map(const std::filesystem::path& file, const SavedPhotons& saved) {
+std::string describe_map(const std::filesystem::path& file, const photonmap::SavedPhotons& saved) {
     const LightPathCounts& counts = saved.photons.counts;
-    const PhotonOrigin& origin = saved.origin;
-    const bool stratified = origin.emission == PhotonMapParams::Emission::stratified;
+    const photonmap::PhotonOrigin& origin = saved.origin;
+    const bool stratified = origin.emission == photonmap::PhotonMapParams::Emission::stratified;
     std::string text = fmt::format("photon map {}, format version {}, {} bytes\n", file.string(),
                                    saved.version, std::filesystem::file_size(file));
     text += fmt::format("transport  {} (info SCENE shows whether a scene's is the same)\n",
@@ -66,9 +66,9 @@ std::string describe_map(const std::filesystem::path& file, const SavedPhotons& 
     return text + fmt::format("by         {}\n", origin.command);
 }
 
-Picture draw_photons(const Scene& scene, TracedPhotons photons, double radius,
+Picture draw_photons(const Scene& scene, photonmap::TracedPhotons photons, double radius,
                      const RunOptions& options) {
-    const auto dots = photon_dots(scene, std::move(photons), radius, options.isa);
+    const auto dots = photonmap::photon_dots(scene, std::move(photons), radius, options.isa);
     const Film film = render(scene, *dots, options).film;
     double brightest = 0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i)
@@ -83,4 +83,4 @@ Picture draw_photons(const Scene& scene, TracedPhotons photons, double radius,
     return tone_map(drawn, "", 0);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

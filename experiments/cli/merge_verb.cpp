@@ -6,7 +6,7 @@
 #include "experiments/cli/verbs.h"
 #include "experiments/sweep/merge.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 Verb add_merge(CLI::App& app) {
     struct Flags {
@@ -33,4 +33,4 @@ Verb add_merge(CLI::App& app) {
             }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -10,7 +10,7 @@
 #include "experiments/run/render_and_score.h"
 #include "experiments/run/run_progress.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -73,4 +73,4 @@ Verb add_probe(CLI::App& app) {
     return {verb, [options] { return probe_points(*options); }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -14,7 +14,7 @@
 #include "experiments/run/render_and_score.h"
 #include "experiments/run/run_progress.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -125,4 +125,4 @@ Verb add_render(CLI::App& app) {
     return {verb, [options] { return render_picture(*options); }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -4,7 +4,7 @@
 
 #include "core/geometry/mesh_audit.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 const char* primitive_name(Primitive primitive) {
@@ -75,4 +75,4 @@ std::vector<std::string> shape_lines(const Scene& scene) {
     return lines;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

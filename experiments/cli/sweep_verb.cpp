@@ -12,7 +12,7 @@
 #include "experiments/sweep/dry_run.h"
 #include "experiments/sweep/sweep.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -118,4 +118,4 @@ Verb add_sweep(CLI::App& app) {
     return {verb, [flags] { return sweep(*flags); }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

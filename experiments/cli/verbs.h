@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A verb of the command line: its options, and what it does once they are parsed. `run` returns
 /// the exit code (0 done, 1 some trials failed) and throws InputError, UnsupportedScene or
@@ -30,4 +30,4 @@ inline std::vector<Verb> add_verbs(CLI::App& app) {
             add_merge(app),  add_explain(app), add_verify(app), add_export(app),  add_help(app)};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -13,7 +13,7 @@
 #include "experiments/verify/verify_gallery.h"
 #include "experiments/verify/verify_scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -92,4 +92,4 @@ Verb add_verify(CLI::App& app) {
     return {verb, [options] { return verify(*options); }};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

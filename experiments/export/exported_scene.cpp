@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/geometry/tessellate.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 void refuse_export(const ExportSettings& settings, const std::string& object,
                    const std::string& reason) {
@@ -37,4 +37,4 @@ std::string plain_name(const std::string& name, std::size_t number) {
     return fmt::format("shape{}-{}", number, plain);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

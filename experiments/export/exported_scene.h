@@ -5,7 +5,7 @@
 
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A scene as files that another renderer reads.
 struct ExportedScene {
@@ -52,4 +52,4 @@ ExportedScene to_mitsuba_by_wavelength(const SceneDesc& scene, const ExportSetti
 /// UnsupportedScene for what POV-Ray would render differently without a word.
 ExportedScene to_povray(const SceneDesc& scene, const ExportSettings& settings);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

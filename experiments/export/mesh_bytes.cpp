@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::string pfm_bytes(const Bitmap& bitmap) {
     return bytes;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

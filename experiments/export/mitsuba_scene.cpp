@@ -7,7 +7,7 @@
 #include "experiments/export/mesh_bytes.h"
 #include "experiments/export/xml_writer.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -279,4 +279,4 @@ ExportedScene to_mitsuba(const SceneDesc& scene, const ExportSettings& settings)
     return MitsubaWriter(scene, settings).write();
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

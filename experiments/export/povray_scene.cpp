@@ -5,7 +5,7 @@
 
 #include "experiments/export/exported_scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -350,4 +350,4 @@ ExportedScene to_povray(const SceneDesc& scene, const ExportSettings& settings) 
     return PovrayWriter(scene, settings).write();
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

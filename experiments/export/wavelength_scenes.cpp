@@ -6,7 +6,7 @@
 #include "core/material/wavelength.h"
 #include "experiments/export/exported_scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -47,4 +47,4 @@ ExportedScene to_mitsuba_by_wavelength(const SceneDesc& scene, const ExportSetti
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

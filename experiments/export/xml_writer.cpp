@@ -1,6 +1,6 @@
 #include "experiments/export/xml_writer.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -43,4 +43,4 @@ void XmlWriter::leaf(const std::string& tag, const Attributes& attributes) {
     text_ += "/>\n";
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Writes indented XML, element by element.
 class XmlWriter {
@@ -25,4 +25,4 @@ private:
     std::vector<std::string> open_tags_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

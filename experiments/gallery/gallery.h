@@ -6,7 +6,7 @@
 
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A place of a receiver where the caustic is known.
 struct KnownPoint {
@@ -54,4 +54,4 @@ std::vector<GalleryScene> laws();
 /// Still water that absorbs `sigma` [1/m], on a floor under a point light.
 GalleryScene still_water(const std::string& name, const std::string& answer, double sigma);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -4,7 +4,7 @@
 
 #include "experiments/gallery/parts.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 using namespace gallery_parts;
 
@@ -130,4 +130,4 @@ std::vector<GalleryScene> gallery() {
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include "experiments/gallery/parts.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 using namespace gallery_parts;
 
@@ -259,4 +259,4 @@ std::vector<GalleryScene> lenses() {
             prism()};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

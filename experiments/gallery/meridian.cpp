@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace caustics {
+namespace caustics::experiments {
 
 double Meridian::density(double wanted) const {
     constexpr int steps = 2000;
@@ -64,4 +64,4 @@ double fresnel_reflectance(double cos_i, double n) {
     return (s * s + p * p) / 2;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Where light that stays in a plane through the axis lands on a plane across the axis.
 struct Landing {
@@ -48,4 +48,4 @@ struct PlaneRay {
 /// Share of unpolarised light that a smooth surface reflects.
 double fresnel_reflectance(double cos_i, double n);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include "experiments/gallery/parts.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 using namespace gallery_parts;
 
@@ -150,4 +150,4 @@ std::vector<GalleryScene> mirrors() {
     return {plane_mirror(), parabolic_mirror(), elliptic_mirror(), circular_mirror()};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace caustics::gallery_parts {
+namespace caustics::experiments::gallery_parts {
 
 Bsdf grey() { return {Diffuse{Spectrum(Spectrum::Constant(0.5F))}, false}; }
 
@@ -191,4 +191,4 @@ std::vector<Series> usual_series(double radius, double beam_factor, double beam_
             caustic_polygons(beam_factor, beam_tolerance, "", coarsest)};
 }
 
-}  // namespace caustics::gallery_parts
+}  // namespace caustics::experiments::gallery_parts

@@ -7,7 +7,7 @@
 #include "experiments/gallery/gallery.h"
 #include "experiments/gallery/meridian.h"
 
-namespace caustics::gallery_parts {
+namespace caustics::experiments::gallery_parts {
 
 Bsdf grey();    ///< diffuse, reflectance 1/2
 Bsdf mirror();  ///< perfect, from both sides
@@ -59,4 +59,4 @@ Series caustic_polygons(double factor, double tolerance, const std::string& more
 std::vector<Series> usual_series(double radius, double beam_factor, double beam_tolerance,
                                  int coarsest = 16);
 
-}  // namespace caustics::gallery_parts
+}  // namespace caustics::experiments::gallery_parts

@@ -8,22 +8,22 @@
 #include "beamtree/caustic_edges.h"
 #include "core/render/renderer.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
 constexpr double dimmed = -0.5;  // of the picture behind [stops]
 
 struct Pen {
-    CausticEdge::Kind kind;
+    beamtree::CausticEdge::Kind kind;
     std::array<double, 3> colour;
     double cover;  ///< of what is below, in the middle of the line
 };
 
 // In the order in which they are drawn.
-const std::array<Pen, 3> pens = {{{CausticEdge::Kind::direct, {255, 140, 20}, 0.55},
-                                  {CausticEdge::Kind::folded, {40, 160, 255}, 0.7},
-                                  {CausticEdge::Kind::fold, {255, 255, 255}, 1}}};
+const std::array<Pen, 3> pens = {{{beamtree::CausticEdge::Kind::direct, {255, 140, 20}, 0.55},
+                                  {beamtree::CausticEdge::Kind::folded, {40, 160, 255}, 0.7},
+                                  {beamtree::CausticEdge::Kind::fold, {255, 255, 255}, 1}}};
 
 void mix(Picture& picture, int x, int y, const Pen& pen, double share) {
     if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return;
@@ -80,14 +80,14 @@ private:
 }  // namespace
 
 Picture draw_beams(const Scene& scene, const JsonNode& node, const RunOptions& options) {
-    const BeamTreeParams params = beamtree_method().read(node);
+    const beamtree::BeamTreeParams params = beamtree::beamtree_method().read(node);
     const Film film = render(scene, *build(scene, params, options), options).film;
     Picture picture = tone_map(film, "", auto_exposure(film, "") + dimmed);
-    const TracedScene traced = trace_scene(scene, "beams", params, options);
-    const std::vector<CausticEdge> edges = caustic_edges(scene, traced);
+    const beamtree::TracedScene traced = beamtree::trace_scene(scene, "beams", params, options);
+    const std::vector<beamtree::CausticEdge> edges = beamtree::caustic_edges(scene, traced);
     const View view(scene);
     for (const Pen& pen : pens)
-        for (const CausticEdge& edge : edges) {
+        for (const beamtree::CausticEdge& edge : edges) {
             if (edge.kind != pen.kind) continue;
             const auto from = view.place(edge.from);
             const auto to = view.place(edge.to);
@@ -96,4 +96,4 @@ Picture draw_beams(const Scene& scene, const JsonNode& node, const RunOptions& o
     return picture;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 #include "core/scene_file/json_reader.h"
 #include "experiments/picture/previews.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// The caustic polygons of a scene's beams over its dim picture by `beamtree`, through its camera,
 /// where that sees them directly: polygons whose light has not passed through a caustic in orange,
@@ -13,4 +13,4 @@ namespace caustics {
 /// `params` are those of `beamtree`.
 Picture draw_beams(const Scene& scene, const JsonNode& params, const RunOptions& options);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 const char* const metric_formulas =
     "over the channels of all counted pixels, r the reference:\n"
@@ -148,4 +148,4 @@ std::optional<double> relative_standard_error(const Film& reference, const Pixel
     return std::sqrt(squares / static_cast<double>(count)) / mean_r;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 
 #include "core/render/film.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Errors of a layer x against a reference r. All means run over the channels of the pixels that
 /// are counted, in double and in the order of the pixels. Empty where a formula has no value:
@@ -51,4 +51,4 @@ void require_finite(const Film& film, const std::string& layer, const std::strin
 /// error of a pixel's caustic (layer stderr). Empty without these layers, or without light.
 std::optional<double> relative_standard_error(const Film& reference, const PixelMask& counted);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "experiments/picture/metrics.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 const char* const tone_mapping_rule =
     "sRGB(clamp(radiance * 2^exposure)); without --exposure the 99th percentile of luminance over "
@@ -101,7 +101,7 @@ Picture strip(const Film& film, const Film& reference, const std::string& layer)
 }
 
 void write_png(const Picture& picture, const std::filesystem::path& file) {
-    write_png(picture.width, picture.height, picture.rgb, file);
+    caustics::write_png(picture.width, picture.height, picture.rgb, file);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

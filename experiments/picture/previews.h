@@ -7,7 +7,7 @@
 
 #include "core/render/film.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// The rule of every tone-mapped picture, for --help and metadata.
 extern const char* const tone_mapping_rule;
@@ -41,4 +41,4 @@ Picture strip(const Film& film, const Film& reference, const std::string& layer)
 
 void write_png(const Picture& picture, const std::filesystem::path& file);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -101,4 +101,4 @@ PlanFile read_plan_of(const std::filesystem::path& folder) {
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 
 #include "experiments/plan/sweep_plan.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// DIR/plan.json: what a sweep set out to do, for tables, `merge` and `explain`, which see no sweep
 /// file. A shard's plan is that of all shards together.
@@ -32,4 +32,4 @@ void write_plan(const PlanFile& plan, const std::filesystem::path& folder);
 /// Throws InputError when the folder holds no results of a sweep, or its plan is broken.
 PlanFile read_plan_of(const std::filesystem::path& folder);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

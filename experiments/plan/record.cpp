@@ -10,7 +10,7 @@
 #include "experiments/base/csv.h"
 #include "experiments/plan/record_columns.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -129,4 +129,4 @@ std::string json_line(const std::vector<json>& row, const std::vector<std::strin
     return line + "}\n";
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -6,7 +6,7 @@
 
 #include "experiments/picture/metrics.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Of record.json; part of every trial's identity.
 inline constexpr int record_version = 1;
@@ -35,4 +35,4 @@ std::vector<std::string> csv_cells(const std::vector<nlohmann::json>& row);
 std::string json_line(const std::vector<nlohmann::json>& row,
                       const std::vector<std::string>& columns);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

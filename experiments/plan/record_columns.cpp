@@ -1,6 +1,6 @@
 #include "experiments/plan/record_columns.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -133,4 +133,4 @@ constexpr RecordColumn columns[] = {
 
 std::span<const RecordColumn> record_columns_of_all() { return columns; }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include <span>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A column that every table of trials has.
 struct RecordColumn {
@@ -19,4 +19,4 @@ struct RecordColumn {
 /// In the order of the table.
 std::span<const RecordColumn> record_columns_of_all();
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -12,7 +12,7 @@
 #include "experiments/picture/metrics.h"
 #include "experiments/plan/reference_extension.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& req
     return reference;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

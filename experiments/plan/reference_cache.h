@@ -11,7 +11,7 @@
 #include "core/scene_file/scene_reader.h"
 #include "experiments/plan/reference_request.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Of the scene's reference pictures; part of their keys. 2 where the eye is in a medium that absorbs:
 /// pictures of version 1 leave out what it takes from the first leg of what the eye sees.
@@ -59,4 +59,4 @@ private:
     std::shared_ptr<const Reference> last_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

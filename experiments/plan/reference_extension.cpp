@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -126,4 +126,4 @@ Film joined(const RunRequest& wanted, const SmallerReference& begun, const Film&
     return film;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -9,7 +9,7 @@
 #include "core/scene_file/scene_reader.h"
 #include "experiments/run/render_and_score.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A kept reference that differs from a wanted one only in having fewer samples.
 struct SmallerReference {
@@ -33,4 +33,4 @@ RunRequest remainder(const RunRequest& wanted, const SmallerReference& begun);
 /// Both as one picture: the mean weighted by samples, its standard error from theirs.
 Film joined(const RunRequest& wanted, const SmallerReference& begun, const Film& rest);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 
 #include "experiments/run/render_and_score.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What the trials of a scene are judged by.
 struct ReferenceRequest {
@@ -14,4 +14,4 @@ struct ReferenceRequest {
     std::filesystem::path kept_folder;  ///< where references may be kept beside the sweep files
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

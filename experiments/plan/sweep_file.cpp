@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "experiments/plan/record.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -178,4 +178,4 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     return sweep;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -8,7 +8,7 @@
 
 #include "experiments/run/method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A sweep file as it is written (contract: sweeps), with its products not yet formed.
 struct SweepFile {
@@ -43,4 +43,4 @@ struct SweepFile {
 /// Throws InputError naming file and JSON pointer for unknown keys, empty lists and bad values.
 SweepFile read_sweep_file(const std::filesystem::path& file);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

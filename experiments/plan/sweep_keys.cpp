@@ -4,7 +4,7 @@
 
 #include "core/base/parallel.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -83,4 +83,4 @@ const std::vector<ObjectText>& sweep_keys() {
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

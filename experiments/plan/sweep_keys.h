@@ -4,9 +4,9 @@
 
 #include "core/base/key_text.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Every object that read_sweep_file knows, with its keys.
 const std::vector<ObjectText>& sweep_keys();
 
-}  // namespace caustics
+}  // namespace caustics::experiments

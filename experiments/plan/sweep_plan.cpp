@@ -14,7 +14,7 @@
 #include "experiments/plan/sweep_file.h"
 #include "experiments/run/cli_options.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -214,4 +214,4 @@ SweepPlan read_plan(const std::vector<std::filesystem::path>& files, const Isola
     return plan;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

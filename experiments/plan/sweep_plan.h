@@ -11,7 +11,7 @@
 
 #include "experiments/plan/reference_request.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// One element of the product of a sweep file's lists. Scene values are set in the order of their
 /// pointers, so that a whole object is set before a value in it.
@@ -55,4 +55,4 @@ SweepPlan read_plan(
     const std::vector<std::filesystem::path>& files,
     const Isolation& isolation = [](const auto& work) { return work(); });
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -16,7 +16,7 @@
 #include "core/base/hash.h"
 #include "experiments/base/number_option.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -155,4 +155,4 @@ std::vector<const Trial*> shard_of(const std::vector<const Trial*>& trials, cons
     return part;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -6,7 +6,7 @@
 
 #include "experiments/plan/sweep_plan.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Part `index` of `count`, from 1.
 struct Shard {
@@ -32,4 +32,4 @@ std::vector<const Trial*> run_order(const SweepPlan& plan);
 /// once.
 std::vector<const Trial*> shard_of(const std::vector<const Trial*>& trials, const Shard& shard);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

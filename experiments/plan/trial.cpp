@@ -9,7 +9,7 @@
 #include "experiments/picture/metrics.h"
 #include "experiments/plan/record.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -193,4 +193,4 @@ TrialOutcome run_trial(const Trial& trial, ReferenceCache& references, const Run
     return outcome;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -8,7 +8,7 @@
 #include "experiments/plan/reference_cache.h"
 #include "experiments/plan/sweep_plan.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What a trial leaves behind.
 struct TrialOutcome {
@@ -31,4 +31,4 @@ nlohmann::json trial_record(const Trial& trial, const std::string& status,
 TrialOutcome run_trial(const Trial& trial, ReferenceCache& references, const RunOptions& options,
                        const TrialLog& log);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

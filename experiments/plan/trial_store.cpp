@@ -12,7 +12,7 @@
 #include "experiments/base/file_io.h"
 #include "experiments/plan/record.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -128,4 +128,4 @@ void TrialStore::remove(const std::string& id) const {
     if (error) cannot_be_written(folder_of(id), error);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

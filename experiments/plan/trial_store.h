@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// The folder of finished trials, DIR/trials/ID/{record.json, image.exr, log.txt}. A trial's folder
 /// is whole or absent: it is filled under a temporary name, brought to the disk and renamed.
@@ -45,4 +45,4 @@ private:
     std::filesystem::path trials_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -16,7 +16,7 @@
 #include "experiments/plan/sweep_plan.h"
 #include "experiments/plan/trial_store.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -167,4 +167,4 @@ CellVariances cell_variances(const PlanFile& plan, const std::filesystem::path& 
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

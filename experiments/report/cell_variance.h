@@ -7,7 +7,7 @@
 
 #include "experiments/plan/plan_file.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// How the pictures of a cell vary, one for each seed (repeats show the same picture again).
 struct CellVariance {
@@ -36,4 +36,4 @@ using DonePictures = std::map<std::string, DonePicture>;
 CellVariances cell_variances(const PlanFile& plan, const std::filesystem::path& folder,
                              const DonePictures& done, const CellVariances& earlier);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -14,7 +14,7 @@
 #include "experiments/report/table_index.h"
 #include "experiments/report/trial_rows.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -121,4 +121,4 @@ std::vector<std::string> write_records(const std::filesystem::path& folder, cons
     return lacks;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

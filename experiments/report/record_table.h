@@ -11,7 +11,7 @@
 #include "experiments/plan/trial_store.h"
 #include "experiments/report/table_row.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Makes FOLDER/records.csv and records.jsonl say what the trials that are there say, one row a
 /// trial in the plan's order: leaves them when they do already, else writes them anew, reading one
@@ -23,4 +23,4 @@ std::vector<std::string> write_records(const std::filesystem::path& folder, cons
                                        const std::map<std::string, nlohmann::json>& unfinished,
                                        const std::function<void(const TableRow& row)>& visit);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

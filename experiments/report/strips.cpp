@@ -12,7 +12,7 @@
 #include "experiments/base/child_process.h"
 #include "experiments/picture/previews.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::vector<std::string> write_strips(const SweepPlan& plan, const TrialStore& s
                         reasons.size() == 1 ? "" : "s", reasons[0].get<std::string>())};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -9,7 +9,7 @@
 #include "experiments/plan/sweep_plan.h"
 #include "experiments/plan/trial_store.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Writes FOLDER/ID.png, the strip reference | picture | signed error of the caustic, for the first
 /// done trial of each cell, where it is missing or older than the picture; in a child process. Returns
@@ -19,4 +19,4 @@ std::vector<std::string> write_strips(const SweepPlan& plan, const TrialStore& s
                                       ReferenceCache& references,
                                       const std::filesystem::path& folder);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

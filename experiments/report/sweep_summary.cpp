@@ -8,7 +8,7 @@
 #include "experiments/base/progress.h"
 #include "experiments/run/method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 SweepSummary::Values SweepSummary::values_of(const TableRow& row) const {
     Values values;
@@ -109,4 +109,4 @@ std::string SweepSummary::text(std::size_t planned, std::size_t ran, double seco
         seconds_.text(), memory_.text(), reference_error_.text());
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

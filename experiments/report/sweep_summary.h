@@ -9,7 +9,7 @@
 
 #include "experiments/report/table_row.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What the table of a sweep has to say in some lines, gathered one row at a time.
 class SweepSummary {
@@ -55,4 +55,4 @@ private:
     Range reference_error_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -60,4 +60,4 @@ TableIndex read_table_index(const std::filesystem::path& folder) {
     return {};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 
 #include "experiments/report/cell_variance.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What the tables of a folder were made from: DIR/.table, which spares reading every record again.
 /// It proves itself: tables by their checksums, records by their stamps. Without it nothing is lost
@@ -29,4 +29,4 @@ void write_table_index(const TableIndex& index, const std::filesystem::path& fol
 /// Empty when there is none, or it cannot be read, or another version of the program wrote it.
 TableIndex read_table_index(const std::filesystem::path& folder);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

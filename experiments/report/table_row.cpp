@@ -6,7 +6,7 @@
 #include <charconv>
 #include <stdexcept>
 
-namespace caustics {
+namespace caustics::experiments {
 
 TableRow::TableRow(const std::vector<std::string>& columns, std::vector<std::string> cells)
     : columns_(columns), cells_(std::move(cells)) {
@@ -30,4 +30,4 @@ std::optional<double> TableRow::number(std::string_view column) const {
     return value;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A row of records.csv: texts under its columns, empty where a column does not apply.
 class TableRow {
@@ -23,4 +23,4 @@ private:
     std::vector<std::string> cells_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 #include "experiments/base/file_io.h"
 #include "experiments/plan/record.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -64,4 +64,4 @@ void TrialRows::visit_table(const std::function<void(const TableRow&)>& visit) c
     for (const TableIndex::Row& row : index_.rows) visit(row_at(row.offset));
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

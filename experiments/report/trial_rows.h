@@ -13,7 +13,7 @@
 #include "experiments/report/table_index.h"
 #include "experiments/report/table_row.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What the records of a folder's trials say, as rows: taken from the table that an earlier run
 /// left where the record is still the file its row was made from, else read from the record. A
@@ -46,4 +46,4 @@ private:
     std::map<std::string, const TableIndex::Row*> rows_;  ///< by trial
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

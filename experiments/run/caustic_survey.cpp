@@ -8,7 +8,7 @@
 #include "core/light_path/aimed_emission.h"
 #include "core/reference/ordered_paths.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::string why_unseen(const CausticSurvey& survey) {
         survey.hidden, survey.behind_caster);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -6,7 +6,7 @@
 #include "core/light_path/light_path.h"
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Where light paths of a scene arrive and whether its camera sees them there, by some paths traced to
 /// find out. What arrives is of one of the kinds below the counts.
@@ -26,4 +26,4 @@ CausticSurvey survey_caustic(const Scene& scene, int max_bounces);
 /// Why the camera sees none of the light that arrives (`seen` is 0): its most frequent kind.
 std::string why_unseen(const CausticSurvey& survey);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

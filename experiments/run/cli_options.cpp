@@ -10,7 +10,7 @@
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 CLI::Option* add_repeatable(CLI::App& verb, const std::string& name,
                             std::vector<std::string>& values, const std::string& help) {
@@ -92,4 +92,4 @@ void print_notes(const std::vector<std::string>& notes) {
     for (const std::string& note : notes) write_stderr(fmt::format("note: {}\n", note));
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -10,7 +10,7 @@
 #include "core/scene_file/scene_reader.h"
 #include "experiments/run/method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Options that verbs share. Each adds itself to a verb and says what was given.
 struct SceneOptions {
@@ -58,4 +58,4 @@ void print_notes(const std::vector<std::string>& notes);
 CLI::Option* add_repeatable(CLI::App& verb, const std::string& name,
                             std::vector<std::string>& values, const std::string& help);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

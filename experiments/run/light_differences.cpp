@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::vector<std::string> light_differences(const Film& picture, const Film& refe
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 
 #include "core/render/film.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Where the configurations that two pictures carry with them ask for different light, "max_bounces:
 /// 3 against 16" or "/floor/bsdf/alpha: 0.1 against 0.5": values of the scene but its sampler, files
@@ -13,4 +13,4 @@ namespace caustics {
 /// without a configuration, another program's.
 std::vector<std::string> light_differences(const Film& picture, const Film& reference);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

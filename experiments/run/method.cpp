@@ -9,7 +9,7 @@
 #include "core/base/hash.h"
 #include "experiments/run/methods.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 using nlohmann::json;
 
@@ -91,4 +91,4 @@ bool gathers_over_discs(const Method& method) { return method.facts().gathers_ov
 
 double disc_radius(const Method& method) { return method.configured->disc_radius(); }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -11,7 +11,7 @@
 #include "core/method/method_description.h"
 #include "core/scene_file/json_reader.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A method with its parameters, as the harness passes it on; parse_method makes it.
 struct Method {
@@ -63,4 +63,4 @@ bool gathers_over_discs(const Method& method);
 /// The disc's radius [m] for points that have none of their own; 0 = none.
 double disc_radius(const Method& method);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

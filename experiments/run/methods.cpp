@@ -8,19 +8,19 @@
 #include "core/reference/path_trace.h"
 #include "photonmap/photon_map_method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 const std::vector<const MethodDescription*>& all_methods() {
     static const std::vector<const MethodDescription*> methods = {
         &none_method(),
         &pathtrace_method(),
         &lighttrace_method(),
-        &photonmap_method(),
-        &beamtree_method(),
+        &photonmap::photonmap_method(),
+        &beamtree::beamtree_method(),
         &illuminationmap_method(),
-        &causticpolygons_method(),
+        &beamtree::causticpolygons_method(),
     };
     return methods;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -4,10 +4,10 @@
 
 #include "core/method/method_description.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// All methods there are, in the order in which they are listed. A program that links a list of its
 /// own in place of methods.cpp knows other methods.
 const std::vector<const MethodDescription*>& all_methods();
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -13,7 +13,7 @@
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -205,4 +205,4 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 
 #include "experiments/run/method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What a user should know of a scene, one line each and mostly none: casters whose smooth normals
 /// differ much from their triangles, and an eye whose medium cannot be told.
@@ -17,4 +17,4 @@ std::vector<std::string> notes_on(const Scene& scene);
 /// differ much, an old photon map's file, and parameters that were set and make no difference.
 std::vector<std::string> notes(const Scene& scene, const Method& method, const BuildReport& report);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -11,7 +11,7 @@
 #include "core/geometry/coordinate_limit.h"
 #include "experiments/run/notes.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -231,4 +231,4 @@ std::string probe_table(const ProbeList& list, const ProbeAnswers& answers) {
     return text;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -8,7 +8,7 @@
 #include "experiments/base/csv.h"
 #include "experiments/run/method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A row of a point list.
 struct ProbePoint {
@@ -47,4 +47,4 @@ ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& li
 /// The rows as they were, with the answers beside them.
 std::string probe_table(const ProbeList& list, const ProbeAnswers& answers);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -11,7 +11,7 @@
 #include "experiments/run/notes.h"
 #include "experiments/run/why_empty.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -100,4 +100,4 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
     return result;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

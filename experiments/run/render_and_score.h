@@ -12,7 +12,7 @@
 #include "experiments/base/stopwatch.h"
 #include "experiments/run/method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A picture to make: what a trial, a reference and the verb `render` have in common.
 struct RunRequest {
@@ -48,4 +48,4 @@ struct RunResult {
 RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
               Stopwatch& stopwatch);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 
 #include "experiments/base/progress.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 std::string phase_text(const std::string& phase, double share, double seconds) {
     constexpr int width = 20;
@@ -42,4 +42,4 @@ void RunProgress::share(double done) {
     line_.show(phase_text(phase_, done, std::chrono::duration<double>(now - begun_).count()));
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

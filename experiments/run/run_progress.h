@@ -8,7 +8,7 @@
 #include "core/caustic_estimator.h"
 #include "experiments/base/status_line.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// The progress of one run on stderr: the phase at work, its done share as a bar, and the seconds
 /// that the rest of the phase will take at this pace. Ends with its life: the line is gone then.
@@ -32,4 +32,4 @@ private:
 /// "trace [#####.....] 50 %, phase ETA 0:12" for a phase that has taken so many seconds.
 std::string phase_text(const std::string& phase, double share, double seconds);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -8,7 +8,7 @@
 #include "core/render/film.h"
 #include "experiments/run/caustic_survey.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -76,4 +76,4 @@ std::optional<std::string> why_empty(const Scene& scene, const Method& method, c
     return why_missed(method, survey, report, counters);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

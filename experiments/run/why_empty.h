@@ -6,8 +6,10 @@
 #include "experiments/run/method.h"
 
 namespace caustics {
-
 class Film;
+}
+
+namespace caustics::experiments {
 
 /// Why the layer `caustic` of a method's picture is black all over, in one line; empty where it is not,
 /// and for the method `none`. Told by what building and rendering counted and, where that is not
@@ -15,4 +17,4 @@ class Film;
 std::optional<std::string> why_empty(const Scene& scene, const Method& method, const Film& film,
                                      const BuildReport& report, const Counters& counters);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

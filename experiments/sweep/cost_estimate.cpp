@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -34,4 +34,4 @@ std::optional<Cost> CostEstimate::of(const Trial& trial) const {
     return {};
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

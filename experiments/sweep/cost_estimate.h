@@ -7,7 +7,7 @@
 
 #include "experiments/plan/sweep_plan.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What a trial costs.
 struct Cost {
@@ -31,4 +31,4 @@ private:
     std::map<std::string, Mean> means_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 #include "experiments/base/progress.h"
 #include "experiments/sweep/sweep_status.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::string dry_run(const SweepPlan& plan, const SweepOptions& options) {
     return text;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

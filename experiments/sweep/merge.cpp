@@ -17,7 +17,7 @@
 #include "experiments/report/record_table.h"
 #include "experiments/report/trial_rows.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -203,4 +203,4 @@ std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
     return warnings;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

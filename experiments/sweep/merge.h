@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Puts the results of shards together: trials, references, figures, tables. Throws InputError,
 /// having written nothing, when a runner still works on one of the folders, when they hold
@@ -14,4 +14,4 @@ namespace caustics {
 std::vector<std::string> merge_results(const std::vector<std::filesystem::path>& folders,
                                        const std::filesystem::path& target);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -22,7 +22,7 @@
 #include "experiments/run/cli_options.h"
 #include "experiments/sweep/sweep_status.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -335,4 +335,4 @@ int run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     return Sweep(plan, options).run();
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -3,7 +3,7 @@
 #include "experiments/plan/sweep_plan.h"
 #include "experiments/sweep/sweep_options.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Runs what is not there yet, in run_order(), and writes DIR/trials, DIR/records.csv and .jsonl,
 /// DIR/plan.json, DIR/environment.json, DIR/references and DIR/report/figures. References come
@@ -13,4 +13,4 @@ namespace caustics {
 /// children.
 int run_sweep(const SweepPlan& plan, const SweepOptions& options);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -6,7 +6,7 @@
 #include "experiments/plan/sweep_selection.h"
 #include "experiments/sweep/trial_runner.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What is to be done of a sweep, and how.
 struct SweepOptions {
@@ -20,4 +20,4 @@ struct SweepOptions {
     TrialSettings trials;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -10,7 +10,7 @@
 #include "experiments/base/environment.h"
 #include "experiments/report/trial_rows.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -91,4 +91,4 @@ SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -10,7 +10,7 @@
 #include "experiments/sweep/cost_estimate.h"
 #include "experiments/sweep/sweep_options.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// How far a sweep is, from its plan and what its folder holds.
 struct SweepStatus {
@@ -35,4 +35,4 @@ struct SweepStatus {
 SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,
                          const TrialStore& store);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

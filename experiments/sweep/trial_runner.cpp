@@ -11,7 +11,7 @@
 #include "experiments/base/file_io.h"
 #include "experiments/plan/trial.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -136,4 +136,4 @@ std::vector<TrialRunner::Running> TrialRunner::running() const {
     return all;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -11,7 +11,7 @@
 #include "experiments/plan/sweep_plan.h"
 #include "experiments/plan/trial_store.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// How trials are run.
 struct TrialSettings {
@@ -74,4 +74,4 @@ private:
     std::list<Slot> slots_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -9,7 +9,7 @@
 #include "core/light_path/empty_caustic.h"
 #include "core/light_path/light_path.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::vector<LightAccount> audit_lights(const SceneDesc& scene, int max_bounces) 
     return accounts;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 
 #include "core/scene/scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// Where the light of one light goes that it sends towards casters, by paths traced to find out [W], mean of
 /// the channels.
@@ -32,4 +32,4 @@ struct LightAccount {
 /// One account for each light, alone in the scene.
 std::vector<LightAccount> audit_lights(const SceneDesc& scene, int max_bounces);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "experiments/run/method.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -143,4 +143,4 @@ std::string gallery_table(const std::vector<GalleryScene>& scenes,
     return text;
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

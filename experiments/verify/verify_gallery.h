@@ -6,7 +6,7 @@
 #include "core/caustic_estimator.h"
 #include "experiments/gallery/gallery.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// What a series of the gallery came to.
 struct SeriesOutcome {
@@ -49,4 +49,4 @@ SeriesOutcome run_series(const GalleryScene& scene, const Series& series,
 std::string gallery_table(const std::vector<GalleryScene>& scenes,
                           const std::vector<SeriesOutcome>& outcomes);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -20,7 +20,7 @@
 #include "experiments/run/methods.h"
 #include "experiments/verify/light_audit.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -358,4 +358,4 @@ SceneReport verify_scene(const SceneFile& file, const std::vector<std::string>& 
     return SceneVerifier(file, methods, options).run();
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

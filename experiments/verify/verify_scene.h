@@ -6,7 +6,7 @@
 #include "core/caustic_estimator.h"
 #include "core/scene_file/scene_reader.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// One thing that was checked.
 struct Finding {
@@ -35,4 +35,4 @@ struct SceneReport {
 SceneReport verify_scene(const SceneFile& file, const std::vector<std::string>& methods,
                          const RunOptions& options);
 
-}  // namespace caustics
+}  // namespace caustics::experiments

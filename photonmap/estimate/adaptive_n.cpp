@@ -5,7 +5,7 @@
 #include "core/math/frame.h"
 #include "photonmap/tree/kd_tree_base.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -47,4 +47,4 @@ ChosenPhotons AdaptiveN::choose(const ReceiverPoint& point, const GatheredPhoton
             std::min(1.0, 1.5 * (1 - choice.lean)) / mean};
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

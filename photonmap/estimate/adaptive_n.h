@@ -6,7 +6,7 @@
 #include "photonmap/tree/gathered_photons.h"
 #include "photonmap/tree/radius_filter.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A thread's arrays for choosing.
 struct NScratch {
@@ -55,4 +55,4 @@ private:
     NChooser* chooser_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

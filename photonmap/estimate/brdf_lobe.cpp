@@ -2,7 +2,7 @@
 
 #include "core/math/frame.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -63,4 +63,4 @@ BrdfLobe reflection_of(const ReceiverPoint& point) {
     return reflection;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include "core/caustic_estimator.h"
 #include "photonmap/kernels/shading_kernel.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The f_r of a receiver point seen along its `wo`, taken apart for shading many photons:
 /// f_r(wi) = `scale` x a factor of wi that a kernel works out; Phong's factor is `diffuse` x that of `facing`
@@ -26,4 +26,4 @@ struct BrdfLobe {
 /// The point's texture is evaluated here, once.
 BrdfLobe reflection_of(const ReceiverPoint& point);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 
 #include "photonmap/photons/direction_code.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -60,4 +60,4 @@ void BrdfLobeTable::fill(Entry& entry, std::uint16_t direction) {
     ++fillings_;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

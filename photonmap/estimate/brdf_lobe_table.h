@@ -5,7 +5,7 @@
 
 #include "photonmap/estimate/brdf_lobe.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// f_r of one receiver point seen from one direction, over the 65,536 directions that a stored
 /// photon can have: the lookup table that [J96, section 5] proposes. Photons near one point come
@@ -46,4 +46,4 @@ private:
     BrdfLobe reflection_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -71,4 +71,4 @@ FilterPolynomial DensityFilter::polynomial() const {
     return {{1}, 0, false};
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include "photonmap/kernels/shading_kernel.h"
 #include "photonmap/photons/photon_map_params.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A filter and its numbers.
 struct DensityFilter {
@@ -28,4 +28,4 @@ struct DensityFilter {
     FilterPolynomial polynomial() const;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -35,4 +35,4 @@ double default_max_radius(std::span<const Photon> photons, const Box& scene_boun
     return 3 * std::sqrt(nearest * area / (pi_d * count));
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

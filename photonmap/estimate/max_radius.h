@@ -5,7 +5,7 @@
 #include "core/math/vec.h"
 #include "photonmap/photons/photon.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The maximum radius [m] where none is given: 3 sqrt(N A / (pi n)), three times the radius of N
 /// of n photons were they spread evenly over the area A. A is that of the box that holds the
@@ -14,4 +14,4 @@ namespace caustics {
 /// span no area.
 double default_max_radius(std::span<const Photon> photons, const Box& scene_bounds, int nearest);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -72,4 +72,4 @@ Spectrum RadianceEstimate::irradiance(const ReceiverPoint& point, const Gathered
     return density(shading_.arriving(around.photons), around);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -10,7 +10,7 @@
 #include "photonmap/photons/photon_map_params.h"
 #include "photonmap/tree/photon_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A thread's arrays for estimates, and how many photons they were made from.
 struct EstimateScratch {
@@ -81,4 +81,4 @@ private:
     FilterPolynomial filter_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -6,7 +6,7 @@
 
 #include "photonmap/photons/photon.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -118,4 +118,4 @@ SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons
     return sum * reflection.scale;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

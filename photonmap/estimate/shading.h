@@ -6,7 +6,7 @@
 #include "photonmap/estimate/brdf_lobe_table.h"
 #include "photonmap/tree/gathered_photons.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Gathered photons and how much each counts.
 struct WeightedPhotons {
@@ -44,4 +44,4 @@ private:
     const ShadingKernels& kernels_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

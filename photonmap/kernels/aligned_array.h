@@ -5,7 +5,7 @@
 #include <memory>
 #include <new>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// An array of plain data, aligned to 64 bytes; its contents are lost when it grows.
 template <typename T>
@@ -31,4 +31,4 @@ private:
     std::size_t capacity_ = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

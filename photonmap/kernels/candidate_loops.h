@@ -3,7 +3,7 @@
 #include "photonmap/kernels/simd_select.h"
 #include "photonmap/kernels/tree_kernels.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// What every query does with its candidates.
 template <typename Lanes>
@@ -51,4 +51,4 @@ struct CandidateLoops {
     }
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

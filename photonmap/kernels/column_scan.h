@@ -2,7 +2,7 @@
 
 #include "photonmap/kernels/candidate_loops.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The query of a group's member among the photons that were copied out for the group.
 template <typename Lanes>
@@ -118,4 +118,4 @@ private:
     }
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// cos^exponent of an angle given by t = 1 - cos, 0 <= t; 0 from a right angle on. For registers of one
 /// kind; the relative error is 1e-6 or less, and that of t times the exponent, however near 1 the cosine is.
@@ -41,4 +41,4 @@ typename Lanes::Floats cosine_power(typename Lanes::Floats t, float exponent) {
     return Lanes::where(Lanes::less(t, one), kept, Lanes::all(0));
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

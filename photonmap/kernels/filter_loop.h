@@ -2,7 +2,7 @@
 
 #include "photonmap/kernels/shading_kernel.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// WeighingKernel for registers of one kind.
 template <typename Lanes>
@@ -21,4 +21,4 @@ void weigh_photons(const FilterPolynomial& filter, const FilteredPhotons& photon
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

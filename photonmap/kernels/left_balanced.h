@@ -2,7 +2,7 @@
 
 #include <stdint.h>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The shape of a left-balanced binary tree that is stored as a heap: node 1 is the root, the
 /// children of node i are 2i and 2i + 1, every level but the last is full and the last is filled
@@ -49,4 +49,4 @@ static inline uint64_t leaf_number(uint64_t node, uint64_t leaves) {
                                        : node + leaves - first_of_last_level;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The numbers of photons among which `adaptive` chooses: 5 and on by factors of 1.3.
 struct NLadder {
@@ -44,4 +44,4 @@ struct NChoice {
 
 using NChooser = NChoice(const PhotonsAround& photons);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include "photonmap/kernels/n_choice.h"
 #include "photonmap/kernels/simd_select.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// NChooser for registers of one kind. Directions are kept as whole numbers, so that sums, and
 /// with them choices, depend neither on the photons' order nor on the instruction set.
@@ -123,4 +123,4 @@ private:
     }
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

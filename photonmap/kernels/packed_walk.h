@@ -3,7 +3,7 @@
 #include "photonmap/kernels/candidate_loops.h"
 #include "photonmap/kernels/left_balanced.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The walk of a packed tree: nearest bucket first, a bucket at a time.
 template <typename Lanes>
@@ -226,4 +226,4 @@ private:
     size_t pending_count_ = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_avx2.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -179,4 +179,4 @@ void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhot
 const ShadingKernels avx2_shading{add_arriving, add_facing, add_schlick, add_phong,
                                   weigh_photons<Avx2Lanes>};
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_avx512.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -198,4 +198,4 @@ void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhot
 const ShadingKernels avx512_shading{add_arriving, add_facing, add_schlick, add_phong,
                                     weigh_photons<Avx512Lanes>};
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

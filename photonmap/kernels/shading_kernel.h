@@ -5,7 +5,7 @@
 
 #include "photonmap/photons/direction_tables.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// One receiver point's reflection as the kernels take it: f_r about the shading normal, seen from
 /// `wo`, divided by the reflectance. The two tangents complete the normal to a frame.
@@ -81,4 +81,4 @@ float phong_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t thet
 /// What `facing` multiplies a photon's energy by.
 float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

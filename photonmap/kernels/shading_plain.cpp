@@ -5,7 +5,7 @@
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_plain.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -102,4 +102,4 @@ float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t the
 const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick, add_phong,
                                    weigh_photons<PlainSimd>};
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

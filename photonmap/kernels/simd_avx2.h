@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// PlainSimd, eight at a time.
 struct Avx2Lanes {
@@ -117,4 +117,4 @@ private:
     }
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

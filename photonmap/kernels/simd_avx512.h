@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// PlainSimd, sixteen at a time.
 struct Avx512Lanes {
@@ -64,4 +64,4 @@ struct Avx512Lanes {
     static float greatest(Floats a) { return _mm512_reduce_max_ps(a); }
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Registers of one lane: the plain C++ of the kernels that are written for any width. Masks hold
 /// lane i in bit i. Every width does the same operations, each rounded to float, in the same order,
@@ -59,4 +59,4 @@ private:
     static float float_of(uint32_t bits) { return __builtin_bit_cast(float, bits); }
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

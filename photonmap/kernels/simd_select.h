@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A value of given rank and its place among the others.
 struct SimdSelect {
@@ -206,4 +206,4 @@ private:
     }
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

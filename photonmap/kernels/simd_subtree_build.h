@@ -4,7 +4,7 @@
 #include "photonmap/kernels/simd_select.h"
 #include "photonmap/kernels/tree_kernels.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Builds the subtrees of small ranges: the positions lie in columns, and every level of the tree moves
 /// them from one set of columns to the other, a register at a time.
@@ -234,4 +234,4 @@ private:
     const BucketRange* range_ = nullptr;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -7,7 +7,7 @@
 #include "photonmap/photons/direction_tables.h"
 #include "photonmap/photons/facing_code.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// What the loops that are written for several instruction sets share: plain data, so that a
 /// source compiled for wide registers includes no inline code of Eigen or the standard library.
@@ -132,4 +132,4 @@ const TreeKernels& plain_tree_kernels();
 const TreeKernels& avx2_tree_kernels();
 const TreeKernels& avx512_tree_kernels();
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

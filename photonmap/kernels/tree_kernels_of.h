@@ -5,7 +5,7 @@
 #include "photonmap/kernels/packed_walk.h"
 #include "photonmap/kernels/simd_subtree_build.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The loops for registers of one kind.
 template <typename Lanes>
@@ -22,4 +22,4 @@ struct TreeKernelsOf {
     };
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

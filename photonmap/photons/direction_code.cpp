@@ -5,7 +5,7 @@
 
 #include "photonmap/photons/direction_tables.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -54,4 +54,4 @@ Vec3 decode_direction(std::uint8_t theta, std::uint8_t phi) {
     return {t.sine * p.cosine, t.sine * p.sine, t.cosine};
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A direction in two bytes: theta from +z in 256 cells of pi/256, phi from +x in 256 cells of
 /// 2 pi/256. A code stands for the centre of its cell, so that decoding is wrong by at most
@@ -19,4 +19,4 @@ DirectionCode encode_direction(const Vec3& direction);
 /// Unit.
 Vec3 decode_direction(std::uint8_t theta, std::uint8_t phi);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

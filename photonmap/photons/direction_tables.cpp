@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -41,4 +41,4 @@ const DirectionTables tables = [] {
 
 const DirectionTables& direction_tables() { return tables; }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

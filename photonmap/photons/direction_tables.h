@@ -1,6 +1,6 @@
 #pragma once
 
-namespace caustics {
+namespace caustics::photonmap {
 
 struct SineCosine {
     float sine;
@@ -25,4 +25,4 @@ struct DirectionTables {
 /// The one copy; `decode_direction` reads it too.
 const DirectionTables& direction_tables();
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 uint16_t facing_flags(const float (&normal)[3]) {
     constexpr float half = 44;
@@ -20,4 +20,4 @@ uint16_t facing_flags(const float (&normal)[3]) {
     return static_cast<uint16_t>((1 + 89 * u + v) << facing_shift);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 
 #include "core/scene/same_surface.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Where the surface faces on which a photon landed, in the 13 bits of its flags between the tree's
 /// two and the highest: the unit octahedron's net [Meyer et al. 2010] in 89 x 89 points, so that the
@@ -42,4 +42,4 @@ static inline bool is_same_surface(unsigned flags, const float (&normal)[3]) {
     return cosine > 0 && cosine * cosine > same_surface_cosine * same_surface_cosine * square;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 double faint_flux_share(std::span<const Photon> photons) {
     std::array<double, 3> all{}, faint{};
@@ -22,4 +22,4 @@ double faint_flux_share(std::span<const Photon> photons) {
     return largest;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -6,7 +6,7 @@
 #include "photonmap/photons/direction_code.h"
 #include "photonmap/photons/rgbe.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The 20-byte photon of [J96, section 2].
 struct Photon {
@@ -31,4 +31,4 @@ inline Vec3 position(const Photon& photon) {
 /// Unit, away from the surface; within the direction code's error.
 inline Vec3 incoming(const Photon& photon) { return decode_direction(photon.theta, photon.phi); }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -12,7 +12,7 @@
 #include "core/base/hash.h"
 #include "core/geometry/coordinate_limit.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -217,4 +217,4 @@ std::uint64_t photon_map_checksum(const std::filesystem::path& file) {
     return in.read<std::uint64_t>();
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

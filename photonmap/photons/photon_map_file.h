@@ -7,7 +7,7 @@
 #include "photonmap/photons/photon_map_params.h"
 #include "photonmap/photons/photon_tracing.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Where the photons of a map come from.
 struct PhotonOrigin {
@@ -51,4 +51,4 @@ SavedPhotons load_photon_map(const std::filesystem::path& file);
 /// loading. Throws InputError where there is no photon map.
 std::uint64_t photon_map_checksum(const std::filesystem::path& file);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

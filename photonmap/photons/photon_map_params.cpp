@@ -1,6 +1,6 @@
 #include "photonmap/photons/photon_map_params.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 const char* name(TreeKind kind) {
     switch (kind) {
@@ -21,4 +21,4 @@ const char* name(FilterKind kind) {
     return "none";
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

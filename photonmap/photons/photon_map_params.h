@@ -5,7 +5,7 @@
 
 #include "core/light_path/light_path.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// How a map's photons are ordered for finding the nearest; all give the same answers.
 enum class TreeKind {
@@ -65,4 +65,4 @@ struct PhotonMapParams {
     std::filesystem::path load = {};
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -6,7 +6,7 @@
 #include "core/scene/transport_hash.h"
 #include "photonmap/photons/scene_photons.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -53,4 +53,4 @@ SavedPhotons photon_source(const Scene& scene, const PhotonMapParams& params,
     return photons;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

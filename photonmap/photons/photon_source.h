@@ -3,7 +3,7 @@
 #include "core/caustic_estimator.h"
 #include "photonmap/photons/photon_map_file.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The photons that a map stands on: traced in phase "trace", or those of the file `params.load`, in
 /// phase "load"; and written to `params.save`, in phase "save". A file that cannot be written to is
@@ -16,4 +16,4 @@ SavedPhotons photon_source(const Scene& scene, const PhotonMapParams& params,
 void require_transport(const PhotonOrigin& origin, const Scene& scene,
                        const std::filesystem::path& file);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -89,4 +89,4 @@ void PhotonStore::settle() {
     madvise(memory_.get(), whole, collapse_now);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -7,7 +7,7 @@
 
 #include "photonmap/photons/photon.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Photons in blocks of 65,536 [J96, section 2]. All blocks lie in one reserved range of address
 /// space: memory is taken only as photons arrive, no photon ever moves when another block begins,
@@ -49,4 +49,4 @@ private:
     std::unique_ptr<Photon[], Unmap> memory_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -17,7 +17,7 @@
 #include "core/math/rng.h"
 #include "photonmap/photons/facing_code.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -271,4 +271,4 @@ void drop_photons(TracedPhotons& photons, std::uint64_t wanted, std::uint64_t se
     photons.store.shrink(wanted);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -9,7 +9,7 @@
 #include "core/light_path/light_path.h"
 #include "photonmap/photons/photon_store.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// How far to trace: exactly one of `stored` and `emitted` is not 0.
 struct PhotonTarget {
@@ -98,4 +98,4 @@ TracedPhotons trace_photons(const PathTracer& tracer, const Spectrum& path_flux,
 /// photon of a stratified or splitting emission would not. Needs at least `wanted` photons.
 void drop_photons(TracedPhotons& photons, std::uint64_t wanted, std::uint64_t seed);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include <bit>
 #include <stdexcept>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -84,4 +84,4 @@ Spectrum decode_rgbe(const Rgbe& code) {
            scale;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -5,7 +5,7 @@
 
 #include "core/math/spectrum.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Three non-negative values in four bytes with a shared exponent [Ward, "Real pixels", Graphics
 /// Gems II, 1991]: value = byte * 2^(exponent - 136). The largest channel keeps 7 to 8 bits.
@@ -29,4 +29,4 @@ Rgbe encode_rgbe(const Spectrum& value, const std::array<double, 3>& chance);
 
 Spectrum decode_rgbe(const Rgbe& code);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -11,7 +11,7 @@
 #include "core/light_path/empty_caustic.h"
 #include "photonmap/photons/stratified_square.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -288,4 +288,4 @@ TracedPhotons trace_scene(const Scene& scene, const PhotonMapParams& params,
     return ScenePhotons(scene, params, options, traced).trace();
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

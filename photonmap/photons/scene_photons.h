@@ -5,7 +5,7 @@
 #include "photonmap/photons/photon_map_params.h"
 #include "photonmap/photons/photon_tracing.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Traces the photons of a scene that `params` ask for. Counts stay exact and flux unbiased:
 ///
@@ -25,4 +25,4 @@ namespace caustics {
 TracedPhotons trace_scene(const Scene& scene, const PhotonMapParams& params,
                           const RunOptions& options, std::vector<Ray>* traced = nullptr);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -90,4 +90,4 @@ void StratifiedSquare::place_in_block(const Vec2d& corner, std::uint32_t code, s
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

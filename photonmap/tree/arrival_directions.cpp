@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -130,4 +130,4 @@ bool all_count(const SideTest& side, const CopiedPhotons& photons, std::size_t c
            all_on_same_surface(side, {photons.flags, count});
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

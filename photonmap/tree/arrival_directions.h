@@ -5,7 +5,7 @@
 #include "photonmap/kernels/tree_kernels.h"
 #include "photonmap/photons/photon.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A cone that holds the directions from which a map's photons came, and one that holds the normals of
 /// the surfaces they landed on. At most points of a receiver all that is in them counts, and then no
@@ -33,4 +33,4 @@ SideTest side_test(const Vec3& normal);
 /// Whether the first `count` of these photons pass the test; they must have flags.
 bool all_count(const SideTest& side, const CopiedPhotons& photons, std::size_t count);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -5,7 +5,7 @@
 #include "photonmap/tree/kd_search.h"
 #include "photonmap/tree/select_photons.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -83,4 +83,4 @@ std::uint64_t BalancedKdTree::code_of(std::uint32_t photon) const {
     return code(photons_.photons()[photon]);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,7 +3,7 @@
 #include "photonmap/kernels/left_balanced.h"
 #include "photonmap/tree/kd_tree_base.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Turns an array of photons into the balanced kd-tree of [J96, section 2], in place with O(1) extra
 /// memory: a heap (left_balanced.h), node i = photon i - 1 of the array, whose root is the median along the
@@ -28,4 +28,4 @@ private:
     PhotonStore photons_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

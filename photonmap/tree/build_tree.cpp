@@ -4,7 +4,7 @@
 #include "photonmap/tree/packed_kd_tree.h"
 #include "photonmap/tree/unbalanced_kd_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 std::unique_ptr<const PhotonTree> build_tree(TreeKind kind, PhotonStore photons, Isa isa) {
     switch (kind) {
@@ -16,4 +16,4 @@ std::unique_ptr<const PhotonTree> build_tree(TreeKind kind, PhotonStore photons,
     return std::make_unique<BalancedKdTree>(std::move(photons), isa);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -3,10 +3,10 @@
 #include "photonmap/photons/photon_map_params.h"
 #include "photonmap/tree/photon_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Orders the photons, in their memory where the kind allows it, with less than 1 MB besides. Throws
 /// InputError naming the first photon whose position is not finite.
 std::unique_ptr<const PhotonTree> build_tree(TreeKind kind, PhotonStore photons, Isa isa);
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -1,6 +1,6 @@
 #include "photonmap/tree/gather_scratch.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 Candidates& CandidateArrays::reserve(std::size_t capacity) {
     if (capacity > candidates_.capacity) {
@@ -30,4 +30,4 @@ CopiedPhotons CopyArrays::copied(bool positions, bool flags) {
     return to;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

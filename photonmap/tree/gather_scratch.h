@@ -9,7 +9,7 @@
 #include "photonmap/kernels/tree_kernels.h"
 #include "photonmap/tree/gathered_photons.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Candidates with their memory.
 class CandidateArrays {
@@ -66,4 +66,4 @@ struct GatherScratch {
     std::uint64_t grouped_queries = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The photons a query found, as arrays that shading and filters read a register at a time: plain
 /// data, so that code for any instruction set can share it. Arrays are aligned to 64 bytes and may be
@@ -19,4 +19,4 @@ struct GatheredPhotons {
     const float* position[3] = {nullptr, nullptr, nullptr};
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

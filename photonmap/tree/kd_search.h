@@ -2,7 +2,7 @@
 
 #include "photonmap/tree/kd_tree_base.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The photon's squared distance [m^2], each operation rounded to float.
 inline float squared_distance(const Photon& photon, const float point[3]) {
@@ -66,4 +66,4 @@ void find_nearest(const Tree& tree, const TreeKernels& kernels, const NearestQue
     }
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

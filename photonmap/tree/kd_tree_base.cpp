@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 const TreeKernels& tree_kernels(Isa isa) {
 #ifdef CAUSTICS_X86_KERNELS
@@ -112,4 +112,4 @@ GatheredPhotons KdTreeBase::gathered(const Candidates& found, const CopiedPhoton
     return answer;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

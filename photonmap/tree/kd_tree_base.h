@@ -9,7 +9,7 @@
 #include "photonmap/tree/neighbour_bound.h"
 #include "photonmap/tree/photon_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// The kernels of an instruction set.
 const TreeKernels& tree_kernels(Isa isa);
@@ -118,4 +118,4 @@ void KdTreeBase::keep_smallest_codes(Candidates& found, std::size_t nearest,
     found.count = kept;
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -5,7 +5,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// What one query's answer tells the next: the distance of the N-th nearest photon changes by no more than
 /// the point moves, so that it bounds the next search exactly.
@@ -45,4 +45,4 @@ private:
     float distance_ = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

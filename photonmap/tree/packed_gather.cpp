@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -177,4 +177,4 @@ void PackedKdTree::gather(std::span<const ReceiverPoint> points, const GatherLim
     PackedGather(*this, {points, limits, scratch, consume}).run();
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -2,7 +2,7 @@
 
 #include "photonmap/tree/packed_kd_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// One gather of a packed tree. A batch of points is halved until its parts are narrow against the
 /// distance of the N-th photon; such a group's photons are collected by one walk round its
@@ -40,4 +40,4 @@ private:
     std::size_t column_count_ = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -5,7 +5,7 @@
 #include "photonmap/kernels/left_balanced.h"
 #include "photonmap/tree/select_photons.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -89,4 +89,4 @@ std::uint64_t PackedKdTree::code_of(std::uint32_t photon) const {
     return code(energy, direction);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -5,7 +5,7 @@
 #include "photonmap/kernels/aligned_array.h"
 #include "photonmap/tree/kd_tree_base.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// A kd-tree over buckets of photons, built in the photons' own memory. A bucket holds x, y, z, energy,
 /// directions and flags of its photons one array after the other, so that a register takes many photons
@@ -40,4 +40,4 @@ private:
     PackedView view_{};
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

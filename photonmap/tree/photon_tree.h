@@ -12,7 +12,7 @@
 #include "photonmap/tree/gather_scratch.h"
 #include "photonmap/tree/gathered_photons.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Which photons belong to an answer: the N nearest of those within the maximum radius.
 struct GatherLimits {
@@ -47,4 +47,4 @@ public:
     virtual void add_to(Counters&) const {}
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -6,7 +6,7 @@
 #include "photonmap/kernels/tree_kernels.h"
 #include "photonmap/tree/gathered_photons.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// Some of a query's photons, with their memory.
 class RadiusFilter {
@@ -40,4 +40,4 @@ private:
     AlignedArray<std::uint16_t> direction_;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

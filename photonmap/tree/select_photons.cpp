@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -100,4 +100,4 @@ void select_photon(std::span<Photon> photons, std::size_t rank, unsigned axis) {
         [axis](const Photon& a, const Photon& b) { return a.position[axis] < b.position[axis]; });
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

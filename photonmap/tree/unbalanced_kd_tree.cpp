@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "photonmap/tree/kd_search.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 namespace {
 
@@ -95,4 +95,4 @@ std::uint64_t UnbalancedKdTree::code_of(std::uint32_t photon) const {
     return code(nodes_[photon].photon);
 }
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -2,7 +2,7 @@
 
 #include "photonmap/tree/kd_tree_base.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 
 /// What the paper's balanced tree is compared with [J96, section 2]: photons inserted one by one in the
 /// order of their arrival, the axes taken in turn x, y, z from level to level, each node with two
@@ -38,4 +38,4 @@ private:
     std::uint64_t depth_ = 0;
 };
 
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -38,18 +38,19 @@ Shape ball_mesh(int resolution, const Bsdf& bsdf = support::glass(1.5F)) {
                          bsdf);
 }
 
-TracedBeams beams_of(const Scene& scene, int resolution, int max_bounces = 16) {
-    return trace_all_beams(scene, caster_meshes(scene, resolution), sample_lights(scene, 1, 1),
-                           {Intensity::area, max_bounces}, {});
+beamtree::TracedBeams beams_of(const Scene& scene, int resolution, int max_bounces = 16) {
+    return beamtree::trace_all_beams(scene, beamtree::caster_meshes(scene, resolution),
+                                     beamtree::sample_lights(scene, 1, 1),
+                                     {beamtree::Intensity::area, max_bounces}, {});
 }
 
-double flux_of(const TracedBeams& traced, const std::vector<bool>& refracted) {
+double flux_of(const beamtree::TracedBeams& traced, const std::vector<bool>& refracted) {
     double sum = 0;
-    for (const BeamSet& set : traced.sets) {
+    for (const beamtree::BeamSet& set : traced.sets) {
         bool same = set.path.size() == refracted.size();
         for (std::size_t i = 0; same && i < refracted.size(); ++i)
             same = set.path[i].refracted == refracted[i];
-        for (const Beam& beam : set.beams)
+        for (const beamtree::Beam& beam : set.beams)
             if (same) sum += static_cast<double>(beam.flux.mean());
     }
     return sum;
@@ -78,7 +79,8 @@ TEST(BeamBounces, CaptureTheFluxThroughABall) {
         const Shape ball =
             exact ? support::sphere("ball", ball_centre, ball_radius, support::glass(1.5F))
                   : ball_mesh(64);
-        const TracedBeams traced = beams_of(Scene(over_a_floor({ball}, ball_lamp)), 64, 4);
+        const beamtree::TracedBeams traced =
+            beams_of(Scene(over_a_floor({ball}, ball_lamp)), 64, 4);
         const double through = flux_of(traced, {true, true}) / flux_through_ball(10, 0);
         EXPECT_GT(through, 0.99) << exact;
         EXPECT_LT(through, 1.002);
@@ -89,12 +91,13 @@ TEST(BeamBounces, CaptureTheFluxThroughABall) {
 
 // Neighbours on the first surface share their rays after every event, to the bit.
 TEST(BeamBounces, NeighboursShareTheirRays) {
-    const TracedBeams traced = beams_of(Scene(over_a_floor({ball_mesh(32)}, ball_lamp)), 2, 3);
-    for (const BeamSet& set : traced.sets) {
+    const beamtree::TracedBeams traced =
+        beams_of(Scene(over_a_floor({ball_mesh(32)}, ball_lamp)), 2, 3);
+    for (const beamtree::BeamSet& set : traced.sets) {
         std::size_t corners = 0;
-        for (const Beam& beam : set.beams) corners += beam.triangle_count() + 2;
+        for (const beamtree::Beam& beam : set.beams) corners += beam.triangle_count() + 2;
         EXPECT_LT(set.rays.size(), corners / 3) << set.path.size();
-        for (const VertexRay& ray : set.rays) {
+        for (const beamtree::VertexRay& ray : set.rays) {
             ASSERT_TRUE(ray.position.allFinite() && ray.direction.allFinite());
             ASSERT_NEAR(ray.direction.norm(), 1, 1e-5);
         }
@@ -156,9 +159,9 @@ void expect_same_flux(const Scene& scene, double half, const Params& params, dou
     EXPECT_NEAR(total, photons.total(), 4 * std::sqrt(variance) + 0.005 * photons.total());
 }
 
-BeamTreeParams swept(Intensity intensity = Intensity::area) {
-    BeamTreeParams params;
-    params.bound = Bound::sphere_swept;
+beamtree::BeamTreeParams swept(beamtree::Intensity intensity = beamtree::Intensity::area) {
+    beamtree::BeamTreeParams params;
+    params.bound = beamtree::Bound::sphere_swept;
     params.intensity = intensity;
     return params;
 }
@@ -170,8 +173,8 @@ TEST(BeamBounces, AgreeBehindAnExactGlassBall) {
 }
 
 TEST(BeamBounces, AgreeBehindABallOfTriangles) {
-    expect_same_flux(Scene(over_a_floor({ball_mesh(48)}, ball_lamp)), 1, swept(Intensity::refined),
-                     0.005);
+    expect_same_flux(Scene(over_a_floor({ball_mesh(48)}, ball_lamp)), 1,
+                     swept(beamtree::Intensity::refined), 0.005);
 }
 
 // Facets, edges, total reflection: polygons are cut at each event.
@@ -196,9 +199,9 @@ TEST(BeamBounces, AgreeBehindTwoBallsOneHalfInTheShadeOfALid) {
 
 TEST(BeamBounces, CausticPolygonsFollowThemToo) {
     const Scene scene(over_a_floor({ball_mesh(20)}, ball_lamp));
-    CausticPolygonsParams watt;
+    beamtree::CausticPolygonsParams watt;
     watt.max_bounces = 3;
-    BeamTreeParams tree = swept();
+    beamtree::BeamTreeParams tree = swept();
     tree.max_bounces = 3;
     Rng rng(4, Stage::test, 0);
     std::vector<ReceiverPoint> points;
@@ -224,7 +227,7 @@ TEST(BeamBounces, AddUpToTheSeriesOfASlab) {
                    support::horizontal("bottom", 0.9, 2, false, bsdf)};
     desc.directional_lights = {support::directional_light({0.5, 0, -std::sqrt(0.75)}, 1)};
     const Scene scene(std::move(desc));
-    BeamTreeParams params = swept();
+    beamtree::BeamTreeParams params = swept();
     params.mesh_resolution = 8;
     const double cosine = std::sqrt(0.75);
     const double a = std::exp(-4 * 0.1 / support::refracted_cosine(cosine, 1.5));
@@ -251,7 +254,7 @@ TEST(BeamBounces, SayWhatTheyLose) {
                                            support::glass(2.4F)));
     }
     const Scene scene(over_a_floor(std::move(panes), {0, 0, 3}));
-    const TracedBeams traced = beams_of(scene, 2, 4);
+    const beamtree::TracedBeams traced = beams_of(scene, 2, 4);
     EXPECT_LT(traced.balance.captured(), 0.99);
     EXPECT_GT(traced.balance.captured(), 0.5);
     EXPECT_LT(traced.balance.pruned, traced.balance.lost);

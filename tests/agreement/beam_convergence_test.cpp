@@ -135,10 +135,10 @@ ForwardLight forward_light(int side) {
     return found;
 }
 
-BeamSet refracted_beams(int resolution) {
+beamtree::BeamSet refracted_beams(int resolution) {
     const Scene scene(pool(resolution));
-    const auto casters = caster_meshes(scene, 2);
-    return trace_beams(scene, casters[0], sample_lights(scene, 1, 1)[0])[1];
+    const auto casters = beamtree::caster_meshes(scene, 2);
+    return beamtree::trace_beams(scene, casters[0], beamtree::sample_lights(scene, 1, 1)[0])[1];
 }
 
 using Polygon = std::vector<Vec2d>;
@@ -153,9 +153,9 @@ double area(const Polygon& p) {
     return std::abs(sum);
 }
 
-Polygon caustic_polygon(const std::array<const VertexRay*, 3>& rays) {
+Polygon caustic_polygon(const std::array<const beamtree::VertexRay*, 3>& rays) {
     Polygon polygon;
-    for (const VertexRay* ray : rays) {
+    for (const beamtree::VertexRay* ray : rays) {
         const Vec3d p = ray->position.cast<double>();
         const Vec3d d = ray->direction.cast<double>();
         polygon.push_back((p + (p.z() + floor_depth) / -d.z() * d).head<2>());
@@ -163,10 +163,10 @@ Polygon caustic_polygon(const std::array<const VertexRay*, 3>& rays) {
     return polygon;
 }
 
-PixelMeans pixel_means(const BeamSet& set) {
+PixelMeans pixel_means(const beamtree::BeamSet& set) {
     constexpr int parts = 6;
     PixelMeans means;
-    for (const Beam& beam : set.beams) {
+    for (const beamtree::Beam& beam : set.beams) {
         const Polygon p = caustic_polygon(set.triangle(beam, 0));
         const double flux = static_cast<double>(beam.flux.mean()) / (parts * parts);
         const auto add = [&](double u, double v) {
@@ -194,9 +194,10 @@ bool holds(const Polygon& p, const Vec2d& at) {
 
 // In the middle of each and anywhere: so the irradiance all over the floor adds up to their flux.
 TEST(BeamConvergence, ThePolygonsThatHoldAPointLightIt) {
-    const BeamSet set = refracted_beams(24);
+    const beamtree::BeamSet set = refracted_beams(24);
     std::vector<Polygon> polygons;
-    for (const Beam& beam : set.beams) polygons.push_back(caustic_polygon(set.triangle(beam, 0)));
+    for (const beamtree::Beam& beam : set.beams)
+        polygons.push_back(caustic_polygon(set.triangle(beam, 0)));
     const Scene scene(pool(24));
     std::vector<ReceiverPoint> points;
     std::vector<double> truth;
@@ -218,7 +219,7 @@ TEST(BeamConvergence, ThePolygonsThatHoldAPointLightIt) {
             }
         folded += held > 1;
     }
-    const auto found = support::irradiance(*build(scene, BeamTreeParams{}, {}), points);
+    const auto found = support::irradiance(*build(scene, beamtree::BeamTreeParams{}, {}), points);
     int on_a_rim = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         on_a_rim += std::abs(static_cast<double>(found[i].value.mean()) - truth[i]) >
@@ -246,7 +247,7 @@ TEST(BeamConvergence, FluxThroughTheFloorIsThatThroughTheWater) {
     const ForwardLight truth = forward_light(512);
     ASSERT_LT(truth.farthest, floor_half);
     double through_polygons = 0;
-    for (const Beam& beam : refracted_beams(32).beams)
+    for (const beamtree::Beam& beam : refracted_beams(32).beams)
         through_polygons += static_cast<double>(beam.flux.mean());
     EXPECT_NEAR(through_polygons / truth.flux, 1, 1e-4);
 }

@@ -7,7 +7,7 @@
 namespace caustics {
 namespace {
 
-Counters counts(const char* resolution, const BeamTreeParams& params) {
+Counters counts(const char* resolution, const beamtree::BeamTreeParams& params) {
     const SceneFile file =
         load_scene(CAUSTICS_SOURCE_DIR "/experiments/scenes/pool_waves.json",
                    {{"/water/to_world/0/scale/2", "2.5"}, {"/water/resolution", resolution}});
@@ -32,9 +32,9 @@ void expect_near_the_paper(const Counters& counted) {
 // [CC95 sec. 3.3]: 100 x 100 pixels, 7575 polygons; 61 x 61 cells in triangles, and 87 x 87 quads.
 // results/beamtree has all bounds and other waves.
 TEST(BeamCounts, AreThePapersWithinAFactorOfTwo) {
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     expect_near_the_paper(counts("61", params));
-    params.polygons = PolygonKind::quad;
+    params.polygons = beamtree::PolygonKind::quad;
     expect_near_the_paper(counts("87", params));
 }
 

@@ -11,12 +11,13 @@ namespace caustics {
 namespace {
 
 // Every choice of the beam tree against formulas, point by point, within 0.5 %.
-std::vector<BeamTreeParams> all_params() {
-    std::vector<BeamTreeParams> all;
-    for (const auto leaf : {BeamTreeParams::Leaf::n, BeamTreeParams::Leaf::k})
-        for (const Bound bound :
-             {Bound::single, Bound::double_cone, Bound::hybrid, Bound::sphere_swept}) {
-            BeamTreeParams params;
+std::vector<beamtree::BeamTreeParams> all_params() {
+    std::vector<beamtree::BeamTreeParams> all;
+    for (const auto leaf : {beamtree::BeamTreeParams::Leaf::n, beamtree::BeamTreeParams::Leaf::k})
+        for (const beamtree::Bound bound :
+             {beamtree::Bound::single, beamtree::Bound::double_cone, beamtree::Bound::hybrid,
+              beamtree::Bound::sphere_swept}) {
+            beamtree::BeamTreeParams params;
             params.leaf = leaf;
             params.bound = bound;
             params.mesh_resolution = 128;
@@ -85,7 +86,7 @@ bool in_the_balls_shadow(const Vec3d& p) {
 TEST(BeamFlatMirror, IsTheMethodOfImages) {
     for (const bool mesh : {false, true}) {
         const Scene scene = mirror_scene(support::mirror(), mesh);
-        for (const BeamTreeParams& params : all_params()) {
+        for (const beamtree::BeamTreeParams& params : all_params()) {
             const auto method = build(scene, params, RunOptions{});
             for (int i = 0; i < 24; ++i) {
                 const Vec3d p(-0.3 + 0.2 * (i % 6), -0.6 + 0.35 * (i / 6), 0);
@@ -103,7 +104,7 @@ TEST(BeamFlatMirror, IsTheMethodOfImages) {
 TEST(BeamFlatMirror, LightsACurvedReceiver) {
     const Scene scene = mirror_scene(support::mirror(), false);
     const Vec3d image(light_position.x(), 2 - light_position.y(), light_position.z());
-    for (const BeamTreeParams& params : all_params()) {
+    for (const beamtree::BeamTreeParams& params : all_params()) {
         const auto method = build(scene, params, RunOptions{});
         int lit = 0;
         double sum = 0;
@@ -130,7 +131,7 @@ TEST(BeamFlatMirror, LightsACurvedReceiver) {
 
 TEST(BeamFlatMirror, AGlassSheetReflectsByFresnel) {
     const Scene scene = mirror_scene(support::glass(1.5F), false);
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 128;
     const auto method = build(scene, params, RunOptions{});
     for (int i = 0; i < 24; ++i) {
@@ -153,7 +154,7 @@ TEST(BeamFlatMirror, AnAreaLightIsTheSumOfItsSamples) {
                                       support::diffuse(0))};
     desc.shapes[2].radiance = Spectrum(Spectrum::Constant(20));
     const Scene scene(desc);
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.light_samples = 64;
     params.mesh_resolution = 96;
     const auto method = build(scene, params, RunOptions{});
@@ -208,7 +209,7 @@ TEST(BeamFlatPool, IsTheClosedForm) {
                        water};
         desc.point_lights = {support::point_light({0, 0, height}, 10)};
         const Scene scene(std::move(desc));
-        for (BeamTreeParams params : all_params()) {
+        for (beamtree::BeamTreeParams params : all_params()) {
             params.mesh_resolution = 192;
             const auto method = build(scene, params, RunOptions{});
             for (const double r : {0.0, 0.5, 1.0, 2.0, 3.0})
@@ -229,7 +230,7 @@ TEST(BeamFlat, LampOnTheFloor) {
                    support::horizontal("mirror", above, 1.5, false, support::mirror())};
     desc.point_lights = {support::point_light(lamp, static_cast<float>(intensity))};
     const Scene scene(std::move(desc));
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 128;
     const auto method = build(scene, params, RunOptions{});
     for (const double x : {-0.9, -0.2, 0.3, 1.1})

@@ -63,15 +63,17 @@ TEST(BeamHorizon, AStandingMirrorOfAnyResolutionLightsTheFloor) {
     for (const int resolution : {1, 3, 8, 32}) {
         const Scene scene = standing_mirror(resolution);
         const double allowed = resolution < 4 ? 0.09 : 0.3 / resolution;
-        for (const auto leaf : {BeamTreeParams::Leaf::n, BeamTreeParams::Leaf::k}) {
-            BeamTreeParams params;
+        for (const auto leaf :
+             {beamtree::BeamTreeParams::Leaf::n, beamtree::BeamTreeParams::Leaf::k}) {
+            beamtree::BeamTreeParams params;
             params.leaf = leaf;
             const Agreement own = on_the_floor(scene, *build(scene, params, {}));
             EXPECT_NEAR(own.mean_ratio, 1, allowed) << resolution;
             EXPECT_LT(own.relative_error, resolution < 4 ? 0.4 : 2.0 / resolution) << resolution;
             last = own.relative_error;
         }
-        const Agreement watt = on_the_floor(scene, *build(scene, CausticPolygonsParams{}, {}));
+        const Agreement watt =
+            on_the_floor(scene, *build(scene, beamtree::CausticPolygonsParams{}, {}));
         EXPECT_NEAR(watt.mean_ratio, 1, allowed) << resolution;
     }
     EXPECT_LT(last, 0.03);
@@ -79,8 +81,8 @@ TEST(BeamHorizon, AStandingMirrorOfAnyResolutionLightsTheFloor) {
 
 // Where the light comes down unevenly the refined intensity is told across the light: second order.
 TEST(BeamHorizon, RefinedIntensityIsOfSecondOrder) {
-    BeamTreeParams params;
-    params.intensity = Intensity::refined;
+    beamtree::BeamTreeParams params;
+    params.intensity = beamtree::Intensity::refined;
     double last = 0;
     for (const int resolution : {16, 32, 64}) {
         const Scene scene = standing_mirror(resolution);

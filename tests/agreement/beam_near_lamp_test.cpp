@@ -56,9 +56,10 @@ Scene pool(double light, bool mesh) {
 TEST(NearLamp, ShinesThroughWaterAsItDoesFromAfar) {
     for (const bool mesh : {true, false})
         for (const double light : {0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6})
-            for (const PolygonKind kind : {PolygonKind::triangle, PolygonKind::quad}) {
+            for (const beamtree::PolygonKind kind :
+                 {beamtree::PolygonKind::triangle, beamtree::PolygonKind::quad}) {
                 const Scene scene = pool(light, mesh);
-                BeamTreeParams params;
+                beamtree::BeamTreeParams params;
                 params.polygons = kind;
                 const auto tree = build(scene, params, {});
                 const Ratio found = ratio(scene, *tree, -support::flat_pool::depth, [&](double r) {
@@ -80,7 +81,7 @@ TEST(NearLamp, ShinesFromALargeMirrorAsItDoesFromAfar) {
                            support::horizontal("mirror", 2, half, false, support::mirror())};
             desc.point_lights = {support::point_light({lamp_x, lamp_y, 2 - light}, 10)};
             const Scene scene(std::move(desc));
-            const auto tree = build(scene, BeamTreeParams{}, {});
+            const auto tree = build(scene, beamtree::BeamTreeParams{}, {});
             const Ratio found = ratio(scene, *tree, 0, [&](double r) {
                 const double h = 2 + light;
                 return 10 * h / std::pow(r * r + h * h, 1.5);

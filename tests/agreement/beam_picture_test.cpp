@@ -61,12 +61,13 @@ std::vector<float> caustic_layer(const Scene& scene, const Params& params, int t
 // [CC95]: "the caustic component for each pixel will be the same as that obtained by Watt's method".
 // Flat receivers, whatever their polygons: equal to rounding. A point on the rim of a caustic
 // polygon may fall to the other side of it.
-void expect_equal(const Scene& scene, PolygonKind kind = PolygonKind::triangle) {
-    BeamTreeParams tree_params;
+void expect_equal(const Scene& scene,
+                  beamtree::PolygonKind kind = beamtree::PolygonKind::triangle) {
+    beamtree::BeamTreeParams tree_params;
     tree_params.polygons = kind;
     const std::vector<float> tree = caustic_layer(scene, tree_params);
     for (const int resolution : {2, 9}) {
-        CausticPolygonsParams params;
+        beamtree::CausticPolygonsParams params;
         params.polygons = kind;
         params.receiver_resolution = resolution;
         const std::vector<float> polygons = caustic_layer(scene, params);
@@ -84,15 +85,16 @@ void expect_equal(const Scene& scene, PolygonKind kind = PolygonKind::triangle) 
 
 TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelInAPool) { expect_equal(Scene(pool(32))); }
 TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelByQuads) {
-    expect_equal(Scene(pool(24)), PolygonKind::quad);
+    expect_equal(Scene(pool(24)), beamtree::PolygonKind::quad);
 }
 TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelInARing) { expect_equal(Scene(ring(16))); }
 
 TEST(BeamPicture, IsTheSameFromAnyNumberOfThreads) {
     const Scene scene(pool(24));
-    EXPECT_EQ(caustic_layer(scene, BeamTreeParams{}, 1), caustic_layer(scene, BeamTreeParams{}, 3));
-    EXPECT_EQ(caustic_layer(scene, CausticPolygonsParams{}, 1),
-              caustic_layer(scene, CausticPolygonsParams{}, 3));
+    EXPECT_EQ(caustic_layer(scene, beamtree::BeamTreeParams{}, 1),
+              caustic_layer(scene, beamtree::BeamTreeParams{}, 3));
+    EXPECT_EQ(caustic_layer(scene, beamtree::CausticPolygonsParams{}, 1),
+              caustic_layer(scene, beamtree::CausticPolygonsParams{}, 3));
 }
 
 double sum(const std::vector<float>& values) {
@@ -104,12 +106,12 @@ double sum(const std::vector<float>& values) {
 // Fixed planes bend the polygons' rims, and quads even out their halves, to second order only.
 TEST(BeamPicture, FixedPlanesAndQuadsGiveTheSameLight) {
     const Scene scene(pool(64));
-    const double usual = sum(caustic_layer(scene, BeamTreeParams{}));
-    BeamTreeParams fixed;
-    fixed.leaf = BeamTreeParams::Leaf::k;
+    const double usual = sum(caustic_layer(scene, beamtree::BeamTreeParams{}));
+    beamtree::BeamTreeParams fixed;
+    fixed.leaf = beamtree::BeamTreeParams::Leaf::k;
     EXPECT_NEAR(sum(caustic_layer(scene, fixed)) / usual, 1, 0.01);
-    BeamTreeParams quads;
-    quads.polygons = PolygonKind::quad;
+    beamtree::BeamTreeParams quads;
+    quads.polygons = beamtree::PolygonKind::quad;
     EXPECT_NEAR(sum(caustic_layer(scene, quads)) / usual, 1, 0.01);
 }
 
@@ -136,7 +138,7 @@ void expect_same_flux(const Scene& scene, std::size_t floor, double half) {
     const support::ArrivedFlux photons =
         photon_cells(scene, half, static_cast<std::uint64_t>(support::repetitions(2'000'000)));
     const auto method = [&] {
-        BeamTreeParams params;
+        beamtree::BeamTreeParams params;
         params.max_bounces = 1;
         return build(scene, params, RunOptions{});
     }();

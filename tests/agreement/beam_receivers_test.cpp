@@ -76,7 +76,7 @@ std::vector<ReceiverPoint> points_from_above(const Scene& scene, double half) {
 }
 
 // Sums over all points: within a beam the light is even, which averages out.
-void expect_closed_form(const Shape& receiver, const BeamTreeParams& params) {
+void expect_closed_form(const Shape& receiver, const beamtree::BeamTreeParams& params) {
     const Scene scene = with_receiver(receiver);
     const auto method = build(scene, params, RunOptions{});
     const std::vector<ReceiverPoint> points = points_from_above(scene, 0.7);
@@ -104,10 +104,10 @@ void expect_closed_form(const Shape& receiver, const BeamTreeParams& params) {
     EXPECT_NEAR(sums[1] / truths[1], 1, 0.005) << receiver.name;
 }
 
-std::vector<BeamTreeParams> both_leaves() {
-    BeamTreeParams n;
-    BeamTreeParams k;
-    k.leaf = BeamTreeParams::Leaf::k;
+std::vector<beamtree::BeamTreeParams> both_leaves() {
+    beamtree::BeamTreeParams n;
+    beamtree::BeamTreeParams k;
+    k.leaf = beamtree::BeamTreeParams::Leaf::k;
     return {n, k};
 }
 
@@ -118,14 +118,14 @@ SineHeightfield bumps() {
 }
 
 TEST(BeamReceivers, AreSeenByTheDirectionsThatLightArrivesAlong) {
-    for (const BeamTreeParams& params : both_leaves())
+    for (const beamtree::BeamTreeParams& params : both_leaves())
         for (const float alpha : {1.0F, 0.1F, 0.01F})
             expect_closed_form(
                 support::horizontal("floor", 0, 2, true, support::schlick(0.6F, alpha)), params);
 }
 
 TEST(BeamReceivers, MayBeCurved) {
-    for (const BeamTreeParams& params : both_leaves())
+    for (const beamtree::BeamTreeParams& params : both_leaves())
         expect_closed_form(
             support::sphere("ball", {0.1, -0.3, 0.2}, 0.6, support::schlick(0.6F, 0.1F)), params);
 }
@@ -140,7 +140,7 @@ TEST(BeamReceivers, MayBeBumpy) {
                                        Transform::Identity(), exact.bsdf);
     const Shape flat =
         support::mesh("flat mesh", support::flat(smooth.mesh), Transform::Identity(), exact.bsdf);
-    for (const BeamTreeParams& params : both_leaves())
+    for (const beamtree::BeamTreeParams& params : both_leaves())
         for (const Shape& receiver : {exact, smooth, flat}) expect_closed_form(receiver, params);
 }
 

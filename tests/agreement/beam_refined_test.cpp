@@ -19,9 +19,10 @@ namespace {
 
 using namespace exact_pool;
 
-BeamTreeParams refined(PolygonKind polygons = PolygonKind::triangle,
-                       BeamTreeParams::Leaf leaf = BeamTreeParams::Leaf::n) {
-    BeamTreeParams params = with(Intensity::refined);
+beamtree::BeamTreeParams refined(
+    beamtree::PolygonKind polygons = beamtree::PolygonKind::triangle,
+    beamtree::BeamTreeParams::Leaf leaf = beamtree::BeamTreeParams::Leaf::n) {
+    beamtree::BeamTreeParams params = with(beamtree::Intensity::refined);
     params.polygons = polygons;
     params.leaf = leaf;
     return params;
@@ -51,8 +52,8 @@ double order(const Errors& coarse, const Errors& fine) {
 TEST(BeamRefined, IsOfSecondOrderAtPoints) {
     const PointwiseTruth truth(Lamp::point);
     const auto water_of = [](int n) { return meshed(tessellate_heightfield(water(), n)); };
-    for (const BeamTreeParams& params :
-         {refined(), refined(PolygonKind::quad, BeamTreeParams::Leaf::k)}) {
+    for (const beamtree::BeamTreeParams& params :
+         {refined(), refined(beamtree::PolygonKind::quad, beamtree::BeamTreeParams::Leaf::k)}) {
         const Errors coarse = truth.errors(water_of(48), params);
         const Errors fine = truth.errors(water_of(96), params);
         EXPECT_GT(order(coarse, fine), 1.9) << coarse.median << ", " << fine.median;
@@ -60,8 +61,8 @@ TEST(BeamRefined, IsOfSecondOrderAtPoints) {
         EXPECT_LT(fine.mean, 0.008);
     }
     // [CC95 (11)], as a control: first order.
-    const Errors coarse = truth.errors(water_of(48), with(Intensity::area));
-    const Errors fine = truth.errors(water_of(96), with(Intensity::area));
+    const Errors coarse = truth.errors(water_of(48), with(beamtree::Intensity::area));
+    const Errors fine = truth.errors(water_of(96), with(beamtree::Intensity::area));
     EXPECT_NEAR(order(coarse, fine), 1, 0.15);
     EXPECT_GT(fine.median, 0.015);
 }
@@ -81,34 +82,37 @@ TEST(BeamRefined, GainsOnIrregularMeshesToo) {
     const Errors coarse = truth.errors(meshed(irregular(48)), refined());
     const Errors fine = truth.errors(meshed(irregular(96)), refined());
     EXPECT_GT(order(coarse, fine), 1.5) << coarse.median << ", " << fine.median;
-    EXPECT_LT(fine.median, truth.errors(meshed(irregular(96)), with(Intensity::area)).median / 5);
+    EXPECT_LT(fine.median,
+              truth.errors(meshed(irregular(96)), with(beamtree::Intensity::area)).median / 5);
 }
 
 /// Flux on a horizontal plane, added up over small parts of the caustic polygons, over that of the beams.
-double flux_on_plane(const BeamSet& set, float z) {
+double flux_on_plane(const beamtree::BeamSet& set, float z) {
     constexpr int parts = 6;
     double found = 0;
     double sent = 0;
-    SearchCounts counts;
+    beamtree::SearchCounts counts;
     const auto add = [&](std::uint32_t number, std::size_t which, const std::array<Vec3d, 3>& at,
                          double u, double v) {
         const Vec3 point =
             Vec3d(at[0] + (u * (at[1] - at[0]) + v * (at[2] - at[0])) / parts).cast<float>();
         const double area = (at[1] - at[0]).cross(at[2] - at[0]).norm() / (2 * parts * parts);
-        std::vector<BeamHit> hits;
-        find_in_beam(set, {0, number}, TestPlane(point, Vec3::UnitZ()), hits, counts);
-        for (const BeamHit& hit : hits)
+        std::vector<beamtree::BeamHit> hits;
+        beamtree::find_in_beam(set, {0, number}, beamtree::TestPlane(point, Vec3::UnitZ()), hits,
+                               counts);
+        for (const beamtree::BeamHit& hit : hits)
             if (hit.triangle == which)
-                found += static_cast<double>(set.beams[number].flux.mean()) * area *
-                         refined_density(set, hit, point).value_or(hit.flux_share / hit.area);
+                found +=
+                    static_cast<double>(set.beams[number].flux.mean()) * area *
+                    beamtree::refined_density(set, hit, point).value_or(hit.flux_share / hit.area);
     };
     for (std::uint32_t number = 0; number < set.beams.size(); ++number) {
-        const Beam& beam = set.beams[number];
+        const beamtree::Beam& beam = set.beams[number];
         sent += static_cast<double>(beam.flux.mean());
         for (std::size_t which = 0; which < beam.triangle_count(); ++which) {
             std::array<Vec3d, 3> at;
             for (std::size_t i = 0; i < 3; ++i) {
-                const VertexRay& ray = *set.triangle(beam, which)[i];
+                const beamtree::VertexRay& ray = *set.triangle(beam, which)[i];
                 at[i] = (ray.position + (z - ray.position.z()) / ray.direction.z() * ray.direction)
                             .cast<double>();
             }
@@ -123,13 +127,16 @@ double flux_on_plane(const BeamSet& set, float z) {
 }
 
 TEST(BeamRefined, KeepsTheFlux) {
-    for (const PolygonKind kind : {PolygonKind::triangle, PolygonKind::quad})
+    for (const beamtree::PolygonKind kind :
+         {beamtree::PolygonKind::triangle, beamtree::PolygonKind::quad})
         for (const TriangleMesh& mesh : {tessellate_heightfield(water(), 48), irregular(48)}) {
             const Scene scene(pool(meshed(mesh), Lamp::point));
-            const auto sets = trace_all_beams(scene, caster_meshes(scene, 2, kind),
-                                              sample_lights(scene, 1, 1), {Intensity::refined}, {})
-                                  .sets;
-            for (const BeamSet& set : sets)
+            const auto sets =
+                beamtree::trace_all_beams(scene, beamtree::caster_meshes(scene, 2, kind),
+                                          beamtree::sample_lights(scene, 1, 1),
+                                          {beamtree::Intensity::refined}, {})
+                    .sets;
+            for (const beamtree::BeamSet& set : sets)
                 if (set.refracted) {
                     EXPECT_NEAR(flux_on_plane(set, -1), 1, 1e-3);
                     EXPECT_NEAR(flux_on_plane(set, -floor_depth), 1, 1e-3);
@@ -144,11 +151,12 @@ TEST(BeamRefined, TakesCutPolygons) {
     desc.shapes = {support::mesh("water", tessellate_rectangle(32), size, support::glass(1.333F))};
     desc.point_lights = {support::point_light({0.02, 0.03, -1}, 1)};
     const Scene scene(std::move(desc));
-    const auto sets = trace_all_beams(scene, caster_meshes(scene, 2), sample_lights(scene, 1, 1),
-                                      {Intensity::refined}, {})
+    const auto sets = beamtree::trace_all_beams(scene, beamtree::caster_meshes(scene, 2),
+                                                beamtree::sample_lights(scene, 1, 1),
+                                                {beamtree::Intensity::refined}, {})
                           .sets;
     ASSERT_EQ(sets.size(), 2U);
-    const BeamSet& reflected = sets[0];
+    const beamtree::BeamSet& reflected = sets[0];
     EXPECT_NEAR(flux_on_plane(reflected, -2), 1, 2e-3);
 }
 
@@ -161,7 +169,8 @@ TEST(BeamRefined, DISABLED_TableOfErrors) {
     for (const int n : {32, 64, 128, 256}) {
         std::printf("| %d |", n);
         for (const TriangleMesh& mesh : {tessellate_heightfield(water(), n), irregular(n)})
-            for (const Intensity intensity : {Intensity::area, Intensity::refined}) {
+            for (const beamtree::Intensity intensity :
+                 {beamtree::Intensity::area, beamtree::Intensity::refined}) {
                 const Errors e = truth.errors(meshed(mesh), with(intensity));
                 std::printf(" %.5f | %.5f |", e.median, e.mean);
             }

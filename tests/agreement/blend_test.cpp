@@ -93,17 +93,17 @@ TEST(Blend, LightGoesOnFromWhereItIsScattered) {
         }
     };
     expect_near(*build(scene, LightTraceParams{.paths = 2'000'000}, RunOptions{}), 5e-3);
-    BeamTreeParams tree;
-    tree.intensity = Intensity::refined;
+    beamtree::BeamTreeParams tree;
+    tree.intensity = beamtree::Intensity::refined;
     expect_near(*build(scene, tree, RunOptions{}), 5e-3);
-    CausticPolygonsParams polygons;
+    beamtree::CausticPolygonsParams polygons;
     polygons.receiver_resolution = 2;
     polygons.mesh_resolution = 128;
     expect_near(*build(scene, polygons, RunOptions{}), 0.05);
     for (const auto interaction : {Interaction::roulette, Interaction::split})
-        for (const auto emission :
-             {PhotonMapParams::Emission::random, PhotonMapParams::Emission::stratified}) {
-            PhotonMapParams map;
+        for (const auto emission : {photonmap::PhotonMapParams::Emission::random,
+                                    photonmap::PhotonMapParams::Emission::stratified}) {
+            photonmap::PhotonMapParams map;
             map.photons = 0;
             map.emitted = 1'000'000;
             map.interaction = interaction;
@@ -118,9 +118,9 @@ TEST(Blend, LightGoesOnFromWhereItIsScattered) {
 
 TEST(Blend, AMapStoresAsManyPhotonsAsAreAskedFor) {
     const Scene scene = room();
-    for (const auto emission :
-         {PhotonMapParams::Emission::random, PhotonMapParams::Emission::stratified}) {
-        PhotonMapParams map;
+    for (const auto emission : {photonmap::PhotonMapParams::Emission::random,
+                                photonmap::PhotonMapParams::Emission::stratified}) {
+        photonmap::PhotonMapParams map;
         map.photons = 20'000;
         map.emission = emission;
         const auto report = build(scene, map, RunOptions{})->build_report();
@@ -200,7 +200,7 @@ TEST(Blend, TheEyeSeesTheSurfaceAndWhatItMirrors) {
 TEST(Blend, PhotonsAreScatteredByTheShareThatIsNotMirrored) {
     const Scene scene = room();
     std::vector<ReceiverPoint> points = {support::probe(scene, 1, {0.5, 0, 0}, Vec3d::UnitZ(), 0)};
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     params.photons = 50'000;
     const auto map = build(scene, params, RunOptions{});
     const auto radiance = [&] {

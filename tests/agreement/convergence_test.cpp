@@ -50,7 +50,7 @@ double rmse(const Film& film, const Film& reference) {
 double best_rmse(const Scene& scene, const Film& reference, std::uint64_t photons) {
     double best = std::numeric_limits<double>::infinity();
     for (const int nearest : {10, 30, 90}) {
-        PhotonMapParams params;
+        photonmap::PhotonMapParams params;
         params.photons = photons;
         params.nearest = nearest;
         best = std::min(best, rmse(picture(scene, params), reference));

@@ -78,11 +78,13 @@ void expect_no_light_round_the_corner(const Scene& scene, const Corner& truth,
 TEST(Corner, PhotonsOfTheFloorDoNotLightTheWall) {
     const Corner truth = corner();
     const Scene scene(truth.desc);
-    for (const TreeKind tree : {TreeKind::balanced, TreeKind::unbalanced, TreeKind::packed}) {
+    for (const photonmap::TreeKind tree :
+         {photonmap::TreeKind::balanced, photonmap::TreeKind::unbalanced,
+          photonmap::TreeKind::packed}) {
         SCOPED_TRACE(name(tree));
-        const auto map =
-            build(scene, PhotonMapParams{.photons = 150'000, .tree = tree, .radius = radius},
-                  RunOptions{});
+        const auto map = build(
+            scene, photonmap::PhotonMapParams{.photons = 150'000, .tree = tree, .radius = radius},
+            RunOptions{});
         expect_no_light_round_the_corner(scene, truth, *map);
     }
 }
@@ -106,7 +108,7 @@ TEST(Corner, ABallLosesNoPhotons) {
     const Scene scene(desc);
     for (const double r : {0.2, 0.5, 0.9}) {
         const auto map =
-            build(scene, PhotonMapParams{.photons = 200'000, .radius = r}, RunOptions{});
+            build(scene, photonmap::PhotonMapParams{.photons = 200'000, .radius = r}, RunOptions{});
         const std::vector<ReceiverPoint> top = {
             support::probe(scene, 1, {0, 0, 1}, Vec3d::UnitZ(), 0)};
         const double expected = (1 - support::fresnel(1, index)) * (1 - r * r / 4);

@@ -126,14 +126,14 @@ TEST(Dispersion, BeamsPaintThemToTheirNumberOfWavelengths) {
         }
     };
     // A bin's weight is up to three times the channels' mean.
-    BeamTreeParams tree;
+    beamtree::BeamTreeParams tree;
     tree.mesh_resolution = 4;
     tree.wavelengths = 512;
     expect_right(*build(scene, tree, RunOptions{}), 3.0 / 512);
-    tree.intensity = Intensity::refined;
+    tree.intensity = beamtree::Intensity::refined;
     tree.wavelengths = 64;
     expect_right(*build(scene, tree, RunOptions{}), 3.0 / 64);
-    CausticPolygonsParams polygons;
+    beamtree::CausticPolygonsParams polygons;
     polygons.wavelengths = 64;
     polygons.receiver_resolution = 2;
     polygons.mesh_resolution = 4;
@@ -144,10 +144,10 @@ TEST(Dispersion, BeamsPaintThemToTheirNumberOfWavelengths) {
 TEST(Dispersion, BeamsAskForTheIntervalsOfWavelengths) {
     const Scene scene = lit_from_far(heavy);
     const std::vector<ReceiverPoint> points = across(scene, 0);
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 4;
     params.wavelengths = 8;
-    params.dispersion = Dispersion::intervals;
+    params.dispersion = beamtree::Dispersion::intervals;
     const auto expect_right = [&](const std::string& what) {
         const auto tree = build(scene, params, RunOptions{});
         const std::vector<Estimate> found = support::irradiance(*tree, points);
@@ -161,19 +161,19 @@ TEST(Dispersion, BeamsAskForTheIntervalsOfWavelengths) {
         EXPECT_LT(tree->build_report().resolved.at("drift_bend"), 1e-3);
         EXPECT_EQ(tree->build_report().resolved.at("drift_unknown"), 0);
     };
-    for (const Bound bound :
-         {Bound::single, Bound::double_cone, Bound::hybrid, Bound::sphere_swept}) {
+    for (const beamtree::Bound bound : {beamtree::Bound::single, beamtree::Bound::double_cone,
+                                        beamtree::Bound::hybrid, beamtree::Bound::sphere_swept}) {
         params.bound = bound;
         expect_right("bound " + std::to_string(static_cast<int>(bound)));
     }
-    params.merging = ConeTreeSettings::Merging::cones;
+    params.merging = beamtree::ConeTreeSettings::Merging::cones;
     expect_right("cones");
-    params.merging = ConeTreeSettings::Merging::rays;
-    params.bound = Bound::two_slice;
-    params.leaf = BeamTreeParams::Leaf::k;
-    params.hierarchy = BeamTreeParams::Tree::binned;
+    params.merging = beamtree::ConeTreeSettings::Merging::rays;
+    params.bound = beamtree::Bound::two_slice;
+    params.leaf = beamtree::BeamTreeParams::Leaf::k;
+    params.hierarchy = beamtree::BeamTreeParams::Tree::binned;
     expect_right("slices");
-    params.intensity = Intensity::refined;
+    params.intensity = beamtree::Intensity::refined;
     expect_right("refined");
     params.max_bounces = 1;
     expect_right("one event");
@@ -181,11 +181,11 @@ TEST(Dispersion, BeamsAskForTheIntervalsOfWavelengths) {
 
 TEST(Dispersion, ThePhotonMapHasThemWithinItsBlur) {
     const Scene scene = lit_from_far(heavy);
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     params.photons = 400'000;
     params.radius = 0.005;
-    for (const auto emission :
-         {PhotonMapParams::Emission::random, PhotonMapParams::Emission::stratified}) {
+    for (const auto emission : {photonmap::PhotonMapParams::Emission::random,
+                                photonmap::PhotonMapParams::Emission::stratified}) {
         params.emission = emission;
         const auto map = build(scene, params, RunOptions{});
         const std::vector<ReceiverPoint> points = across(scene, 0);
@@ -217,7 +217,8 @@ SpectrumSum over_wavelengths(const OfIndex& of_index) {
 // The floor at distances from the axis by beams and by light tracing, over the closed form.
 template <typename OfRadius>
 void expect_on_rings(const Scene& scene, double floor, const std::vector<double>& radii,
-                     const OfRadius& of_radius, const BeamTreeParams& beams, double slack) {
+                     const OfRadius& of_radius, const beamtree::BeamTreeParams& beams,
+                     double slack) {
     const auto tree = build(scene, beams, RunOptions{});
     const auto light =
         build(scene, LightTraceParams{.paths = 1'000'000, .max_bounces = beams.max_bounces},
@@ -257,9 +258,9 @@ TEST(Dispersion, StillWaterIsTheClosedFormOverItsWavelengths) {
                    support::horizontal("water", 0, 6, true, glass_of(heavy))};
     desc.point_lights = {
         support::point_light({0, 0, pool::height}, static_cast<float>(pool::intensity))};
-    BeamTreeParams beams;
+    beamtree::BeamTreeParams beams;
     beams.mesh_resolution = 32;
-    beams.intensity = Intensity::refined;
+    beams.intensity = beamtree::Intensity::refined;
     expect_on_rings(
         Scene(std::move(desc)), -pool::depth, {0.5, 1.0, 2.0},
         [](double r, double n) { return pool::floor_irradiance(r, pool::height, n); }, beams, 1e-3);
@@ -268,20 +269,21 @@ TEST(Dispersion, StillWaterIsTheClosedFormOverItsWavelengths) {
 constexpr double lamp_height = 3, ball_height = 0.7, ball_radius = 0.5;
 
 // Where light that leaves the lamp at an angle from the axis comes to the floor through the ball.
-std::optional<Landing> through_ball(double angle, double n) {
+std::optional<experiments::Landing> through_ball(double angle, double n) {
     const Vec2d centre(0, ball_height);
-    PlaneRay ray{{0, lamp_height}, {std::sin(angle), -std::cos(angle)}};
+    experiments::PlaneRay ray{{0, lamp_height}, {std::sin(angle), -std::cos(angle)}};
     if (!ray.reach_circle(ball_height, ball_radius, true)) return {};
     ray.refract((ray.origin - centre) / ball_radius, n);
     ray.reach_circle(ball_height, ball_radius, false);
     if (!ray.refract((ray.origin - centre) / ball_radius, 1 / n) || !ray.reach_plane(0)) return {};
-    return Landing{ray.origin.x(), ray.share};
+    return experiments::Landing{ray.origin.x(), ray.share};
 }
 
 double below_ball(double r, double n) {
-    const Meridian light{[n](double angle) { return through_ball(angle, n); },
-                         [](double angle) { return 2 * pi_d * power * std::sin(angle); }, 0,
-                         std::asin(ball_radius / (lamp_height - ball_height))};
+    const experiments::Meridian light{
+        [n](double angle) { return through_ball(angle, n); },
+        [](double angle) { return 2 * pi_d * power * std::sin(angle); }, 0,
+        std::asin(ball_radius / (lamp_height - ball_height))};
     return light.irradiance(r);
 }
 
@@ -290,10 +292,10 @@ TEST(Dispersion, ABallLensIsTheClosedFormOverItsWavelengths) {
     desc.shapes = {support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)),
                    support::sphere("ball", {0, 0, ball_height}, ball_radius, glass_of(heavy))};
     desc.point_lights = {support::point_light({0, 0, lamp_height}, static_cast<float>(power))};
-    BeamTreeParams beams;
+    beamtree::BeamTreeParams beams;
     beams.mesh_resolution = 96;
     beams.max_bounces = 2;
-    beams.intensity = Intensity::refined;
+    beams.intensity = beamtree::Intensity::refined;
     expect_on_rings(Scene(std::move(desc)), 0, {0.1, 0.15, 0.2}, below_ball, beams, 5e-3);
     // The fringes are there: blue light has gone through a stronger lens.
     const SpectrumSum edge = over_wavelengths([](double n) { return below_ball(0.1, n); });
@@ -360,7 +362,7 @@ TEST(Dispersion, TheEyeSeesTheMeanOverItsWavelengths) {
 // it, at the place of its image.
 TEST(Dispersion, AnswersForTheWavelengthThatTheViewersGlassHasChosen) {
     const Scene scene = lit_from_far(heavy);
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 4;
     params.wavelengths = 256;
     const auto beams = build(scene, params, RunOptions{});
@@ -391,10 +393,10 @@ TEST(Dispersion, ALawWithoutItChangesNoBit) {
             EXPECT_TRUE((a[i].value == b[i].value).all()) << i;
     };
     expect_same(LightTraceParams{.paths = 20'000});
-    PhotonMapParams map;
+    photonmap::PhotonMapParams map;
     map.photons = 10'000;
     expect_same(map);
-    expect_same(BeamTreeParams{});
+    expect_same(beamtree::BeamTreeParams{});
 }
 
 // Between parallel faces a colour goes on side by side with the others.
@@ -405,7 +407,7 @@ TEST(Dispersion, ASlabColoursNothingButItsRim) {
                    support::horizontal("bottom", 0, 0.4, false, glass_of(heavy))};
     desc.directional_lights = {support::directional_light({0.5, 0, -1}, 10)};
     const Scene scene(std::move(desc));
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 2;
     params.wavelengths = 64;
     const auto beams = build(scene, params, RunOptions{});

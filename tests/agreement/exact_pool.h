@@ -51,8 +51,8 @@ inline SceneDesc pool(Shape surface, Lamp lamp) {
 /// The floor under the exact water, lit by some light samples.
 class ExactPool {
 public:
-    explicit ExactPool(std::vector<LightSample> lights) : lights_(std::move(lights)) {
-        for (const LightSample& light : lights_) sort_cells(light);
+    explicit ExactPool(std::vector<beamtree::LightSample> lights) : lights_(std::move(lights)) {
+        for (const beamtree::LightSample& light : lights_) sort_cells(light);
     }
 
     /// Irradiance [W m^-2]; none where a ray from near the rim of the water comes, where meshes know
@@ -77,7 +77,7 @@ private:
         double flux;  ///< for an area of the undisturbed surface
     };
 
-    Bent bend(const LightSample& light, const Vec2d& xy) const {
+    Bent bend(const beamtree::LightSample& light, const Vec2d& xy) const {
         const Vec2d slope = field_.gradient(xy);
         const Vec3d p(xy.x(), xy.y(), field_.height(xy));
         const Vec3d across(-slope.x(), -slope.y(), 1);
@@ -85,12 +85,13 @@ private:
         const Vec3d normal = across / area;
         Vec3d w = -light.travel.cast<double>();
         double strength = static_cast<double>(light.strength.mean());
-        if (light.kind != LightSample::Kind::directional) {
+        if (light.kind != beamtree::LightSample::Kind::directional) {
             const Vec3d away = light.position.cast<double>() - p;
             w = away.normalized();
             strength /= away.squaredNorm();
         }
-        if (light.kind == LightSample::Kind::area) strength *= -light.normal.cast<double>().dot(w);
+        if (light.kind == beamtree::LightSample::Kind::area)
+            strength *= -light.normal.cast<double>().dot(w);
         const double cosine = w.dot(normal);
         const double inner = support::refracted_cosine(cosine, ior);
         const Vec3d down = (cosine * normal - w) / ior - inner * normal;
@@ -99,7 +100,7 @@ private:
                 strength * cosine * area * (1 - support::fresnel(cosine, ior))};
     }
 
-    Eigen::Matrix2d jacobian(const LightSample& light, const Vec2d& xy) const {
+    Eigen::Matrix2d jacobian(const beamtree::LightSample& light, const Vec2d& xy) const {
         constexpr double step = 1e-5;
         Eigen::Matrix2d found;
         for (int i = 0; i < 2; ++i)
@@ -110,7 +111,7 @@ private:
     }
 
     // Half cells of a grid on the water by the places of the floor that they light.
-    void sort_cells(const LightSample& light) {
+    void sort_cells(const beamtree::LightSample& light) {
         std::vector<Vec2d> at;
         for (int j = 0; j <= side; ++j)
             for (int i = 0; i <= side; ++i) at.push_back(bend(light, corner(i, j)).at);
@@ -186,7 +187,7 @@ private:
     }
 
     SineHeightfield field_ = water();
-    std::vector<LightSample> lights_;
+    std::vector<beamtree::LightSample> lights_;
     std::vector<std::vector<Vec2d>> images_;              ///< one a light
     std::vector<std::vector<std::vector<Half>>> sorted_;  ///< one a light
 };
@@ -201,7 +202,7 @@ class PointwiseTruth {
 public:
     explicit PointwiseTruth(Lamp lamp, int light_samples = 1) : lamp_(lamp) {
         const Scene scene(pool(meshed(tessellate_heightfield(water(), 4)), lamp));
-        const ExactPool exact(sample_lights(scene, light_samples, 1));
+        const ExactPool exact(beamtree::sample_lights(scene, light_samples, 1));
         Rng rng(6, Stage::test, 0);
         while (points_.size() < 1000) {
             const Vec2d at(1.6F * rng.next() - 0.8F, 1.6F * rng.next() - 0.8F);
@@ -212,7 +213,7 @@ public:
         }
     }
 
-    Errors errors(Shape surface, const BeamTreeParams& params) const {
+    Errors errors(Shape surface, const beamtree::BeamTreeParams& params) const {
         const Scene scene(pool(std::move(surface), lamp_));
         std::vector<ReceiverPoint> probes;
         for (const Vec2d& at : points_)
@@ -238,9 +239,9 @@ private:
     std::vector<double> irradiance_;
 };
 
-inline BeamTreeParams with(Intensity intensity) {
-    BeamTreeParams params;
-    params.bound = Bound::sphere_swept;
+inline beamtree::BeamTreeParams with(beamtree::Intensity intensity) {
+    beamtree::BeamTreeParams params;
+    params.bound = beamtree::Bound::sphere_swept;
     params.intensity = intensity;
     params.light_samples = 1;
     return params;

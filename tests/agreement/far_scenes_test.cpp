@@ -100,7 +100,7 @@ const BallOverFloor bead{{0, 0, 0}, 0.0035, 1};
 const std::vector<BallOverFloor> wide_floors = {
     {{0, 0, 0}, 0.0035, 1e3}, {{0, 0, 0}, 0.0035, 1e4}, {{30, -40, 0}, 0.0035, 1e4}};
 
-const PhotonMapParams photon_map{.photons = 100'000, .nearest = 100};
+const photonmap::PhotonMapParams photon_map{.photons = 100'000, .nearest = 100};
 const LightTraceParams light_trace{.paths = 300'000};
 
 TEST(FarScenes, PhotonMap) {
@@ -115,7 +115,7 @@ TEST(FarScenes, LightTrace) {
 }
 
 TEST(FarScenes, BeamTree) {
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 24;
     expect_same(params, {}, far_away);
     expect_same(params, bead, wide_floors);
@@ -155,7 +155,7 @@ double beam_sum(double distance) {
         points.push_back(support::probe(scene, 1, {distance + 0.08 * i, 0.02 * i, -1.5},
                                         Vec3d::UnitZ(), static_cast<std::uint64_t>(i), 0.05F));
     double sum = 0;
-    const auto method = build(scene, BeamTreeParams{}, RunOptions{});
+    const auto method = build(scene, beamtree::BeamTreeParams{}, RunOptions{});
     for (const Estimate& e : support::irradiance(*method, points))
         sum += static_cast<double>(e.value[0]);
     return sum;

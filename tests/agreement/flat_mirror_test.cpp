@@ -94,7 +94,7 @@ std::vector<ReceiverPoint> inside_points(const Scene& scene, std::size_t count, 
 // 1/sqrt(500 (N-2)) = 0.32 % while the discs do not overlap, so 1 % is 3 sigma.
 template <typename Truth>
 void expect_photon_map_is(const Scene& scene, const Truth& truth) {
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     params.photons = 600'000;
     params.nearest = 200;
     const auto map = build(scene, params, RunOptions{});
@@ -150,7 +150,7 @@ TEST(FlatMirror, PhotonMapOfASquareLight) {
 
 TEST(FlatMirror, PhotonMapIsDarkOutside) {
     const Scene scene = with_point_light(support::mirror());
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     params.photons = 100'000;
     params.max_radius = 0.1;
     expect_dark_outside(*build(scene, params, RunOptions{}), scene);

@@ -58,7 +58,7 @@ std::vector<ReceiverPoint> ring(const Scene& scene, double r, int count, float r
 // Within 2 %. A ring of 60 discs of 200 photons is sure to 1/sqrt(198 * 60) = 0.9 % and less
 // where they overlap; in the middle a ring of radius 0.15 stands for the centre.
 void expect_photon_map_is_right(const Scene& scene) {
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     params.photons = 1'000'000;
     params.nearest = 200;
     const auto map = build(scene, params, RunOptions{});

@@ -130,15 +130,15 @@ void expect_rings(const Scene& scene, const CausticEstimator& method, const Ring
             << "ring " << i;
 }
 
-BeamTreeParams beams(int resolution) {
-    BeamTreeParams params;
+beamtree::BeamTreeParams beams(int resolution) {
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = resolution;
     params.max_bounces = events;
     return params;
 }
 
-PhotonMapParams photons() {
-    PhotonMapParams params;
+photonmap::PhotonMapParams photons() {
+    photonmap::PhotonMapParams params;
     params.photons = 0;
     params.emitted = 1'000'000;
     params.nearest = 50;

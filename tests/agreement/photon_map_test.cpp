@@ -84,7 +84,7 @@ TEST(PhotonMap, StoresTheReferencesFlux) {
     for (Case& one : all_cases()) {
         SCOPED_TRACE(one.name);
         const Scene scene(std::move(one.desc));
-        PhotonMapParams params;
+        photonmap::PhotonMapParams params;
         params.photons = 200'000;
         const BuildReport report = build(scene, params, RunOptions{})->build_report();
         const double stored = static_cast<double>(AimedEmission(scene).total_power()[1]) *

@@ -94,7 +94,7 @@ TEST(Camera, TheSpotIsWhereItBelongsForEveryMethod) {
     const Scene point(with_point.desc);
     expect_at_the_spot(picture(point, *build(point, LightTraceParams{.paths = 50'000}, {})),
                        with_point.spot);
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     params.photons = 20'000;
     params.max_radius = 0.05;
     expect_at_the_spot(picture(point, *build(point, params, {})), with_point.spot);
@@ -141,10 +141,10 @@ TEST(Determinism, EveryMethodGivesTheSameBitsFromAnyNumberOfThreads) {
     const Scene scene(SpotScene(true).desc);
     expect_deterministic(scene, LightTraceParams{.paths = 30'000});
     expect_deterministic(scene, PathTraceParams{.spp = 16});
-    PhotonMapParams stored;
+    photonmap::PhotonMapParams stored;
     stored.photons = 5'000;
     expect_deterministic(scene, stored);
-    PhotonMapParams emitted;
+    photonmap::PhotonMapParams emitted;
     emitted.photons = 0;
     emitted.emitted = 20'000;
     expect_deterministic(scene, emitted);

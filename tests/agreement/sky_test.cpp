@@ -78,7 +78,7 @@ TEST(Sky, MirrorsAndGlassGiveBackAsMuchAsTheyHide) {
         near(*build(scene, PathTraceParams{.spp = 20'000, .max_bounces = 64}, RunOptions{}), 1e-3);
         near(*build(scene, LightTraceParams{.paths = 1'500'000, .max_bounces = 64}, RunOptions{}),
              5e-3);
-        PhotonMapParams map;
+        photonmap::PhotonMapParams map;
         map.photons = 0;
         map.emitted = 1'500'000;
         map.radius = 0.04;
@@ -126,7 +126,7 @@ TEST(Sky, IsSeenByTheEyeWhereNothingIs) {
 
 TEST(Sky, IsRefusedByBeams) {
     const Scene scene = under_the_sky(support::mirror());
-    EXPECT_THROW(build(scene, BeamTreeParams{}, RunOptions{}), UnsupportedScene);
+    EXPECT_THROW(build(scene, beamtree::BeamTreeParams{}, RunOptions{}), UnsupportedScene);
 }
 
 // Albedo times radiance, without shadows, in a layer of its own.

@@ -138,11 +138,11 @@ TEST(Slab, PhotonsKeepBeersLawInWeakChannels) {
          {Spectrum(1, 0.0025F, 0.00012F), Spectrum(0.3F, 0.001F, 0.0039F)}) {
         SceneDesc desc = single_slab(1.5F, -share.log() / static_cast<float>(thickness));
         desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
-        const TracedPhotons traced =
-            trace_scene(Scene(std::move(desc)), PhotonMapParams{.photons = 200'000}, RunOptions{});
+        const photonmap::TracedPhotons traced = photonmap::trace_scene(
+            Scene(std::move(desc)), photonmap::PhotonMapParams{.photons = 200'000}, RunOptions{});
         std::array<support::Moments, 3> energy;
-        for (const Photon& photon : traced.store.photons()) {
-            const Spectrum held = decode_rgbe(photon.energy);
+        for (const photonmap::Photon& photon : traced.store.photons()) {
+            const Spectrum held = photonmap::decode_rgbe(photon.energy);
             for (std::size_t c = 0; c < 3; ++c)
                 energy[c].add(static_cast<double>(held[static_cast<int>(c)]));
         }

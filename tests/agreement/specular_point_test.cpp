@@ -21,8 +21,8 @@ Shape exact_water() {
     return shape;
 }
 
-BeamTreeParams of(Intensity intensity, int resolution) {
-    BeamTreeParams params = with(intensity);
+beamtree::BeamTreeParams of(beamtree::Intensity intensity, int resolution) {
+    beamtree::BeamTreeParams params = with(intensity);
     params.mesh_resolution = resolution;
     return params;
 }
@@ -30,15 +30,15 @@ BeamTreeParams of(Intensity intensity, int resolution) {
 TEST(SpecularPoints, TellWavyWaterToRounding) {
     for (const Lamp lamp : {Lamp::point, Lamp::directional, Lamp::area}) {
         const PointwiseTruth truth(lamp);
-        const Errors coarse = truth.errors(exact_water(), of(Intensity::refined, 48));
-        const Errors fine = truth.errors(exact_water(), of(Intensity::refined, 96));
+        const Errors coarse = truth.errors(exact_water(), of(beamtree::Intensity::refined, 48));
+        const Errors fine = truth.errors(exact_water(), of(beamtree::Intensity::refined, 96));
         EXPECT_LT(coarse.median, 1e-6);
         EXPECT_LT(fine.median, 1e-6);
         // What is left are points beside folds, where polygons find a ray too many or too few.
         EXPECT_LE(fine.mean, coarse.mean);
         EXPECT_LT(fine.mean, 0.006);
         // The control: eq. 11 on the same polygons.
-        EXPECT_GT(truth.errors(exact_water(), of(Intensity::area, 96)).median, 0.01);
+        EXPECT_GT(truth.errors(exact_water(), of(beamtree::Intensity::area, 96)).median, 0.01);
     }
 }
 
@@ -68,7 +68,7 @@ TEST(SpecularPoints, TellAMirrorBall) {
         const Vec2d out = d - 2 * d.dot(n) * n;
         return hit.x() + (ceiling - hit.y()) / out.y() * out.x();
     };
-    const auto method = build(scene, of(Intensity::refined, 24), {});
+    const auto method = build(scene, of(beamtree::Intensity::refined, 24), {});
     for (const double angle : {0.02, 0.05, 0.08, 0.1}) {
         const double r = landing(angle);
         const double slope = (landing(angle + 1e-6) - landing(angle - 1e-6)) / 2e-6;
@@ -95,7 +95,7 @@ TEST(SpecularPoints, TellAMirrorRing) {
     desc.shapes = {ring, support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
     desc.point_lights = {support::point_light({0, 0, light_z}, strength)};
     const Scene scene(std::move(desc));
-    BeamTreeParams params = of(Intensity::refined, 24);
+    beamtree::BeamTreeParams params = of(beamtree::Intensity::refined, 24);
     params.max_bounces = 1;
     const auto method = build(scene, params, {});
     for (const double angle : {0.49, 0.52, 0.56, 0.58}) {
@@ -120,7 +120,7 @@ TEST(SpecularPoints, TellStillWaterFromBelow) {
                    support::horizontal("ceiling", up, 9, false, support::diffuse(0.5F))};
     desc.point_lights = {support::point_light({0.3, -0.2, -depth}, strength)};
     const Scene scene(std::move(desc));
-    const auto method = build(scene, of(Intensity::refined, 64), {});
+    const auto method = build(scene, of(beamtree::Intensity::refined, 64), {});
     const auto landing = [&](double a) {
         const double out = std::asin(index * std::sin(a));
         return depth * std::tan(a) + up * std::tan(out);

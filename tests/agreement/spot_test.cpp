@@ -56,7 +56,7 @@ double irradiance(const Scene& scene, const CausticEstimator& method, double r, 
 
 TEST(Spot, BeamsOfAMirrorFollowTheFalloff) {
     const Scene mirror = scene();
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 128;
     const auto tree = build(mirror, params, {});
     for (const double r : distances)
@@ -72,7 +72,7 @@ TEST(Spot, ANarrowConeIsNotLostBetweenCorners) {
     desc.point_lights[0].spot->cutoff = 0.02F;
     desc.point_lights[0].spot->beam_width = 0.01F;
     const Scene narrow(std::move(desc));
-    BeamTreeParams params;
+    beamtree::BeamTreeParams params;
     params.mesh_resolution = 4;
     const auto tree = build(narrow, params, {});
     const ReceiverPoint below = support::probe(narrow, 0, {0.03, 0.02, 0}, Vec3d::UnitZ(), 0);
@@ -82,9 +82,9 @@ TEST(Spot, ANarrowConeIsNotLostBetweenCorners) {
 
 TEST(Spot, PhotonsFollowTheFalloff) {
     const Scene mirror = scene();
-    for (const auto emission :
-         {PhotonMapParams::Emission::random, PhotonMapParams::Emission::stratified}) {
-        PhotonMapParams params;
+    for (const auto emission : {photonmap::PhotonMapParams::Emission::random,
+                                photonmap::PhotonMapParams::Emission::stratified}) {
+        photonmap::PhotonMapParams params;
         params.photons = 0;
         params.emitted = 400'000;
         params.nearest = 100;

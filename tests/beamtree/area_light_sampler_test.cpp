@@ -14,7 +14,7 @@
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 constexpr int seeds = 20;
@@ -161,4 +161,4 @@ TEST(AreaLightSampler, ASphereInAMirrorIsAsBrightAsItsImage) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

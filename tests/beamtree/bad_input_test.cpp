@@ -8,7 +8,7 @@
 #include "tests/beamtree/beam_scenes.h"
 
 // Meshes and scenes as they come: through build(), irradiance() and the report alone.
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// What build() makes of a scene at points all over its floor.
@@ -347,4 +347,4 @@ TEST(CausticPolygons, LoseNothingFarFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

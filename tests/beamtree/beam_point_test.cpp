@@ -8,7 +8,7 @@
 
 #include "tests/beamtree/beam_scenes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 int winding_of(const BeamSet& set, const TestPlane& plane) {
@@ -216,4 +216,4 @@ TEST(BeamPoint, TakesFourCorners) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -8,7 +8,7 @@
 #include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 
 /// Beams of a small scene, every caster a mesh.
 struct BeamScene {
@@ -82,4 +82,4 @@ inline SceneDesc soup_desc(int count) {
     return desc;
 }
 
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -7,7 +7,7 @@
 #include "beamtree/beam_tree.h"
 #include "tests/beamtree/beam_scenes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 BeamTreeParams averaged(float footprint, Intensity intensity = Intensity::area) {
@@ -120,4 +120,4 @@ TEST(BeamSquare, BecomesAPointAsItShrinks) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

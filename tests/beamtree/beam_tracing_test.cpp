@@ -7,7 +7,7 @@
 #include "tests/beamtree/beam_scenes.h"
 #include "tests/support/fresnel.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 double flux(const BeamScene& scene, bool refracted) {
@@ -131,4 +131,4 @@ TEST(BeamTracing, LeavesOutPolygonsTurnedAway) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -3,7 +3,7 @@
 #include "beamtree/beam_tree_method.h"
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 BeamTreeParams params(const std::string& text) {
@@ -83,4 +83,4 @@ TEST(BeamTreeParams, NameTheAlternatives) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -8,7 +8,7 @@
 #include "beamtree/cones/neck.h"
 #include "core/math/rng.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 std::vector<Vec3d> random_directions(std::size_t count, double spread, Rng& rng) {
@@ -106,4 +106,4 @@ TEST(Neck, IsTheLeastOfAConvexSize) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

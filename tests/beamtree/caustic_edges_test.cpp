@@ -9,7 +9,7 @@
 #include "core/geometry/tessellate.h"
 #include "tests/support/build_scene.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 using Kind = CausticEdge::Kind;
@@ -124,4 +124,4 @@ TEST(CausticEdges, FollowLightThroughSeveralEvents) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

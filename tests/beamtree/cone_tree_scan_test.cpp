@@ -16,7 +16,7 @@
 #include "tests/beamtree/beam_scenes.h"
 #include "tests/support/sanitizers.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// Where a tree is asked.
@@ -299,4 +299,4 @@ TEST(ConeTree, FindsTheBeamsOfAScanRoundABall) { expect_as_scan({"ball", ball_de
 TEST(ConeTree, FindsTheBeamsOfAScanInASoup) { expect_as_scan({"soup", soup_desc(90)}, 130'000); }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

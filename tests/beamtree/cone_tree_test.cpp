@@ -11,7 +11,7 @@
 #include "core/math/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 Vec3 random_direction(Rng& rng) { return uniform_cap(2, rng.next(), rng.next()).normalized(); }
@@ -151,4 +151,4 @@ TEST(Hierarchy, HoldsBeamsOutsideOfThePatchesAndManyOfOneTriangle) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -6,7 +6,7 @@
 
 #include "core/math/rng.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // Two triangles with a common edge, whose rays move each in its own way.
@@ -106,4 +106,4 @@ TEST(BinPlaces, GoWithTheIndexOfRefraction) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

@@ -11,7 +11,7 @@
 // Where the printed text of [CC95] fails, what it would lose: the printed formulas stand here, and
 // nowhere in the library. They are negative controls of the tests that find nothing lost, and the
 // figures of beamtree/README.md.
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 /// A point that the beam-point test accepts.
@@ -332,4 +332,4 @@ TEST(LiteralReadings, ConeDByItsBoxLosesPointsNearThePolygon) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

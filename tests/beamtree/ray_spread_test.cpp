@@ -5,7 +5,7 @@
 #include "beamtree/light/refined_density.h"
 #include "tests/beamtree/beam_scenes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 std::vector<BeamSet> refined_sets(const Scene& scene, const std::vector<CasterMesh>& casters) {
@@ -97,4 +97,4 @@ TEST(RaySpread, IsNotKnownOnFlatFacets) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

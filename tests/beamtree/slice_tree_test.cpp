@@ -14,7 +14,7 @@
 #include "core/math/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 Box box_of(const Vec3& low, const Vec3& high) { return {low, high}; }
@@ -308,4 +308,4 @@ TEST(SliceTree, RefusesPointsBelowItsSlab) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

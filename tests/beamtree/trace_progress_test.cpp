@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "tests/beamtree/beam_scenes.h"
 
-namespace caustics {
+namespace caustics::beamtree {
 namespace {
 
 // A ball of glass, whose light is followed over several events: one caster, one light, so that
@@ -82,4 +82,4 @@ TEST(TraceProgress, AnInterruptEndsTheBuild) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::beamtree

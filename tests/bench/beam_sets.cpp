@@ -28,14 +28,15 @@ SceneDesc pool_under(int resolution, double waves, int lamps) {
 
 PoolBeams::PoolBeams(int resolution, double waves, int lamps)
     : scene(pool_under(resolution, waves, lamps)),
-      casters(caster_meshes(scene, 1)),
-      lights(sample_lights(scene, 1, 1)) {
-    for (BeamSet& set : trace_all_beams(scene, casters, lights, {}))
+      casters(beamtree::caster_meshes(scene, 1)),
+      lights(beamtree::sample_lights(scene, 1, 1)) {
+    for (beamtree::BeamSet& set : beamtree::trace_all_beams(scene, casters, lights, {}))
         (set.refracted ? sets : reflected).push_back(std::move(set));
 }
 
-std::vector<BeamNumber> numbers(const std::vector<BeamSet>& sets, std::uint32_t set) {
-    std::vector<BeamNumber> all;
+std::vector<beamtree::BeamNumber> numbers(const std::vector<beamtree::BeamSet>& sets,
+                                          std::uint32_t set) {
+    std::vector<beamtree::BeamNumber> all;
     for (std::uint32_t i = 0; i < sets[set].beams.size(); ++i) all.push_back({set, i});
     return all;
 }
@@ -65,16 +66,17 @@ std::vector<ReceiverPoint> floor_points(Order order, std::size_t count) {
 
 std::size_t ask(const FindBeams& find, std::span<const ReceiverPoint> points, std::size_t batch,
                 Hits* all) {
-    std::vector<std::vector<BeamHit>> hits(batch);
+    std::vector<std::vector<beamtree::BeamHit>> hits(batch);
     std::size_t sum = 0;
     for (std::size_t first = 0; first < points.size(); first += batch) {
         const std::size_t count = std::min(batch, points.size() - first);
-        for (std::vector<BeamHit>& of_point : hits) of_point.clear();
+        for (std::vector<beamtree::BeamHit>& of_point : hits) of_point.clear();
         find(points.subspan(first, count), hits);
         for (std::size_t i = 0; i < count; ++i) {
             sum += hits[i].size();
             if (all == nullptr) continue;
-            for (const BeamHit& hit : hits[i]) all->emplace_back(first + i, hit.beam, hit.winding);
+            for (const beamtree::BeamHit& hit : hits[i])
+                all->emplace_back(first + i, hit.beam, hit.winding);
         }
     }
     if (all != nullptr) std::sort(all->begin(), all->end());

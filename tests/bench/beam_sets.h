@@ -15,16 +15,17 @@ namespace caustics::bench {
 /// `lamps` x `lamps` points within 0.4 m in place of its light.
 struct PoolBeams {
     Scene scene;
-    std::vector<CasterMesh> casters;
-    std::vector<LightSample> lights;
-    std::vector<BeamSet> sets;       ///< refracted: what shines on the floor; one a light
-    std::vector<BeamSet> reflected;  ///< what goes up again
+    std::vector<beamtree::CasterMesh> casters;
+    std::vector<beamtree::LightSample> lights;
+    std::vector<beamtree::BeamSet> sets;       ///< refracted: what shines on the floor; one a light
+    std::vector<beamtree::BeamSet> reflected;  ///< what goes up again
 
     PoolBeams(int resolution, double waves, int lamps = 1);
 };
 
 /// All beams of one of the sets.
-std::vector<BeamNumber> numbers(const std::vector<BeamSet>& sets, std::uint32_t set = 0);
+std::vector<beamtree::BeamNumber> numbers(const std::vector<beamtree::BeamSet>& sets,
+                                          std::uint32_t set = 0);
 
 /// Points of the floor that the caustic covers.
 enum class Order {
@@ -36,7 +37,7 @@ std::vector<ReceiverPoint> floor_points(Order order, std::size_t count);
 
 /// Appends the hits at each point to the list of the same place.
 using FindBeams =
-    std::function<void(std::span<const ReceiverPoint>, std::span<std::vector<BeamHit>>)>;
+    std::function<void(std::span<const ReceiverPoint>, std::span<std::vector<beamtree::BeamHit>>)>;
 
 /// A hit: the query, the beam, its winding.
 using Hits = std::vector<std::tuple<std::size_t, std::uint32_t, int>>;

@@ -41,7 +41,7 @@ struct Waves {
 constexpr Waves calm{"calm", 1};
 constexpr Waves folded{"folded", 2.5};
 
-SlicedBeams sliced(const PoolBeams& pool) {
+beamtree::SlicedBeams sliced(const PoolBeams& pool) {
     return {pool.sets, numbers(pool.sets), Vec3::UnitZ(), pool.scene.bounds()};
 }
 
@@ -52,19 +52,19 @@ struct Peers {
     std::unique_ptr<EmbreeBeams> embree;
     float slack = 0;  ///< as the leaves' own, for the widest triangle
 
-    Peers(const BeamSet& set, const SliceFrame& frame) {
+    Peers(const beamtree::BeamSet& set, const beamtree::SliceFrame& frame) {
         std::vector<SlicedPeer> triangles;
         std::vector<RaysPeer> rays;
         float largest = 0;
         float widest = 0;
-        for (const Beam& beam : set.beams) {
+        for (const beamtree::Beam& beam : set.beams) {
             SlicedPeer sliced;
             RaysPeer bare;
             const auto corners = set.triangle(beam, 0);
             for (std::size_t c = 0; c < 3; ++c) {
                 std::copy_n(corners[c]->position.data(), 3, bare.position[c]);
                 std::copy_n(corners[c]->direction.data(), 3, bare.direction[c]);
-                const RaySlices at = frame.slices(*corners[c]);
+                const beamtree::RaySlices at = frame.slices(*corners[c]);
                 for (std::size_t axis = 0; axis < 2; ++axis) {
                     sliced.corner[c][axis] = at[axis];
                     sliced.growth[c][axis] = at[2 + axis] - at[axis];
@@ -87,11 +87,11 @@ struct Peers {
 /// A pool's beams and what finds them.
 struct Finders {
     PoolBeams pool;
-    SliceTree slices;
+    beamtree::SliceTree slices;
     Peers peers;
-    ConeTree cones;
-    SearchCounts slice_counts;
-    SearchCounts cone_counts;
+    beamtree::ConeTree cones;
+    beamtree::SearchCounts slice_counts;
+    beamtree::SearchCounts cone_counts;
     std::vector<std::uint32_t> stack;
     std::vector<std::uint32_t> found;
 
@@ -100,7 +100,8 @@ struct Finders {
           slices(sliced(pool), isa),
           peers(pool.sets[0], slices.frame()),
           cones(pool.sets[0], 0,
-                quadtree(pool.sets[0], in_order(pool), pool.casters[0].mesh.patches), {}, {}),
+                beamtree::quadtree(pool.sets[0], in_order(pool), pool.casters[0].mesh.patches), {},
+                {}),
           found(pool.sets[0].beams.size()) {}
 
     /// What they return does not outlive them.
@@ -129,7 +130,7 @@ struct Finders {
     template <typename Peer>
     FindBeams sliced_peer(const Peer& peer) {
         return [this, &peer](auto points, auto hits) {
-            const SliceFrame& frame = slices.frame();
+            const beamtree::SliceFrame& frame = slices.frame();
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const Vec3& point = points[i].position;
                 const Vec2d at = frame.across(point.cast<double>());
@@ -144,15 +145,16 @@ struct Finders {
 private:
     static std::vector<std::uint32_t> in_order(const PoolBeams& pool) {
         std::vector<std::uint32_t> beams;
-        for (const BeamNumber& number : numbers(pool.sets)) beams.push_back(number.beam);
+        for (const beamtree::BeamNumber& number : numbers(pool.sets)) beams.push_back(number.beam);
         return beams;
     }
     // The exact tests of those that were found.
-    void test(std::size_t count, const ReceiverPoint& point, std::vector<BeamHit>& hits) const {
-        const TestPlane plane(point.position, slices.frame().normal());
-        SearchCounts counts;
+    void test(std::size_t count, const ReceiverPoint& point,
+              std::vector<beamtree::BeamHit>& hits) const {
+        const beamtree::TestPlane plane(point.position, slices.frame().normal());
+        beamtree::SearchCounts counts;
         for (std::size_t i = 0; i < count; ++i)
-            find_in_beam(pool.sets[0], {0, found[i]}, plane, hits, counts);
+            beamtree::find_in_beam(pool.sets[0], {0, found[i]}, plane, hits, counts);
     }
 };
 
@@ -167,7 +169,7 @@ std::shared_ptr<Finders> finders_of(int resolution, const Waves& waves, Isa isa)
     return last;
 }
 
-void note_counts(Contest& contest, const std::string& name, const SearchCounts& counts,
+void note_counts(Contest& contest, const std::string& name, const beamtree::SearchCounts& counts,
                  double queries) {
     contest.note(name + "_cone_tests", static_cast<double>(counts.cone_point_tests) / queries);
     contest.note(name + "_beam_tests", static_cast<double>(counts.beam_point_tests) / queries);
@@ -219,10 +221,10 @@ Contest cost_contest(const Waves& waves, Order order, const BenchOptions& option
     Contest contest(static_cast<double>(points->size()));
     for (const int resolution : {few, many}) {
         const auto pool = std::make_shared<const PoolBeams>(resolution, waves.height);
-        const auto tree = std::make_shared<const SliceTree>(sliced(*pool), options.isa);
+        const auto tree = std::make_shared<const beamtree::SliceTree>(sliced(*pool), options.isa);
         const FindBeams find = [=](auto some, auto hits) {
             std::vector<std::uint32_t> stack;
-            SearchCounts counts;
+            beamtree::SearchCounts counts;
             tree->find(pool->sets, some, stack, hits, counts);
         };
         contest.add(resolution == few ? "two_slice_7k" : "two_slice_131k",
@@ -235,23 +237,24 @@ Contest cost_contest(const Waves& waves, Order order, const BenchOptions& option
 Contest area_contest(const BenchOptions& options) {
     const auto points = std::make_shared<const Points>(floor_points(Order::tiles, 4096));
     const auto pool = std::make_shared<const PoolBeams>(few, calm.height, 4);
-    const auto trees = std::make_shared<std::vector<SliceTree>>();
-    SlicedBeams all = sliced(*pool);
+    const auto trees = std::make_shared<std::vector<beamtree::SliceTree>>();
+    beamtree::SlicedBeams all = sliced(*pool);
     all.beams.clear();
     for (std::uint32_t i = 0; i < pool->sets.size(); ++i) {
-        SlicedBeams one = sliced(*pool);
+        beamtree::SlicedBeams one = sliced(*pool);
         one.beams = numbers(pool->sets, i);
         all.beams.insert(all.beams.end(), one.beams.begin(), one.beams.end());
         trees->emplace_back(std::move(one), options.isa);
     }
     trees->emplace_back(std::move(all), options.isa);
-    const std::span<const SliceTree> every(*trees);
+    const std::span<const beamtree::SliceTree> every(*trees);
     // It holds on to the trees.
-    const auto find_in = [=](std::span<const SliceTree> chosen) -> FindBeams {
+    const auto find_in = [=](std::span<const beamtree::SliceTree> chosen) -> FindBeams {
         return [pool, trees, chosen](auto some, auto hits) {
             std::vector<std::uint32_t> stack;
-            SearchCounts counts;
-            for (const SliceTree& tree : chosen) tree.find(pool->sets, some, stack, hits, counts);
+            beamtree::SearchCounts counts;
+            for (const beamtree::SliceTree& tree : chosen)
+                tree.find(pool->sets, some, stack, hits, counts);
         };
     };
     Contest contest(static_cast<double>(points->size()));
@@ -268,15 +271,15 @@ Contest build_contest(int resolution, const BenchOptions& options) {
     Contest contest(static_cast<double>(mesh.triangles.size()));
     contest.add("beams", [pool] {
         benchmark::DoNotOptimize(
-            trace_all_beams(pool->scene, pool->casters, pool->lights, {}).size());
+            beamtree::trace_all_beams(pool->scene, pool->casters, pool->lights, {}).size());
     });
     contest.add("tree", [pool, isa = options.isa] {
-        benchmark::DoNotOptimize(SliceTree(sliced(*pool), isa).node_count());
+        benchmark::DoNotOptimize(beamtree::SliceTree(sliced(*pool), isa).node_count());
     });
     contest.add("tree_reflected", [pool, isa = options.isa] {
-        const SlicedBeams up{pool->reflected, numbers(pool->reflected), -Vec3::UnitZ(),
-                             pool->scene.bounds()};
-        benchmark::DoNotOptimize(SliceTree(up, isa).node_count());
+        const beamtree::SlicedBeams up{pool->reflected, numbers(pool->reflected), -Vec3::UnitZ(),
+                                       pool->scene.bounds()};
+        benchmark::DoNotOptimize(beamtree::SliceTree(up, isa).node_count());
     });
     const auto embree = std::make_shared<std::unique_ptr<EmbreeMesh>>();
     contest.add(

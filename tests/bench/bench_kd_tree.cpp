@@ -20,19 +20,21 @@ namespace caustics::bench {
 namespace {
 
 using ResultSet = NanoflannTree::ResultSet;
-using TreePointer = std::shared_ptr<const PhotonTree>;
+using TreePointer = std::shared_ptr<const photonmap::PhotonTree>;
 
 constexpr std::size_t few = 250'677;
 constexpr std::size_t many = 5'036'126;
 constexpr std::size_t usual_k = 100;
 constexpr std::size_t default_leaf = 10;
 
-TreePointer tree_of(TreeKind kind, const std::vector<Photon>& photons, Isa isa) {
-    return build_tree(kind, store_of(photons), isa);
+TreePointer tree_of(photonmap::TreeKind kind, const std::vector<photonmap::Photon>& photons,
+                    Isa isa) {
+    return photonmap::build_tree(kind, store_of(photons), isa);
 }
 
-NanoflannTree nanoflann_of(const std::vector<Photon>& photons, std::size_t leaf) {
-    return {photons.front().position, photons.size(), sizeof(Photon) / sizeof(float), leaf};
+NanoflannTree nanoflann_of(const std::vector<photonmap::Photon>& photons, std::size_t leaf) {
+    return {photons.front().position, photons.size(), sizeof(photonmap::Photon) / sizeof(float),
+            leaf};
 }
 
 /// Trees over one set of photons.
@@ -50,10 +52,10 @@ std::shared_ptr<const Trees> trees_of(Caustic caustic, std::size_t count,
     static std::pair<Caustic, std::size_t> last_set;
     if (last && last_set == std::pair(caustic, count)) return last;
     last.reset();
-    const std::vector<Photon>& photons = photons_of(caustic, Arrival::random, count);
+    const std::vector<photonmap::Photon>& photons = photons_of(caustic, Arrival::random, count);
     const auto trees = std::make_shared<Trees>();
-    trees->packed = tree_of(TreeKind::packed, photons, options.isa);
-    trees->balanced = tree_of(TreeKind::balanced, photons, options.isa);
+    trees->packed = tree_of(photonmap::TreeKind::packed, photons, options.isa);
+    trees->balanced = tree_of(photonmap::TreeKind::balanced, photons, options.isa);
     trees->leaf_sizes = options.quick ? std::vector<std::size_t>{default_leaf, 32}
                                       : std::vector<std::size_t>{default_leaf, 20, 32, 64};
     for (const std::size_t leaf : trees->leaf_sizes)
@@ -64,7 +66,7 @@ std::shared_ptr<const Trees> trees_of(Caustic caustic, std::size_t count,
 
 /// The leaf size with which nanoflann answers these queries fastest: its number in the list.
 std::size_t best_leaf(const Trees& trees, ResultSet set, const QuerySet& queries,
-                      const GatherLimits& limits) {
+                      const photonmap::GatherLimits& limits) {
     std::size_t best = 0;
     std::chrono::steady_clock::duration least = std::chrono::steady_clock::duration::max();
     for (std::size_t i = 0; i < trees.nanoflann.size(); ++i) {
@@ -81,13 +83,13 @@ std::size_t best_leaf(const Trees& trees, ResultSet set, const QuerySet& queries
 /// A contest of queries, whose contestants' answers must be those of nanoflann.
 class QueryContest {
 public:
-    QueryContest(QuerySet queries, const GatherLimits& limits)
+    QueryContest(QuerySet queries, const photonmap::GatherLimits& limits)
         : queries_(std::make_shared<const QuerySet>(std::move(queries))),
           limits_(limits),
           contest_(static_cast<double>(queries_->points.size())) {}
 
     void add_tree(const std::string& name, const TreePointer& tree) {
-        const auto scratch = std::make_shared<GatherScratch>();
+        const auto scratch = std::make_shared<photonmap::GatherScratch>();
         add(name, [=, queries = queries_, limits = limits_](Answers& answers) {
             ask(*tree, *queries, limits, *scratch, answers);
         });
@@ -103,7 +105,7 @@ public:
     }
     void use_truth(Answers truth) { truth_ = std::move(truth); }
     const QuerySet& queries() const { return *queries_; }
-    const GatherLimits& limits() const { return limits_; }
+    const photonmap::GatherLimits& limits() const { return limits_; }
     Contest take() { return std::move(contest_); }
 
 private:
@@ -116,7 +118,7 @@ private:
     }
 
     std::shared_ptr<const QuerySet> queries_;
-    GatherLimits limits_;
+    photonmap::GatherLimits limits_;
     std::optional<Answers> truth_;
     Contest contest_;
 };
@@ -136,17 +138,19 @@ Contest knn_contest(Caustic caustic, std::size_t count, std::size_t k, Density d
 Contest build_contest(Caustic caustic, std::size_t count, const BenchOptions& options) {
     // The leaf size that nanoflann builds fastest with, of those that its queries like.
     constexpr std::size_t leaf = 32;
-    const std::vector<Photon>& photons = photons_of(caustic, Arrival::random, count);
+    const std::vector<photonmap::Photon>& photons = photons_of(caustic, Arrival::random, count);
     Contest contest(static_cast<double>(count));
     const auto nanoflann = std::make_shared<std::optional<NanoflannTree>>();
     contest.add(
         "nanoflann", [&photons, nanoflann] { nanoflann->emplace(nanoflann_of(photons, leaf)); },
         [nanoflann] { nanoflann->reset(); });
-    for (const TreeKind kind : {TreeKind::balanced, TreeKind::packed}) {
-        const auto store = std::make_shared<std::optional<PhotonStore>>();
-        const auto tree = std::make_shared<std::unique_ptr<const PhotonTree>>();
+    for (const photonmap::TreeKind kind :
+         {photonmap::TreeKind::balanced, photonmap::TreeKind::packed}) {
+        const auto store = std::make_shared<std::optional<photonmap::PhotonStore>>();
+        const auto tree = std::make_shared<std::unique_ptr<const photonmap::PhotonTree>>();
         contest.add(
-            name(kind), [=] { *tree = build_tree(kind, std::move(**store), options.isa); },
+            name(kind),
+            [=] { *tree = photonmap::build_tree(kind, std::move(**store), options.isa); },
             [&photons, store, tree] {
                 tree->reset();
                 store->emplace(store_of(photons));
@@ -161,12 +165,13 @@ Contest cost_contest(Caustic caustic, const BenchOptions& options) {
     const auto queries =
         std::make_shared<const QuerySet>(make_queries(caustic, Density::sparse, options.quick));
     for (const std::size_t count : {few, many})
-        for (const TreeKind kind : {TreeKind::packed, TreeKind::balanced}) {
+        for (const photonmap::TreeKind kind :
+             {photonmap::TreeKind::packed, photonmap::TreeKind::balanced}) {
             const TreePointer tree =
                 tree_of(kind, photons_of(caustic, Arrival::random, count), options.isa);
-            const auto scratch = std::make_shared<GatherScratch>();
+            const auto scratch = std::make_shared<photonmap::GatherScratch>();
             const auto answers = std::make_shared<Answers>();
-            const GatherLimits limits = limits_of(caustic, usual_k, count);
+            const photonmap::GatherLimits limits = limits_of(caustic, usual_k, count);
             contest.add(std::string(name(kind)) + (count == few ? "_250k" : "_5M"),
                         [=] { ask(*tree, *queries, limits, *scratch, *answers); });
         }
@@ -175,15 +180,15 @@ Contest cost_contest(Caustic caustic, const BenchOptions& options) {
 
 Contest unbalanced_contest(Caustic caustic, std::size_t count, Arrival arrival,
                            const BenchOptions& options) {
-    const std::vector<Photon>& photons = photons_of(caustic, arrival, count);
+    const std::vector<photonmap::Photon>& photons = photons_of(caustic, arrival, count);
     QueryContest contest(make_queries(caustic, Density::sparse, options.quick),
                          limits_of(caustic, usual_k, count));
     Answers truth;
     ask(nanoflann_of(photons, default_leaf), ResultSet::heap, contest.queries(), contest.limits(),
         truth);
     contest.use_truth(std::move(truth));
-    contest.add_tree("balanced", tree_of(TreeKind::balanced, photons, options.isa));
-    contest.add_tree("unbalanced", tree_of(TreeKind::unbalanced, photons, options.isa));
+    contest.add_tree("balanced", tree_of(photonmap::TreeKind::balanced, photons, options.isa));
+    contest.add_tree("unbalanced", tree_of(photonmap::TreeKind::unbalanced, photons, options.isa));
     return contest.take();
 }
 

@@ -35,13 +35,13 @@ struct Work {
     std::vector<ReceiverPoint> points;
     std::vector<std::uint32_t> energy;     ///< `padded` a point
     std::vector<std::uint16_t> direction;  ///< likewise
-    Shading shading;
-    BrdfLobeTable table;
+    photonmap::Shading shading;
+    photonmap::BrdfLobeTable table;
     std::vector<SpectrumSum> sums;
 
     Work(Isa isa, Bsdf law) : bsdf(std::move(law)), shading(isa) {}
 
-    WeightedPhotons photons(std::size_t i) const {
+    photonmap::WeightedPhotons photons(std::size_t i) const {
         return {{nullptr, &energy[i * padded], &direction[i * padded], photons_a_point, 0}};
     }
     bool is_phong() const { return std::holds_alternative<Phong>(bsdf.model); }
@@ -53,7 +53,7 @@ struct Work {
     }
 };
 
-void add_point(Work& work, const float* x, const std::vector<Photon>& photons,
+void add_point(Work& work, const float* x, const std::vector<photonmap::Photon>& photons,
                const std::uint32_t* found) {
     ReceiverPoint point{};
     point.position = Vec3(x[0], x[1], x[2]);
@@ -62,17 +62,17 @@ void add_point(Work& work, const float* x, const std::vector<Photon>& photons,
     point.bsdf = &work.bsdf;
     work.points.push_back(point);
     for (std::size_t i = 0; i < padded; ++i) {
-        const Photon& photon = photons[found[i < photons_a_point ? i : 0]];
+        const photonmap::Photon& photon = photons[found[i < photons_a_point ? i : 0]];
         work.energy.push_back(std::bit_cast<std::uint32_t>(photon.energy));
         work.direction.push_back(
-            std::bit_cast<std::uint16_t>(DirectionCode{photon.theta, photon.phi}));
+            std::bit_cast<std::uint16_t>(photonmap::DirectionCode{photon.theta, photon.phi}));
     }
 }
 
 std::shared_ptr<Work> make_work(Caustic caustic, const BenchOptions& options, const Bsdf& law) {
     const auto work = std::make_shared<Work>(options.isa, law);
     const std::size_t count = 250'677;
-    const std::vector<Photon> photons = caustic_photons(caustic, Arrival::random, count);
+    const std::vector<photonmap::Photon> photons = caustic_photons(caustic, Arrival::random, count);
     const NanoflannTree tree(photons.front().position, count, 5, 10);
     const Queries queries = scanlines(caustic, 320, 240, options.quick ? 2 : 8, 4);
     const float radius = max_radius(caustic, photons_a_point, count);
@@ -105,11 +105,13 @@ SpectrumSum truth(const Work& work, std::size_t i) {
     const Vec3d wo = work.points[i].wo.cast<double>().normalized();
     SpectrumSum sum = SpectrumSum::Zero();
     for (std::size_t p = i * padded; p < i * padded + photons_a_point; ++p) {
-        const auto code = std::bit_cast<DirectionCode>(work.direction[p]);
-        const Vec3d wi = decode_direction(code.theta, code.phi).cast<double>().normalized();
+        const auto code = std::bit_cast<photonmap::DirectionCode>(work.direction[p]);
+        const Vec3d wi =
+            photonmap::decode_direction(code.theta, code.phi).cast<double>().normalized();
         if (wi.z() <= 0) continue;
-        sum += decode_rgbe(std::bit_cast<Rgbe>(work.energy[p])).cast<double>() *
-               reflection(work.is_phong(), wo, wi);
+        sum +=
+            photonmap::decode_rgbe(std::bit_cast<photonmap::Rgbe>(work.energy[p])).cast<double>() *
+            reflection(work.is_phong(), wo, wi);
     }
     return sum;
 }

@@ -22,7 +22,7 @@ namespace caustics::bench {
 
 namespace {
 
-using Emission = PhotonMapParams::Emission;
+using Emission = photonmap::PhotonMapParams::Emission;
 
 struct Case {
     std::string scene;
@@ -33,23 +33,23 @@ struct Case {
 /// A scene and the rays of its photons.
 struct Work {
     Scene scene;
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     std::vector<Ray> rays;
     std::unique_ptr<RawReplay> replay;
 
-    Work(SceneDesc desc, const PhotonMapParams& p) : scene(std::move(desc)), params(p) {
-        trace_scene(scene, params, {}, &rays);
+    Work(SceneDesc desc, const photonmap::PhotonMapParams& p) : scene(std::move(desc)), params(p) {
+        photonmap::trace_scene(scene, params, {}, &rays);
         replay = std::make_unique<RawReplay>(scene, rays);
     }
     void trace(int threads) const {
         RunOptions options;
         options.threads = threads;
-        benchmark::DoNotOptimize(trace_scene(scene, params, options).counts.stored);
+        benchmark::DoNotOptimize(photonmap::trace_scene(scene, params, options).counts.stored);
     }
 };
 
 Contest make_contest(const Case& c, Emission emission, const BenchOptions& options, bool threads) {
-    PhotonMapParams params;
+    photonmap::PhotonMapParams params;
     params.photons = options.quick ? 50'000 : 1'000'000;
     params.emission = emission;
     const auto work = std::make_shared<Work>(c.make(c.resolution), params);

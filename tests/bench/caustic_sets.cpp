@@ -99,10 +99,10 @@ double stored_share(const Scene& scene, Caustic caustic) {
     return static_cast<double>(stored.size()) / paths;
 }
 
-Photon photon_of(const Deposit& deposit) {
-    const DirectionCode wi = encode_direction(deposit.wi);
+photonmap::Photon photon_of(const Deposit& deposit) {
+    const photonmap::DirectionCode wi = photonmap::encode_direction(deposit.wi);
     const Vec3& x = deposit.position;
-    return {{x.x(), x.y(), x.z()}, encode_rgbe(deposit.flux), wi.theta, wi.phi, 0};
+    return {{x.x(), x.y(), x.z()}, photonmap::encode_rgbe(deposit.flux), wi.theta, wi.phi, 0};
 }
 
 }  // namespace
@@ -137,12 +137,13 @@ SceneDesc caustic_scene(Caustic caustic) {
     return desc;
 }
 
-std::vector<Photon> caustic_photons(Caustic caustic, Arrival arrival, std::size_t count) {
+std::vector<photonmap::Photon> caustic_photons(Caustic caustic, Arrival arrival,
+                                               std::size_t count) {
     const Scene scene(caustic_scene(caustic));
     // Some more than are needed on average.
     const double paths = static_cast<double>(count) / stored_share(scene, caustic);
     const AimPoints aim(arrival, static_cast<std::size_t>(1.02 * paths + 50 * std::sqrt(paths)));
-    std::vector<Photon> photons;
+    std::vector<photonmap::Photon> photons;
     photons.reserve(count);
     std::vector<Deposit> deposits;
     LightPathCounts counts;

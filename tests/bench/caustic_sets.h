@@ -31,7 +31,7 @@ double floor_half(Caustic caustic);
 SceneDesc caustic_scene(Caustic caustic);
 
 /// `count` photons in their order of arrival, traced by the project's own light paths.
-std::vector<Photon> caustic_photons(Caustic caustic, Arrival arrival, std::size_t count);
+std::vector<photonmap::Photon> caustic_photons(Caustic caustic, Arrival arrival, std::size_t count);
 
 /// Where a picture's queries lie: points of the floor seen from straight above.
 struct Queries {

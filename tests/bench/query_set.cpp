@@ -55,13 +55,14 @@ QuerySet make_queries(Caustic caustic, Density density, bool quick) {
     return queries;
 }
 
-void ask(const PhotonTree& tree, const QuerySet& queries, const GatherLimits& limits,
-         GatherScratch& scratch, Answers& answers) {
+void ask(const photonmap::PhotonTree& tree, const QuerySet& queries,
+         const photonmap::GatherLimits& limits, photonmap::GatherScratch& scratch,
+         Answers& answers) {
     answers.resize(queries.points.size());
     for (std::size_t first = 0; first < queries.points.size(); first += queries.batch) {
         const std::span<const ReceiverPoint> batch(&queries.points[first], queries.batch);
         tree.gather(batch, limits, scratch,
-                    [&answers, first](std::size_t i, const GatheredPhotons& gathered) {
+                    [&answers, first](std::size_t i, const photonmap::GatheredPhotons& gathered) {
                         answers[first + i] = {
                             gathered.count,
                             gathered.count > 0 ? gathered.squared_distance[gathered.farthest] : 0};
@@ -70,7 +71,7 @@ void ask(const PhotonTree& tree, const QuerySet& queries, const GatherLimits& li
 }
 
 void ask(const NanoflannTree& tree, NanoflannTree::ResultSet set, const QuerySet& queries,
-         const GatherLimits& limits, Answers& answers) {
+         const photonmap::GatherLimits& limits, Answers& answers) {
     answers.resize(queries.points.size());
     std::vector<std::uint32_t> indices(limits.nearest);
     std::vector<float> distances(limits.nearest);
@@ -97,19 +98,20 @@ void require_same(const Answers& answers, const Answers& truth, const std::strin
                                      std::to_string(truth[i].squared_distance));
 }
 
-GatherLimits limits_of(Caustic caustic, std::size_t k, std::size_t photons) {
+photonmap::GatherLimits limits_of(Caustic caustic, std::size_t k, std::size_t photons) {
     return {k, max_radius(caustic, k, photons)};
 }
 
-const std::vector<Photon>& photons_of(Caustic caustic, Arrival arrival, std::size_t count) {
-    static std::map<std::tuple<Caustic, Arrival, std::size_t>, std::vector<Photon>> sets;
-    std::vector<Photon>& photons = sets[{caustic, arrival, count}];
+const std::vector<photonmap::Photon>& photons_of(Caustic caustic, Arrival arrival,
+                                                 std::size_t count) {
+    static std::map<std::tuple<Caustic, Arrival, std::size_t>, std::vector<photonmap::Photon>> sets;
+    std::vector<photonmap::Photon>& photons = sets[{caustic, arrival, count}];
     if (photons.empty()) photons = caustic_photons(caustic, arrival, count);
     return photons;
 }
 
-PhotonStore store_of(const std::vector<Photon>& photons) {
-    PhotonStore store(photons.size());
+photonmap::PhotonStore store_of(const std::vector<photonmap::Photon>& photons) {
+    photonmap::PhotonStore store(photons.size());
     store.append(photons);
     return store;
 }

@@ -32,18 +32,20 @@ struct Answer {
 };
 using Answers = std::vector<Answer>;
 
-void ask(const PhotonTree& tree, const QuerySet& queries, const GatherLimits& limits,
-         GatherScratch& scratch, Answers& answers);
+void ask(const photonmap::PhotonTree& tree, const QuerySet& queries,
+         const photonmap::GatherLimits& limits, photonmap::GatherScratch& scratch,
+         Answers& answers);
 void ask(const NanoflannTree& tree, NanoflannTree::ResultSet set, const QuerySet& queries,
-         const GatherLimits& limits, Answers& answers);
+         const photonmap::GatherLimits& limits, Answers& answers);
 
 /// Throws std::runtime_error naming the contestant and the first query whose answers differ.
 void require_same(const Answers& answers, const Answers& truth, const std::string& contestant);
 
-GatherLimits limits_of(Caustic caustic, std::size_t k, std::size_t photons);
+photonmap::GatherLimits limits_of(Caustic caustic, std::size_t k, std::size_t photons);
 
 /// The photons of a caustic, traced when first asked for and kept.
-const std::vector<Photon>& photons_of(Caustic caustic, Arrival arrival, std::size_t count);
-PhotonStore store_of(const std::vector<Photon>& photons);
+const std::vector<photonmap::Photon>& photons_of(Caustic caustic, Arrival arrival,
+                                                 std::size_t count);
+photonmap::PhotonStore store_of(const std::vector<photonmap::Photon>& photons);
 
 }  // namespace caustics::bench

@@ -7,7 +7,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using support::causticbench;
@@ -93,4 +93,4 @@ TEST_F(Compare, SaysWhereTheLightDiffers) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 const std::string good_scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
@@ -236,4 +236,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BrokenInput, testing::ValuesIn(broken_scenes), 
 INSTANTIATE_TEST_SUITE_P(Commands, BrokenInput, testing::ValuesIn(broken_commands), name_of);
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

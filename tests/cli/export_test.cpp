@@ -4,7 +4,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using support::causticbench;
@@ -71,4 +71,4 @@ TEST(Export, RefusesWhatTheOtherCannotExpress) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -12,7 +12,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using nlohmann::json;
@@ -262,4 +262,4 @@ TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

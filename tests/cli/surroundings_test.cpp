@@ -8,7 +8,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using support::ProgramResult;
@@ -118,4 +118,4 @@ TEST_F(Surroundings, SlashesAtTheEndOfAFolderMakeNoDifference) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -12,7 +12,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using support::causticbench;
@@ -244,4 +244,4 @@ TEST_F(Sweeps, StopAtTheFirstFailureWhenAsked) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

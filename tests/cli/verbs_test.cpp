@@ -9,7 +9,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using support::causticbench;
@@ -235,4 +235,4 @@ TEST(Verify, WantsASceneOrTheGallery) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -5,7 +5,7 @@
 
 #include "experiments/gallery/gallery.h"
 
-namespace caustics {
+namespace caustics::experiments {
 
 /// A scene of the gallery.
 inline GalleryScene scene_named(const std::string& name) {
@@ -14,4 +14,4 @@ inline GalleryScene scene_named(const std::string& name) {
     throw std::logic_error("no such scene in the gallery: " + name);
 }
 
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -8,7 +8,7 @@
 #include "estimate_map.h"
 #include "tests/support/statistics.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using test::EstimateMap;
@@ -234,4 +234,4 @@ TEST(AdaptiveN, WorksOnAnyTreeAndAnyPlaneAlike) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -6,7 +6,7 @@
 
 #include "photon_sets.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using test::photon_sets;
@@ -105,4 +105,4 @@ TEST(BalancedKdTree, IsATreeWhereRangesAreTooLargeForScratch) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

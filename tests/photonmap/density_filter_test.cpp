@@ -7,7 +7,7 @@
 #include "estimate_map.h"
 #include "tests/support/statistics.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using Estimator = PhotonMapParams::Estimator;
@@ -200,4 +200,4 @@ TEST(DensityFilter, KeepsAnEdgeSharperThanNoFilterAtTheSameRadius) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

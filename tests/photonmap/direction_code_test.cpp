@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 double angle_between(const Vec3& a, const Vec3& b) {
@@ -58,4 +58,4 @@ TEST(DirectionCode, ServesPolesAndTheSeam) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -7,7 +7,7 @@
 #include "photonmap/estimate/radiance_estimate.h"
 #include "photonmap/tree/build_tree.h"
 
-namespace caustics::test {
+namespace caustics::photonmap::test {
 
 inline const Bsdf white{Diffuse{Spectrum(Spectrum::Ones())}};
 
@@ -90,4 +90,4 @@ inline std::vector<ReceiverPoint> square_grid(int side) {
     return points;
 }
 
-}  // namespace caustics::test
+}  // namespace caustics::photonmap::test

@@ -9,7 +9,7 @@
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 Vec3d decoded(unsigned flags) {
@@ -57,4 +57,4 @@ TEST(FacingCode, DoesNotKnowWhatIsNoDirection) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

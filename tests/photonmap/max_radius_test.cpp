@@ -6,7 +6,7 @@
 
 #include "photon_sets.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using test::photon_at;
@@ -47,4 +47,4 @@ TEST(DefaultMaxRadius, FallsBackOnTheSceneWherePhotonsSpanNoArea) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -6,7 +6,7 @@
 
 #include "tests/support/build_scene.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 /// A floor seen from 2 m above, so that a pixel is 2 m x sqrt(pixel_area) wide.
@@ -48,4 +48,4 @@ TEST(PhotonDots, AreDiscsOfPixelsAsBrightAsTheLogarithmOfTheirNumber) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -13,7 +13,7 @@
 #include "photon_sets.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 TracedPhotons traced(std::size_t count) {
@@ -197,4 +197,4 @@ TEST_F(PhotonMapFile, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

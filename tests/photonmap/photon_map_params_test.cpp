@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "photonmap/photon_map_method.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 PhotonMapParams params_of(const std::string& json) {
@@ -127,4 +127,4 @@ TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

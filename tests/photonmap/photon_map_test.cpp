@@ -10,7 +10,7 @@
 #include "core/light_path/aimed_emission.h"
 #include "photonmap/progressive.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 constexpr double light_height = 1;
@@ -233,4 +233,4 @@ TEST(PhotonMap, RefusesParametersThatContradictEachOther) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -11,7 +11,7 @@
 #include "photonmap/tree/arrival_directions.h"
 #include "photonmap/tree/photon_tree.h"
 
-namespace caustics::test {
+namespace caustics::photonmap::test {
 
 /// A photon of energy 1 that came from straight above.
 inline Photon photon_at(const Vec3& x) {
@@ -112,4 +112,4 @@ inline std::vector<Found> linear_scan(std::span<const Photon> photons, const Rec
     return all;
 }
 
-}  // namespace caustics::test
+}  // namespace caustics::photonmap::test

@@ -8,7 +8,7 @@
 #include "tests/support/build_scene.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 /// A glass ball over a glossy floor.
@@ -131,4 +131,4 @@ TEST_F(KeptPhotons, BeginWithTryingTheFileToWrite) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

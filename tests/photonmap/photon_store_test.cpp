@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "photon_sets.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 /// Bytes of a range that are in memory.
@@ -60,4 +60,4 @@ TEST(PhotonStore, MayBeEmpty) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -13,7 +13,7 @@
 #include "core/math/rng.h"
 #include "tests/support/statistics.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 /// What path number `path` deposits, if it does.
@@ -231,4 +231,4 @@ TEST(PhotonTracing, ReportsGrowingProgressAndCanBeInterrupted) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -11,7 +11,7 @@
 #include "photon_sets.h"
 #include "photonmap/tree/balanced_kd_tree.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using test::Found;
@@ -350,4 +350,4 @@ TEST(PhotonTree, RefusesPositionsThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

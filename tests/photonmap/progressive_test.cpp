@@ -10,7 +10,7 @@
 #include "estimate_map.h"
 #include "tests/support/statistics.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using test::EstimateMap;
@@ -135,4 +135,4 @@ TEST(Progressive, ErrorFallsAtThePublishedRate) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

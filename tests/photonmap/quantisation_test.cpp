@@ -8,7 +8,7 @@
 #include "shading_sets.h"
 #include "tests/support/build_scene.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 constexpr std::size_t nearest = 100;
@@ -101,4 +101,4 @@ TEST(Quantisation, DirectionCodesCostLittleHoweverSharpTheLobe) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

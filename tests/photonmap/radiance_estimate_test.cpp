@@ -6,7 +6,7 @@
 
 #include "estimate_map.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using Estimator = PhotonMapParams::Estimator;
@@ -130,4 +130,4 @@ TEST(RadianceEstimate, CoincidentPhotonsGiveALargeFiniteValue) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -7,7 +7,7 @@
 
 #include "core/math/rng.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 TEST(Rgbe, ErrsByAtMostA255thOfTheLargestChannelOverAllScales) {
@@ -92,4 +92,4 @@ TEST(Rgbe, LosesWhatIsBelowItsRangeAndRefusesTheRest) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -14,7 +14,7 @@
 #include "tests/support/sanitizers.h"
 #include "tests/support/statistics.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using Emission = PhotonMapParams::Emission;
@@ -233,4 +233,4 @@ TEST(ScenePhotons, TakeNoMoreMemoryThanTheirBytes) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -8,7 +8,7 @@
 #include "photonmap/estimate/shading.h"
 #include "photonmap/photons/photon.h"
 
-namespace caustics::test {
+namespace caustics::photonmap::test {
 
 /// Gathered photons that own their arrays.
 class PhotonArrays {
@@ -90,4 +90,4 @@ inline double schlick_as_printed(double alpha, const Vec3d& n, const Vec3d& wo, 
     return (1 - g) / pi_d + g / (4 * pi_d * v * v_in) * alpha / (lobe * lobe);
 }
 
-}  // namespace caustics::test
+}  // namespace caustics::photonmap::test

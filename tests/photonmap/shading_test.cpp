@@ -10,7 +10,7 @@
 #include "photonmap/kernels/simd_plain.h"
 #include "shading_sets.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 using test::PhotonArrays;
@@ -280,4 +280,4 @@ TEST(BrdfLobeTable, ForgetsWhenThePointOrTheViewChanges) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -8,7 +8,7 @@
 #include "core/math/rng.h"
 #include "tests/support/statistics.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 Vec2d point(const StratifiedSquare& square, std::uint64_t stratum, Vec2d jitter) {
@@ -79,4 +79,4 @@ TEST(StratifiedSquare, NeighboursInTheWalkAreNeighboursInTheSquare) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

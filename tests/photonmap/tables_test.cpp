@@ -3,7 +3,7 @@
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 
-namespace caustics {
+namespace caustics::photonmap {
 namespace {
 
 /// A glass ball over a floor, lit from the side.
@@ -79,4 +79,4 @@ TEST(Tables, ShadeTheSameAndCountTheirLookups) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::photonmap

@@ -43,11 +43,11 @@ TEST_P(BeamsOfRealMeshes, BringTheirFluxToTheFloor) {
     const RealMesh& real = GetParam();
     const Scene scene(over_a_floor(real.file, Eigen::AngleAxisd(real.x_turn, Vec3d::UnitX()),
                                    support::glass(real.ior)));
-    BeamTreeParams params;
-    params.bound = Bound::two_slice;
-    params.hierarchy = BeamTreeParams::Tree::binned;
-    params.leaf = BeamTreeParams::Leaf::k;
-    params.intensity = Intensity::refined;
+    beamtree::BeamTreeParams params;
+    params.bound = beamtree::Bound::two_slice;
+    params.hierarchy = beamtree::BeamTreeParams::Tree::binned;
+    params.leaf = beamtree::BeamTreeParams::Leaf::k;
+    params.intensity = beamtree::Intensity::refined;
     params.max_bounces = real.max_bounces;
     const auto method = build(scene, params, {});
     EXPECT_GT(method->build_report().resolved.at("flux_share_captured"), real.least_captured);

@@ -12,7 +12,7 @@
 #include "experiments/base/file_io.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +78,4 @@ TEST_F(WholeFolders, RemoveNothingElse) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -11,7 +11,7 @@
 #include "experiments/base/file_io.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using How = ChildEnd::How;
@@ -160,4 +160,4 @@ TEST(ChildProcesses, AreRefusedAfterAThreadBegan) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -9,7 +9,7 @@
 #include "experiments/base/file_io.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 TEST(Numbers, AreWrittenShortAndExact) {
@@ -76,4 +76,4 @@ TEST_F(NumberTables, NameWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 TEST(ReadInput, TakesFilesAndPipesUntilTheyEnd) {
@@ -50,4 +50,4 @@ TEST(ReadInput, RefusesWhatMayHaveNoEnd) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

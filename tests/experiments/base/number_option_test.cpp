@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "experiments/cli/verbs.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 /// What the verb says of an option given as `text`: InputError's message, or nothing. That other
@@ -87,4 +87,4 @@ TEST(Decimal, HoldsTheWholeRangeOfItsType) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

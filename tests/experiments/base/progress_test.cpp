@@ -13,7 +13,7 @@
 #include "experiments/base/step_progress.h"
 #include "experiments/run/run_progress.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 /// While it lives, stderr is a terminal of so many columns.
@@ -143,4 +143,4 @@ TEST(StepProgress, WhatLaterStepsTakeIsInTheEta) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 /// What a shell makes of it.
@@ -32,4 +32,4 @@ TEST(ShellWord, OfAFileIsNoOption) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

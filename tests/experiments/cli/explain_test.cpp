@@ -10,7 +10,7 @@
 #include "experiments/plan/trial_store.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using nlohmann::json;
@@ -85,4 +85,4 @@ TEST_F(Explanations, GiveNoCommandThatOverwritesAFile) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -16,7 +16,7 @@
 #include "tests/support/known_words.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using Words = std::set<std::string>;
@@ -104,4 +104,4 @@ TEST(Help, TellsTheKeysThatSweepFilesAreReadBy) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -13,7 +13,7 @@
 #include "tests/support/build_scene.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 /// A glass ball and a mirror over a floor, under a lamp and the sun, seen askew.
@@ -342,4 +342,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

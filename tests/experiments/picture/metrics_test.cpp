@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 Film grey_film(const std::string& layer, const std::vector<float>& values) {
@@ -114,4 +114,4 @@ TEST(StandardError, IsTheRootMeanSquareOverTheMean) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using Pixel = std::array<int, 3>;
@@ -55,4 +55,4 @@ TEST(Strip, PutsThreePicturesSideBySide) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

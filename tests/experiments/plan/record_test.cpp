@@ -7,7 +7,7 @@
 
 #include "experiments/base/csv.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 TEST(RecordsCsv, BeginsWithTheColumnsOfTheContract) {
@@ -56,4 +56,4 @@ TEST(RecordsCsv, LeavesEmptyWhatDoesNotApply) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

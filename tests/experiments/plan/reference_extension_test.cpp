@@ -9,7 +9,7 @@
 #include "experiments/plan/reference_cache.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 const std::string scene_file = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
@@ -109,4 +109,4 @@ TEST(ReferenceExtension, IsOnlyDoneWhenAskedFor) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -11,7 +11,7 @@
 #include "photonmap/photons/photon_map_file.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
@@ -111,7 +111,8 @@ TEST_F(SweepPlans, KeyReferencesByAllTheyDependOn) {
 
 /// A photon map of no photons; the seed makes it another one.
 void write_map(const std::filesystem::path& file, std::uint64_t seed) {
-    save_photon_map({PhotonStore(0), {}, Spectrum::Ones()}, {.seed = seed}, file);
+    photonmap::save_photon_map({photonmap::PhotonStore(0), {}, Spectrum::Ones()}, {.seed = seed},
+                               file);
 }
 
 TEST_F(SweepPlans, TellTrialsThatLoadAFileByItsContent) {
@@ -217,4 +218,4 @@ TEST_F(SweepPlans, EveryShippedSweepFileCanBePlanned) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

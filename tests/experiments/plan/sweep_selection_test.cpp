@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 /// methods × photons × seeds × repeats, in that order.
@@ -135,4 +135,4 @@ TEST(RunOrder, TakesRepeatsOneAfterTheOtherAndMixesMethods) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -8,7 +8,7 @@
 #include "experiments/base/file_io.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ TEST_F(JobStores, NeedAFolderTheyCanWrite) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

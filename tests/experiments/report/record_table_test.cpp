@@ -16,7 +16,7 @@
 #include "experiments/report/trial_rows.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using nlohmann::json;
@@ -268,4 +268,4 @@ TEST_F(RecordTables, SayWhenARecordIsBroken) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 const std::vector<std::string> columns = {
@@ -51,4 +51,4 @@ TEST(SweepSummary, MemoryIsInMiB) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

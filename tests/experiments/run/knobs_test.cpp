@@ -11,7 +11,7 @@
 
 // Every parameter of every method moves something, and the way that theory says.
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 /// What a method answers at the points of a scene with a known answer.
@@ -239,4 +239,4 @@ TEST(Knobs, AreAllTurnedAbove) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -48,4 +48,4 @@ TEST(LightDifferences, AreOneLineWhateverTheKeys) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

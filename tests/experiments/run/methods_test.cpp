@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "experiments/cli/help_text.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 Method method(const std::string& name, const std::vector<std::string>& params) {
@@ -151,4 +151,4 @@ TEST(Methods, SayHowTheyAnswerProbes) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

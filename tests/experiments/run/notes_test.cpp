@@ -11,7 +11,7 @@
 #include "experiments/run/method.h"
 #include "tests/support/build_scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 SceneDesc ring() {
@@ -161,4 +161,4 @@ TEST(Notes, NameParametersThatMakeNoDifference) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -17,7 +17,7 @@
 // A method that is added goes everywhere by its description alone. This program's list of methods
 // stands in place of experiments/run/methods.cpp.
 
-namespace caustics {
+namespace caustics::experiments {
 
 namespace {
 
@@ -136,4 +136,4 @@ TEST(ToyMethod, IsTold) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

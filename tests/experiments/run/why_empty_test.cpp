@@ -6,7 +6,7 @@
 #include "experiments/run/render_and_score.h"
 #include "tests/support/build_scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -179,4 +179,4 @@ TEST(WhyEmpty, IsToldWhenAskedForPhotonsThatCannotBeHad) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 Trial trial(const std::string& cell, const std::string& method, const std::string& scene) {
@@ -35,4 +35,4 @@ TEST(CostEstimates, AskTheClosestThatRan) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

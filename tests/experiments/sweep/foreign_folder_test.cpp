@@ -15,7 +15,7 @@
 #include "experiments/sweep/sweep.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 using nlohmann::json;
@@ -193,4 +193,4 @@ TEST_F(ForeignFolders, MayLackAnyFileOrHoldAnythingInItsPlace) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -15,7 +15,7 @@
 #include "experiments/plan/trial_store.h"
 #include "tests/support/temporary_folder.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,4 +188,4 @@ TEST_F(Merges, OverwriteNothing) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments

@@ -7,7 +7,7 @@
 #include "experiments/verify/verify_gallery.h"
 #include "tests/experiments/named_scene.h"
 
-namespace caustics {
+namespace caustics::experiments {
 namespace {
 
 Series beams() {
@@ -101,4 +101,4 @@ TEST(LightAudit, SaysWhyNoLightIsSent) {
 }
 
 }  // namespace
-}  // namespace caustics
+}  // namespace caustics::experiments
