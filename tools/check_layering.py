@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Reads the #include lines of the sources and fails on an arrow that ARCHITECTURE.md does not draw, on a
-circle of folders or of units (a .h and its .cpp), and on a folder that is too full or has no README.md.
+circle of folders or of units (a .h and its .cpp), on a wrong namespace, and on a folder that is too full or
+has no README.md.
 
 Usage: check_layering.py [ROOT]     check the tree at ROOT (default: the folder above this one)
        check_layering.py --self-test   plant wrong arrows in a scratch tree and see each one found

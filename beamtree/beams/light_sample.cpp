@@ -33,6 +33,19 @@ void sample_area_light(const Scene& scene, const AreaLight& light, LightSample s
     }
 }
 
+LightSample sample_of(const LightPoint& point, const Scene& scene, LightSample sample) {
+    sample.strength = point.strength;
+    sample.spot = point.spot;
+    if (point.position) {
+        sample.position = *point.position;
+        return sample;
+    }
+    sample.kind = LightSample::Kind::directional;
+    sample.travel = point.travel;
+    sample.bounds = scene.bounds();
+    return sample;
+}
+
 }  // namespace
 
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed) {
@@ -41,17 +54,8 @@ std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, s
         const Light& light = scene.lights()[i];
         LightSample sample;
         sample.light = i;
-        if (const auto* point = std::get_if<PointLight>(&light)) {
-            sample.position = point->position;
-            sample.strength = point->intensity;
-            sample.spot = point->spot;
-            samples.push_back(sample);
-        } else if (const auto* far = std::get_if<DirectionalLight>(&light)) {
-            sample.kind = LightSample::Kind::directional;
-            sample.travel = far->direction;
-            sample.strength = far->irradiance;
-            sample.bounds = scene.bounds();
-            samples.push_back(sample);
+        if (const auto point = point_of(light)) {
+            samples.push_back(sample_of(*point, scene, sample));
         } else if (const auto* area = std::get_if<AreaLight>(&light)) {
             sample_area_light(scene, *area, sample, per_area_light, Rng(seed, Stage::beams, i),
                               samples);

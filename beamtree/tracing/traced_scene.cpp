@@ -83,11 +83,10 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity) {
     for (const Light& light : scene.lights())
-        if (std::holds_alternative<ConstantLight>(light))
+        if (!is_black(background_of(light)))
             throw UnsupportedScene(
-                method +
-                ": beams start from points or directions, and a constant light shines from "
-                "everywhere (photonmap and the references take it)");
+                method + ": beams start from points or directions, and a " + type_of(light) +
+                " light shines from everywhere (photonmap and the references take it)");
     options.phase("beams");
     TracedScene traced;
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);

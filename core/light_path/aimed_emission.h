@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/light_path/aimed_source.h"
 #include "core/light_path/emission_samples.h"
 #include "core/light_path/light_path.h"
 #include "core/math/rng.h"
@@ -36,25 +35,14 @@ public:
     bool empty() const { return sources_.empty(); }
 
 private:
-    /// What a point of the square is mapped to.
-    struct Aim {
-        std::uint32_t source;
-        std::uint32_t cone;  ///< or disc: the region's number among those of all sources
-        Vec2 disc;
-        Vec3 direction;  ///< where the region is a cone
-    };
-    Frame across(const AimedSource& source, Rng& rng) const;
     std::uint32_t choose(double& x, std::uint32_t& cone) const;
-    std::optional<LightParticle> send(const Aim& aim, Rng& rng) const;
-    std::optional<Ray> send_through(const AimedSource&, const AimedDisc&, const Frame& across,
-                                    const Vec2& at, Rng&) const;
-    static std::optional<Ray> send_from_point(const PointLight& light, const Vec3& direction,
-                                              Rng& rng);
-    std::optional<Ray> send_from_area(const AimedSource&, const Vec3& direction, Rng&) const;
+    /// `cone` is a region's number among those of all sources.
+    std::optional<LightParticle> send(std::uint32_t source, std::uint32_t cone, AimedSample sample,
+                                      Rng& rng) const;
 
     const Scene& scene_;
     const EmissionKernels& kernels_;
-    std::vector<AimedSource> sources_;
+    std::vector<AimedSource> sources_;       ///< those that send any power towards the casters
     std::vector<double> cumulative_;         ///< of the sources' shares
     std::vector<Spectrum> flux_;             ///< of each source's particles
     std::vector<EmissionCone> cones_;        ///< of all sources' regions; those of discs are empty

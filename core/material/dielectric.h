@@ -2,6 +2,9 @@
 
 #include "core/material/ior.h"
 #include "core/math/spectrum.h"
+#include "core/math/value_hash.h"
+#include "core/scene_file/key_texts.h"
+#include "core/scene_file/values.h"
 
 namespace caustics {
 
@@ -19,6 +22,11 @@ struct Dielectric {
     /// Index of refraction behind the interface over that before it, for light that comes to its front or
     /// back, at a wavelength [nm]; 0: as Ior::at.
     float relative_ior(bool front, float nm) const;
+
+    /// What is asked of every model of a surface; see bsdf.h.
+    static ObjectText text();
+    static Dielectric read(const JsonNode& node, scene_file::Assets& assets);
+    void add_to(ValueHash& hash) const;
 };
 
 }  // namespace caustics

@@ -3,16 +3,40 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/material/texture_reader.h"
 #include "core/math/frame.h"
 #include "core/math/sampling.h"
 
 namespace caustics {
+
+using namespace scene_file;
+
 namespace {
 
 // cos^e a; 0 beyond a right angle.
 float lobe(float exponent, const Vec3& n, const Vec3& wo, const Vec3& wi) {
     const float cosine = std::min(1.0F, 2 * n.dot(wo) * n.dot(wi) - wo.dot(wi));
     return cosine > 0 ? std::pow(cosine, exponent) : 0;
+}
+
+float brightest(const Texture& texture) {
+    if (const auto* colour = std::get_if<Spectrum>(&texture)) return colour->maxCoeff();
+    if (const auto* board = std::get_if<Checkerboard>(&texture))
+        return std::max(board->color0.maxCoeff(), board->color1.maxCoeff());
+    float most = 0;
+    for (const Spectrum& texel : std::get<Bitmap>(texture).texels)
+        most = std::max(most, texel.maxCoeff());
+    return most;
+}
+
+// Of one colour, whether the two together are at most 1 in each channel; of textures, whether their
+// brightest places are.
+bool keeps_energy(const Texture& diffuse, const Texture& specular) {
+    constexpr float most = 1 + 1e-6F;
+    const auto* d = std::get_if<Spectrum>(&diffuse);
+    const auto* s = std::get_if<Spectrum>(&specular);
+    if (d != nullptr && s != nullptr) return (*d + *s <= most).all();
+    return brightest(diffuse) + brightest(specular) <= most;
 }
 
 }  // namespace
@@ -45,5 +69,39 @@ float Phong::pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const {
     return (1 - lobe_share) * n.dot(wi) / pi +
            lobe_share * (exponent + 1) / (2 * pi) * lobe(exponent, n, wo, wi);
 }
+
+ObjectText Phong::text() {
+    return {"phong",
+            "A bsdf, in a shape: Lambert's law and Phong's lobe about the mirror direction.",
+            {type_key(),
+             texture("diffuse_reflectance", "Share of the light that is scattered evenly.", "0.5"),
+             texture("specular_reflectance",
+                     "Share that goes to the lobe; the two together at most 1.", "0.2"),
+             number("exponent", "How narrow the lobe is.", "", "30", "0 to 1000000"),
+             choice("model", "Energy is kept, or the law of 1975 as it was.", "normalised",
+                    "normalised, classic")}};
+}
+
+Phong Phong::read(const JsonNode& node, Assets& assets) {
+    Phong phong;
+    phong.diffuse_reflectance = read_texture(node, "diffuse_reflectance", 0.5, assets);
+    phong.specular_reflectance = read_texture(node, "specular_reflectance", 0.2, assets);
+    if (const auto exponent = node.find("exponent"))
+        phong.exponent = static_cast<float>(exponent->as_number_in(0, 1e6));
+    if (const auto model = node.find("model"))
+        phong.model = static_cast<Phong::Model>(model->as_choice({"normalised", "classic"}));
+    if (phong.model == Phong::Model::normalised &&
+        !keeps_energy(phong.diffuse_reflectance, phong.specular_reflectance))
+        node.fail(
+            "diffuse_reflectance and specular_reflectance together are above 1: more light would "
+            "leave than arrives (the model \"classic\" takes them)");
+    const float d = brightest(phong.diffuse_reflectance);
+    const float s = brightest(phong.specular_reflectance);
+    if (d + s > 0) phong.lobe_share = s / (d + s);
+    return phong;
+}
+
+// A photon map does not depend on how receivers scatter.
+void Phong::add_to(ValueHash&) const {}
 
 }  // namespace caustics

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/material/texture_reader.h"
 #include "core/math/frame.h"
 #include "core/math/sampling.h"
 
 namespace caustics {
+
+using namespace scene_file;
+
 namespace {
 
 // [J96 (6)] divided by v: G(v)/v = 1/(alpha - alpha v + v) has no singularity at grazing.
@@ -60,5 +64,32 @@ float Schlick::pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const {
     const float lobe_pdf = schlick_lobe(t2, alpha) * std::sqrt(t2) / pi / (4 * wo_half);
     return 0.5F * (cosine_pdf + lobe_pdf);
 }
+
+ObjectText Schlick::text() {
+    return {"schlick",
+            "A bsdf, in a shape: Schlick's glossy model.",
+            {type_key(),
+             texture("reflectance", "Factor of the model.", "0.5"),
+             {.key = "alpha",
+              .meaning = "Roughness: 1 is broad, towards 0 a mirror.",
+              .source = "[J96 (5)]",
+              .type = "number",
+              .usual = "1",
+              .choices = "0.000001 to 1"}}};
+}
+
+Schlick Schlick::read(const JsonNode& node, Assets& assets) {
+    Schlick schlick;
+    schlick.reflectance = read_texture(node, "reflectance", 0.5, assets);
+    if (const auto alpha = node.find("alpha")) {
+        schlick.alpha = static_cast<float>(alpha->as_number_in(0, 1));
+        if (schlick.alpha < 1e-6F)
+            alpha->fail("must be above 0 (at 0 the model is a mirror; use a conductor)");
+    }
+    return schlick;
+}
+
+// A photon map does not depend on how receivers scatter.
+void Schlick::add_to(ValueHash&) const {}
 
 }  // namespace caustics

@@ -3,7 +3,10 @@
 #include <optional>
 
 #include "core/material/texture.h"
+#include "core/math/value_hash.h"
 #include "core/math/vec.h"
+#include "core/scene_file/key_texts.h"
+#include "core/scene_file/values.h"
 
 namespace caustics {
 
@@ -20,6 +23,11 @@ struct Schlick {
     /// Half of the samples by the cosine, half by the half-vector lobe Z(t).
     std::optional<Vec3> sample(const Vec3& n, const Vec3& wo, const Vec3& u) const;
     float pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const;
+
+    /// What is asked of every model of a surface; see bsdf.h.
+    static ObjectText text();
+    static Schlick read(const JsonNode& node, scene_file::Assets& assets);
+    void add_to(ValueHash& hash) const;
 };
 
 }  // namespace caustics

@@ -141,12 +141,6 @@ private:
     std::vector<BoundingSphere> caster_bounds_;
 };
 
-// nullptr for a light that has area.
-const char* kind_without_area(const Light& light) {
-    if (const auto* point = std::get_if<PointLight>(&light)) return point->spot ? "spot" : "point";
-    return std::holds_alternative<DirectionalLight>(light) ? "directional" : nullptr;
-}
-
 }  // namespace
 
 const DescribedMethod<PathTraceParams>& pathtrace_method() {
@@ -172,9 +166,9 @@ const DescribedMethod<PathTraceParams>& pathtrace_method() {
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const PathTraceParams& params,
                                               const RunOptions& options) {
     for (const Light& light : scene.lights())
-        if (const char* const kind = kind_without_area(light))
+        if (!has_extent(light))
             throw UnsupportedScene(
-                std::string("pathtrace cannot serve a scene with a ") + kind +
+                "pathtrace cannot serve a scene with a " + type_of(light) +
                 " light: a path from the receiver hits it with probability zero, so its caustic "
                 "would be black; use lighttrace, or give the light area");
     return std::make_unique<PathTrace>(scene, params, options);

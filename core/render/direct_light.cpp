@@ -15,11 +15,6 @@ Spectrum scattering(const ReceiverPoint& p, const Vec3& wi) {
     return evaluate(*p.bsdf, p.uv, p.shading_normal, p.wo, wi) * p.shading_normal.dot(wi);
 }
 
-// Solid-angle density at the receiver of a point drawn uniformly by area on the light.
-float light_pdf_w(const AreaLight& light, float distance2, float cos_light) {
-    return distance2 / (cos_light * static_cast<float>(light.sampler.area()));
-}
-
 constexpr int most_crossings = 256;
 
 /// The straight way along a ray, through dielectrics.
@@ -71,35 +66,15 @@ public:
     DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows)
         : scene_(scene), p_(point), opaque_(shadows == Shadows::opaque) {}
 
-    Spectrum from(const PointLight& light) const {
-        const Vec3 towards = light.position - p_.position;
-        const float distance2 = towards.squaredNorm();
-        const Vec3 wi = towards / std::sqrt(distance2);
-        const Spectrum f = scattering(p_, wi) * light.intensity_along(-wi);
-        if (is_black(f)) return black();
-        return f * seen_of({light.position}) / distance2;
-    }
-
-    Spectrum from(const DirectionalLight& light) const {
-        const Vec3 wi = -light.direction;
-        const Spectrum f = scattering(p_, wi);
-        if (is_black(f)) return black();
-        return f * seen_along(wi) * light.irradiance;
-    }
-
-    Spectrum by_light_sample(const AreaLight& light, Rng& rng) const {
-        const float u0 = rng.next();
-        const float u1 = rng.next();
-        const auto sample = light.sampler.sample(scene_.shapes()[light.shape], u0, u1);
-        const Vec3 towards = sample.position - p_.position;
-        const float distance2 = towards.squaredNorm();
-        if (distance2 == 0) return black();
-        const Vec3 wi = towards / std::sqrt(distance2);
-        const float cos_light = -sample.normal.dot(wi);
-        const Spectrum f = scattering(p_, wi);
-        if (cos_light <= 0 || is_black(f)) return black();
-        const Spectrum seen = seen_of({sample.position, sample.normal, sample.offset});
-        return f * seen * light.radiance / (light_pdf_w(light, distance2, cos_light) + pdf(wi));
+    // Where directions chosen at random may meet the light too, both ways share its work.
+    Spectrum from(const Light& light, Rng& rng) const {
+        const auto arrival = arrival_from(light, scene_.surroundings(), p_.position, rng);
+        if (!arrival) return black();
+        const Spectrum f = scattering(p_, arrival->wi);
+        if (is_black(f) || is_black(arrival->strength)) return black();
+        const Spectrum seen = arrival->end ? seen_of(*arrival->end) : seen_along(arrival->wi);
+        const float other_way = arrival->is_delta ? 0 : pdf(arrival->wi);
+        return f * seen * arrival->strength / (arrival->divisor + other_way);
     }
 
     Spectrum by_bsdf_sample(Rng& rng) const {
@@ -119,7 +94,7 @@ public:
         const AreaLight* light = scene_.area_light(way.end->shape);
         const float cos_light = -way.end->geometric_normal.dot(*wi);
         if (light == nullptr || cos_light <= 0) return black();
-        const float light_pdf = light_pdf_w(*light, way.distance * way.distance, cos_light);
+        const float light_pdf = light->pdf_w(way.distance * way.distance, cos_light);
         return f * way.left * light->radiance / (light_pdf + pdf(*wi));
     }
 
@@ -162,19 +137,8 @@ Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rn
                          Shadows shadows) {
     const DirectLight direct(scene, point, shadows);
     Spectrum sum = black();
-    bool has_wide_light = false;
-    for (const Light& light : scene.lights()) {
-        if (const auto* at_point = std::get_if<PointLight>(&light)) {
-            sum += direct.from(*at_point);
-        } else if (const auto* directional = std::get_if<DirectionalLight>(&light)) {
-            sum += direct.from(*directional);
-        } else {
-            has_wide_light = true;
-            if (const auto* area = std::get_if<AreaLight>(&light))
-                sum += direct.by_light_sample(*area, rng);
-        }
-    }
-    if (has_wide_light) sum += direct.by_bsdf_sample(rng);
+    for (const Light& light : scene.lights()) sum += direct.from(light, rng);
+    if (std::ranges::any_of(scene.lights(), has_extent)) sum += direct.by_bsdf_sample(rng);
     return sum;
 }
 

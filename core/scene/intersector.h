@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "core/geometry/ray.h"
 #include "core/geometry/shape.h"
-#include "core/scene/ray.h"
 
 namespace caustics {
 

@@ -10,17 +10,15 @@ namespace caustics {
 
 Scene::Scene(SceneDesc desc)
     : shapes_(std::move(desc.shapes)),
+      lights_(std::move(desc.lights)),
       light_of_shape_(shapes_.size(), -1),
       ambient_(desc.ambient),
       camera_(desc.camera),
       sampling_(desc.sampling),
       origin_(desc.origin) {
-    for (const PointLight& light : desc.point_lights) lights_.emplace_back(light);
-    for (const DirectionalLight& light : desc.directional_lights) lights_.emplace_back(light);
-    if (desc.constant_light) {
-        background_ = desc.constant_light->radiance;
-        lights_.emplace_back(*desc.constant_light);
-    }
+    // The order in a file changes nothing.
+    std::ranges::stable_sort(lights_, {}, [](const Light& light) { return family_of(light); });
+    for (const Light& light : lights_) background_ += background_of(light);
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         const Shape& shape = shapes_[i];
         bounds_.extend(caustics::bounds(shape));
@@ -62,44 +60,6 @@ float Scene::diameter() const { return bounds_.diagonal().norm(); }
 bool disperses(const Scene& scene) {
     return std::ranges::any_of(scene.shapes(),
                                [](const Shape& shape) { return is_dispersive(shape.bsdf); });
-}
-
-float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direction) {
-    // Outwards by more than the rounding of the bounds, of a flat scene as well.
-    const Vec3 low = bounds.min() - Vec3::Constant(0x1p-20F * bounds.min().cwiseAbs().maxCoeff());
-    const Vec3 high = bounds.max() + Vec3::Constant(0x1p-20F * bounds.max().cwiseAbs().maxCoeff());
-    float entry = -std::numeric_limits<float>::infinity();
-    for (int axis = 0; axis < 3; ++axis) {
-        if (direction[axis] == 0) continue;
-        const float face = direction[axis] > 0 ? low[axis] : high[axis];
-        entry = std::max(entry, (face - point[axis]) / direction[axis]);
-    }
-    return entry;
-}
-
-Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction) {
-    const float side = end.geometric_normal.dot(direction) < 0 ? -end.offset : end.offset;
-    return end.position + side * end.geometric_normal;
-}
-
-Ray segment_between(const SegmentEnd& from, const SegmentEnd& to) {
-    const Vec3 towards = to.position - from.position;
-    Ray ray;
-    ray.origin = offset_origin(from, towards);
-    const Vec3 segment = offset_origin(to, -towards) - ray.origin;
-    const float distance = segment.norm();
-    // The far end is found from here, to some roundings of the distance: ending before it by more than
-    // those, the ray does not meet the surface that it goes to.
-    ray.max_distance = distance * (1 - 0x1p-19F);
-    if (distance > 0) ray.direction = segment / distance;
-    return ray;
-}
-
-Ray spawn_ray(const SegmentEnd& end, const Vec3& direction) {
-    Ray ray;
-    ray.origin = offset_origin(end, direction);
-    ray.direction = direction;
-    return ray;
 }
 
 }  // namespace caustics

@@ -6,21 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "core/geometry/segment.h"
 #include "core/geometry/shape.h"
+#include "core/lights/light.h"
 #include "core/scene/camera.h"
-#include "core/scene/light.h"
-#include "core/scene/ray.h"
 
 namespace caustics {
 
 class Intersector;
-
-/// An end of a line of sight: a free point (offset 0), or a point on a surface.
-struct SegmentEnd {
-    Vec3 position = Vec3::Zero();
-    Vec3 geometric_normal = Vec3::Zero();  ///< unit, either side
-    float offset = 0;                      ///< of that surface [m]
-};
 
 /// How the pixel's samples are placed: Mitsuba's `independent` and `stratified` (row C4), and
 /// `adaptive` (row J10), which starts with independent ones and doubles them while a pixel's standard
@@ -44,9 +37,7 @@ struct PixelSampling {
 struct SceneDesc {
     Vec3d origin = Vec3d::Zero();  ///< of the scene's frame, in the world [m]
     std::vector<Shape> shapes;
-    std::vector<PointLight> point_lights;
-    std::vector<DirectionalLight> directional_lights;
-    std::optional<ConstantLight> constant_light;
+    std::vector<Light> lights;   ///< but those of shapes
     Spectrum ambient = black();  ///< radiance of the light `ambient` [W m^-2 sr^-1]
     Camera camera;
     PixelSampling sampling;
@@ -75,6 +66,8 @@ public:
     const std::vector<Shape>& shapes() const { return shapes_; }
     const Shape& shape_at(const SurfacePoint& p) const { return shapes_[p.shape]; }
     const std::vector<Light>& lights() const { return lights_; }
+    /// What lights ask of the scene.
+    Surroundings surroundings() const { return {shapes_, casters_, bounds_}; }
     /// The area light on a shape, or nullptr.
     const AreaLight* area_light(std::uint32_t shape) const;
     /// What a ray finds that meets nothing [W m^-2 sr^-1].
@@ -106,19 +99,5 @@ private:
 
 /// Whether light of different wavelengths goes different ways at some surface.
 bool disperses(const Scene& scene);
-
-/// Signed distance along a unit direction from a point to where light from that direction begins: just
-/// outside of the bounds of all surfaces [m]. Measured along the line itself, so that a wide floor
-/// sends no light off to start where floats are coarse. A line that misses the bounds begins anywhere.
-float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direction);
-
-/// A surface point moved off its surface to the side that `direction` points to.
-Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction);
-
-/// The ray from one end to just before another; its max_distance is 0 where they are one place.
-Ray segment_between(const SegmentEnd& from, const SegmentEnd& to);
-
-/// A ray that leaves an end along a unit direction without meeting its surface again.
-Ray spawn_ray(const SegmentEnd& end, const Vec3& direction);
 
 }  // namespace caustics

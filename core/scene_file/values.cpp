@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/atomic_file.h"
-#include "core/geometry/coordinate_limit.h"
+#include "core/math/coordinate_limit.h"
 
 namespace caustics::scene_file {
 namespace {
@@ -29,38 +29,6 @@ Spectrum read_three(const JsonNode& node, double most) {
             value[c] = static_cast<float>(parts[static_cast<std::size_t>(c)].as_number_in(0, most));
     }
     return value;
-}
-
-Eigen::Affine3f read_to_uv(const JsonNode& node) {
-    const auto to_uv = node.find("to_uv");
-    return to_uv ? Eigen::Affine3f(read_transform(*to_uv).cast<float>())
-                 : Eigen::Affine3f::Identity();
-}
-
-Bitmap read_bitmap(const JsonNode& node, Assets& assets) {
-    const auto raw = node.find("raw");
-    const JsonNode name = node.at("filename");
-    const std::filesystem::path file = read_file_name(name, assets);
-    Bitmap bitmap = load_for(name, [&] { return load_bitmap(file, raw && raw->as_bool()); });
-    if (const auto filter = node.find("filter_type"))
-        bitmap.filter = static_cast<Bitmap::Filter>(filter->as_choice({"bilinear", "nearest"}));
-    if (const auto wrap = node.find("wrap_mode"))
-        bitmap.wrap = static_cast<Bitmap::Wrap>(wrap->as_choice({"repeat", "mirror", "clamp"}));
-    bitmap.to_uv = read_to_uv(node);
-    node.finish();
-    const auto bright = std::ranges::any_of(
-        bitmap.texels, [](const Spectrum& texel) { return texel.maxCoeff() > 1; });
-    if (bright) name.fail("the picture holds reflectances above 1");
-    return bitmap;
-}
-
-Checkerboard read_checkerboard(const JsonNode& node) {
-    Checkerboard board;
-    board.color0 = read_colour(node, "color0", 0.4, 1);
-    board.color1 = read_colour(node, "color1", 0.2, 1);
-    board.to_uv = read_to_uv(node);
-    node.finish();
-    return board;
 }
 
 // +z from origin to target, +y up, +x to the left (Mitsuba's look_at).
@@ -159,18 +127,6 @@ Spectrum read_colour(const JsonNode& parent, const std::string& key, double fall
     const auto node = parent.find(key);
     return node ? read_colour(*node, most)
                 : Spectrum(Spectrum::Constant(static_cast<float>(fallback)));
-}
-
-Texture read_texture(const JsonNode& parent, const std::string& key, double fallback,
-                     Assets& assets) {
-    const auto node = parent.find(key);
-    if (!node) return Spectrum(Spectrum::Constant(static_cast<float>(fallback)));
-    if (!node->is_object()) return read_colour(*node, 1);
-    const std::string type = read_type(*node, "texture", {"rgb", "bitmap", "checkerboard"},
-                                       {"spectrum", "uniform", "mesh_attribute", "volume"});
-    if (type == "bitmap") return read_bitmap(*node, assets);
-    if (type == "checkerboard") return read_checkerboard(*node);
-    return read_colour(*node, 1);
 }
 
 Transform read_transform(const JsonNode& node) {

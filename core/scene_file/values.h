@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/material/texture.h"
 #include "core/math/spectrum.h"
 #include "core/math/vec.h"
 #include "core/scene_file/json_reader.h"
@@ -26,9 +25,6 @@ void require_near(const JsonNode& node, const std::vector<Vec3d>& points);
 /// A number, [r, g, b], or {"type": "rgb", "value": number or [r, g, b]}; 0 <= value <= `most`.
 Spectrum read_colour(const JsonNode& node, double most);
 Spectrum read_colour(const JsonNode& parent, const std::string& key, double fallback, double most);
-/// A colour, or a `bitmap` or `checkerboard` texture.
-Texture read_texture(const JsonNode& parent, const std::string& key, double fallback,
-                     Assets& assets);
 /// A 4x4 row-major matrix or a list of operations, applied in their order. Never singular.
 Transform read_transform(const JsonNode& node);
 /// The file named by the string node, relative to the file the node was written in; noted.

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/scene_file/scene_keys.h"
+#include "core/scene/scene_keys.h"
 #include "experiments/plan/record_columns.h"
 #include "experiments/plan/sweep_keys.h"
 #include "experiments/run/method.h"

@@ -6,6 +6,7 @@
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
+#include "core/lights/light_text.h"
 #include "core/scene/transport_hash.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
@@ -19,39 +20,6 @@
 namespace caustics::experiments {
 
 namespace {
-
-std::string rgb(const Spectrum& s) { return fmt::format("{:.6g} {:.6g} {:.6g}", s[0], s[1], s[2]); }
-
-double degrees(float radians) { return static_cast<double>(radians) * 180 / pi_d; }
-
-struct LightLine {
-    const Scene& scene;
-    std::string operator()(const PointLight& light) const {
-        const Vec3d place = scene.origin() + light.position.cast<double>();
-        std::string line = fmt::format("  {} at ({:.6g}, {:.6g}, {:.6g}), intensity {} W/sr",
-                                       light.spot ? "spot" : "point", place.x(), place.y(),
-                                       place.z(), rgb(light.intensity));
-        if (const auto& spot = light.spot)
-            line += fmt::format(
-                " along ({:.6g}, {:.6g}, {:.6g}), whole up to {:.6g} degrees, none from {:.6g} on",
-                spot->axis.x(), spot->axis.y(), spot->axis.z(), degrees(spot->beam_width),
-                degrees(spot->cutoff));
-        return line + "\n";
-    }
-    std::string operator()(const DirectionalLight& light) const {
-        return fmt::format("  directional along ({:.6g}, {:.6g}, {:.6g}), irradiance {} W/m^2\n",
-                           light.direction.x(), light.direction.y(), light.direction.z(),
-                           rgb(light.irradiance));
-    }
-    std::string operator()(const ConstantLight& light) const {
-        return fmt::format("  constant all around, radiance {} W/(m^2 sr)\n", rgb(light.radiance));
-    }
-    std::string operator()(const AreaLight& light) const {
-        return fmt::format("  area on {}, {:.6g} m^2, radiance {} W/(m^2 sr)\n",
-                           scene.shapes()[light.shape].name, light.sampler.area(),
-                           rgb(light.radiance));
-    }
-};
 
 std::string sampling_name(const PixelSampling& sampling) {
     if (sampling.max_sample_count > 0)
@@ -77,7 +45,8 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     text += "shapes\n";
     for (const std::string& line : shape_lines(scene)) text += line;
     text += "lights\n";
-    for (const Light& light : scene.lights()) text += std::visit(LightLine{scene}, light);
+    for (const Light& light : scene.lights())
+        text += "  " + line_of(light, scene.surroundings(), scene.origin()) + "\n";
     if (!is_black(scene.ambient()))
         text += fmt::format("  ambient, radiance {} W/(m^2 sr)\n", rgb(scene.ambient()));
     const AimedEmission emission(scene);

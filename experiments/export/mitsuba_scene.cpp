@@ -31,18 +31,7 @@ public:
         xml_.open("scene", {{"version", "3.0.0"}});
         write_integrator();
         write_sensor();
-        for (const PointLight& light : scene_.point_lights) write_light(light);
-        for (const DirectionalLight& light : scene_.directional_lights) {
-            xml_.open("emitter", {{"type", "directional"}});
-            value("vector", "direction", three(light.direction));
-            value("rgb", "irradiance", three(light.irradiance));
-            xml_.close();
-        }
-        if (scene_.constant_light) {
-            xml_.open("emitter", {{"type", "constant"}});
-            value("rgb", "radiance", three(scene_.constant_light->radiance));
-            xml_.close();
-        }
+        for (const Light& light : scene_.lights) write_emitter(caustics::to_mitsuba(light));
         if (!is_black(scene_.ambient))
             refuse_export(settings_, "an ambient light",
                           "Mitsuba has none (a constant light it has)");
@@ -53,22 +42,15 @@ public:
     }
 
 private:
-    void write_light(const PointLight& light) {
-        xml_.open("emitter", {{"type", light.spot ? "spot" : "point"}});
-        if (light.spot) {
-            const Frame frame(light.spot->axis);
-            Eigen::Matrix4d to_world = Eigen::Matrix4d::Identity();
-            to_world.col(0).head<3>() = frame.s.cast<double>();
-            to_world.col(1).head<3>() = frame.t.cast<double>();
-            to_world.col(2).head<3>() = light.spot->axis.cast<double>();
-            to_world.col(3).head<3>() = light.position.cast<double>();
-            transform("to_world", to_world);
-            number("cutoff_angle", static_cast<double>(light.spot->cutoff) * 180 / pi_d);
-            number("beam_width", static_cast<double>(light.spot->beam_width) * 180 / pi_d);
-        } else {
-            value("point", "position", three(light.position));
+    void write_emitter(const MitsubaEmitter& emitter) {
+        xml_.open("emitter", {{"type", emitter.type}});
+        if (emitter.to_world) transform("to_world", *emitter.to_world);
+        for (const auto& [type, name, given] : emitter.values) {
+            if (const auto* numbers = std::get_if<Vec3>(&given))
+                value(type, name, three(*numbers));
+            else
+                number(name, std::get<double>(given));
         }
-        value("rgb", "intensity", three(light.intensity));
         xml_.close();
     }
     void value(const std::string& type, const std::string& name, const std::string& text) {
@@ -85,7 +67,8 @@ private:
     void write_integrator() {
         bool casters = false;
         for (const Shape& shape : scene_.shapes) casters = casters || is_caster(shape.bsdf);
-        const bool points = !scene_.point_lights.empty() || !scene_.directional_lights.empty();
+        const bool points =
+            std::ranges::any_of(scene_.lights, [](const Light& l) { return !has_extent(l); });
         xml_.leaf("default",
                   {{"name", "integrator"}, {"value", casters && points ? "ptracer" : "path"}});
         // Mitsuba counts segments: the specular events, the receiver and the camera. Where nothing is

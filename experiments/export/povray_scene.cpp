@@ -66,13 +66,8 @@ public:
         text_ = "#version 3.7;\n";
         write_settings();
         write_camera();
-        for (const PointLight& light : scene_.point_lights) write_light(light);
-        for (const DirectionalLight& light : scene_.directional_lights) write_light(light);
-        if (scene_.constant_light)
-            refuse_export(
-                settings_, "a constant light",
-                "POV-Ray's sky lights nothing without radiosity; take point or directional "
-                "lights");
+        for (const Light& light : scene_.lights)
+            write_light(caustics::to_povray(light, world_.surroundings()));
         for (const Shape& shape : scene_.shapes) write_shape(shape);
         out_.files = {{"scene.ini", ini()}, {"scene.pov", text_}};
         return std::move(out_);
@@ -102,14 +97,16 @@ private:
                                    "the camera");
         constexpr int rays = 4096;
         const double golden_angle = pi_d * (3 - std::sqrt(5.0));
-        for (const PointLight& light : scene_.point_lights)
-            for (int i = 0; i < rays; ++i) {
+        for (const Light& light : scene_.lights) {
+            const auto point = point_of(light);
+            for (int i = 0; i < rays && point && point->position; ++i) {
                 const double z = 1 - (2 * i + 1.0) / rays;
                 const double r = std::sqrt(1 - z * z);
                 const Vec3d direction(r * std::cos(i * golden_angle),
                                       r * std::sin(i * golden_angle), z);
-                check_from_outside({light.position, direction.cast<float>()}, "a light");
+                check_from_outside({*point->position, direction.cast<float>()}, "a light");
             }
+        }
     }
 
     void write_settings() {
@@ -141,29 +138,15 @@ private:
             three(Vec3d(extent.y() * axes.col(1))), three(Vec3d(axes.col(2))));
     }
 
-    // A surface of pigment p under light of colour c is p c cos(theta) bright, and p E / pi in
-    // truth; light fades by 2 / (1 + (d / fade_distance)^2), which is the inverse square for a
-    // fade_distance that is nothing beside d.
-    void write_light(const PointLight& light) {
-        if (light.spot)
-            refuse_export(settings_, "a spot light",
-                          "POV-Ray's falls off by another curve (a point light can be written)");
-        const double fade = 1e-5 * static_cast<double>(world_.diameter());
-        const SpectrumSum colour = light.intensity.cast<double>() / (2 * pi_d * fade * fade);
-        text_ += fmt::format(
-            "light_source {{\n  {}, rgb {}\n  fade_distance {}\n  fade_power 2\n"
-            "  photons {{ reflection on refraction on }}\n}}\n",
-            three(light.position), three(colour), fade);
-    }
-
-    void write_light(const DirectionalLight& light) {
-        const Vec3 centre = world_.bounds().center();
-        const Vec3 from = centre - 2 * world_.diameter() * light.direction;
-        const SpectrumSum colour = light.irradiance.cast<double>() / pi_d;
-        text_ += fmt::format(
-            "light_source {{\n  {}, rgb {}\n  parallel\n  point_at {}\n"
-            "  photons {{ reflection on refraction on }}\n}}\n",
-            three(from), three(colour), three(centre));
+    void write_light(const PovrayLight& light) {
+        if (!light.refused.empty()) refuse_export(settings_, light.name, light.refused);
+        text_ +=
+            fmt::format("light_source {{\n  {}, rgb {}\n", three(light.from), three(light.colour));
+        if (light.fade_distance)
+            text_ += fmt::format("  fade_distance {}\n  fade_power 2\n", *light.fade_distance);
+        if (light.point_at)
+            text_ += fmt::format("  parallel\n  point_at {}\n", three(*light.point_at));
+        text_ += "  photons { reflection on refraction on }\n}\n";
     }
 
     void write_shape(const Shape& shape) {

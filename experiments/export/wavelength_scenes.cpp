@@ -12,9 +12,7 @@ namespace {
 
 /// The scene in the light of one bin, whose glass has one index.
 SceneDesc in_light_of(const WavelengthBin& bin, SceneDesc scene) {
-    for (PointLight& light : scene.point_lights) light.intensity *= bin.weight;
-    for (DirectionalLight& light : scene.directional_lights) light.irradiance *= bin.weight;
-    if (scene.constant_light) scene.constant_light->radiance *= bin.weight;
+    for (Light& light : scene.lights) scale(light, bin.weight);
     for (Shape& shape : scene.shapes) {
         if (shape.radiance) *shape.radiance *= bin.weight;
         if (!is_dispersive(shape.bsdf)) continue;

@@ -70,7 +70,7 @@ GalleryScene schlick_floor() {
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 4, true, bsdf),
                        square("mirror", 2, 1.5, false, mirror())};
-        desc.point_lights = {point_light({0, 0, 1}, intensity)};
+        desc.lights = {point_light({0, 0, 1}, intensity)};
         return desc;
     };
     int i = 0;
@@ -102,7 +102,7 @@ GalleryScene nearest_photons() {
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 4, true, grey()),
                        rectangle("mirror", {0, 1, 1.5}, {1.5, 0, 0}, {0, 0, 1.5}, mirror())};
-        desc.directional_lights = {directional_light({0, 1, -1}, irradiance)};
+        desc.lights = {directional_light({0, 1, -1}, irradiance)};
         return desc;
     };
     for (const Vec2d& p : spread(400, {0, -0.5}, 1.2))

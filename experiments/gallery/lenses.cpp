@@ -39,7 +39,7 @@ GalleryScene slab() {
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 5, true, grey()), square("top", 1.5, 3, true, glass(n)),
                        square("bottom", 1, 3, false, glass(n))};
-        desc.point_lights = {point_light({0, 0, 3}, intensity)};
+        desc.lights = {point_light({0, 0, 3}, intensity)};
         return desc;
     };
     const auto land = [](double u) -> std::optional<Landing> {
@@ -71,7 +71,7 @@ GalleryScene sine_water() {
         water.bsdf = glass(n);
         SceneDesc desc;
         desc.shapes = {square("floor", -depth, 3, true, grey()), water};
-        desc.directional_lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
+        desc.lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
         return desc;
     };
     const auto land = [](double x) -> std::optional<Landing> {
@@ -112,7 +112,7 @@ GalleryScene ball(const std::string& name, const std::string& answer, const Ball
         sphere.bsdf = {inside, false};
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 2, true, grey()), sphere};
-        desc.point_lights = {point_light({0, 0, light_z}, intensity)};
+        desc.lights = {point_light({0, 0, light_z}, intensity)};
         return desc;
     };
     const auto land = [ball](double u) -> std::optional<Landing> {
@@ -167,7 +167,7 @@ GalleryScene plano_convex_lens() {
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 2, true, grey()),
                        mesh("lens", joined(turned(cap, bands), turned(disk, bands)), glass(n))};
-        desc.directional_lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
+        desc.lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
         return desc;
     };
     const auto land = [centre](double rho) -> std::optional<Landing> {
@@ -202,7 +202,7 @@ GalleryScene prism() {
                            {0, 2, 5}, {0, 5, 3}, {0, 1, 2}, {3, 5, 4}};
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 3, true, grey()), mesh("wedge", wedge, glass(n))};
-        desc.directional_lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
+        desc.lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
         return desc;
     };
     const Vec2d top = Vec2d(-rise, 2 * half).normalized();
@@ -236,7 +236,7 @@ GalleryScene still_water(const std::string& name, const std::string& answer, dou
         SceneDesc desc;
         desc.shapes = {square("floor", -1, 5, true, grey()),
                        square("water", 0, 3, true, glass(n, sigma))};
-        desc.point_lights = {point_light({0, 0, 2}, intensity)};
+        desc.lights = {point_light({0, 0, 2}, intensity)};
         return desc;
     };
     const auto land = [sigma](double u) -> std::optional<Landing> {

@@ -17,7 +17,7 @@ GalleryScene plane_mirror() {
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 4, true, grey()),
                        square("mirror", 2, 1.5, false, mirror())};
-        desc.point_lights = {point_light({0, 0, 1}, intensity)};
+        desc.lights = {point_light({0, 0, 1}, intensity)};
         return desc;
     };
     for (const Vec2d& p : spread(asked, {0, 0}, 1.5))
@@ -51,7 +51,7 @@ GalleryScene parabolic_mirror() {
         SceneDesc desc;
         desc.shapes = {disk_facing_down("screen", h, 0.5, grey()),
                        mesh("mirror", turned(profile, n), mirror())};
-        desc.directional_lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
+        desc.lights = {directional_light(-Vec3d::UnitZ(), irradiance)};
         return desc;
     };
     const Meridian light{
@@ -79,7 +79,7 @@ GalleryScene elliptic_mirror() {
         SceneDesc desc;
         desc.shapes = {square("screen", h, 3, false, grey()),
                        mesh("mirror", turned(profile, n), mirror())};
-        desc.point_lights = {point_light({0, 0, -c}, intensity)};
+        desc.lights = {point_light({0, 0, -c}, intensity)};
         return desc;
     };
     const auto land = [](double u) {
@@ -113,7 +113,7 @@ GalleryScene circular_mirror() {
         ring.bsdf = mirror();
         SceneDesc desc;
         desc.shapes = {square("floor", 0, 2, true, grey()), ring};
-        desc.directional_lights = {
+        desc.lights = {
             directional_light({std::cos(elevation), 0, -std::sin(elevation)}, irradiance)};
         return desc;
     };

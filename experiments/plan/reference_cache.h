@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/render/film.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "experiments/plan/reference_request.h"
 
 namespace caustics::experiments {

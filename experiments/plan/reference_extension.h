@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/render/film.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "experiments/run/render_and_score.h"
 
 namespace caustics::experiments {

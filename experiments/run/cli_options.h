@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/atomic_file.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "experiments/run/method.h"
 
 namespace caustics::experiments {

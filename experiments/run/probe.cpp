@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/geometry/coordinate_limit.h"
+#include "core/math/coordinate_limit.h"
 #include "experiments/run/notes.h"
 
 namespace caustics::experiments {

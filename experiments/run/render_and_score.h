@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/render/renderer.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "experiments/base/stopwatch.h"
 #include "experiments/run/method.h"
 

@@ -23,22 +23,12 @@ struct OneLight {
 
 std::vector<OneLight> one_by_one(const SceneDesc& scene) {
     SceneDesc dark = scene;
-    dark.point_lights.clear();
-    dark.directional_lights.clear();
-    dark.constant_light.reset();
+    dark.lights.clear();
     for (Shape& shape : dark.shapes) shape.radiance.reset();
     std::vector<OneLight> lights;
-    for (const PointLight& light : scene.point_lights) {
-        lights.push_back({fmt::format("point light {}", lights.size() + 1), dark});
-        lights.back().scene.point_lights = {light};
-    }
-    for (const DirectionalLight& light : scene.directional_lights) {
-        lights.push_back({fmt::format("directional light {}", lights.size() + 1), dark});
-        lights.back().scene.directional_lights = {light};
-    }
-    if (scene.constant_light) {
-        lights.push_back({"constant light", dark});
-        lights.back().scene.constant_light = scene.constant_light;
+    for (const Light& light : scene.lights) {
+        lights.push_back({fmt::format("{} light {}", type_of(light), lights.size() + 1), dark});
+        lights.back().scene.lights = {light};
     }
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
         if (!scene.shapes[i].radiance) continue;

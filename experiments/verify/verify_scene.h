@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 
 namespace caustics::experiments {
 

@@ -10,7 +10,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
-#include "core/geometry/coordinate_limit.h"
+#include "core/math/coordinate_limit.h"
 
 namespace caustics::photonmap {
 

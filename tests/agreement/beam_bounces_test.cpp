@@ -28,7 +28,7 @@ SceneDesc over_a_floor(std::vector<Shape> casters, const Vec3d& lamp, float inte
     SceneDesc desc;
     desc.shapes = {floor_of(4)};
     for (Shape& caster : casters) desc.shapes.push_back(std::move(caster));
-    desc.point_lights = {support::point_light(lamp, intensity)};
+    desc.lights = {support::point_light(lamp, intensity)};
     return desc;
 }
 
@@ -225,7 +225,7 @@ TEST(BeamBounces, AddUpToTheSeriesOfASlab) {
     SceneDesc desc;
     desc.shapes = {floor_of(4), support::horizontal("top", 1, 2, true, bsdf),
                    support::horizontal("bottom", 0.9, 2, false, bsdf)};
-    desc.directional_lights = {support::directional_light({0.5, 0, -std::sqrt(0.75)}, 1)};
+    desc.lights = {support::directional_light({0.5, 0, -std::sqrt(0.75)}, 1)};
     const Scene scene(std::move(desc));
     beamtree::BeamTreeParams params = swept();
     params.mesh_resolution = 8;

@@ -38,7 +38,7 @@ SceneDesc pool(int resolution) {
         support::mesh("water", tessellate_heightfield(water(), resolution), Transform::Identity(),
                       support::glass(static_cast<float>(ior))),
         support::horizontal("floor", -floor_depth, floor_half, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light(light, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(light, static_cast<float>(intensity))};
     return desc;
 }
 

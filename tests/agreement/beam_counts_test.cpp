@@ -2,7 +2,7 @@
 
 #include "beamtree/beam_tree.h"
 #include "core/render/renderer.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 
 namespace caustics {
 namespace {

@@ -71,7 +71,7 @@ Scene mirror_scene(const Bsdf& bsdf, bool mesh) {
     if (mesh) mirror = support::mesh("mirror", tessellate_rectangle(128), mirror.to_world, bsdf);
     desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)), mirror,
                    support::sphere("ball", {0.2, -0.4, 0.5}, 0.3, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light(light_position, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(light_position, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 
@@ -207,7 +207,7 @@ TEST(BeamFlatPool, IsTheClosedForm) {
         water.bsdf = support::glass(static_cast<float>(ior), 1, Spectrum::Constant(absorption));
         desc.shapes = {support::horizontal("floor", -depth, 12, true, support::diffuse(0.5F)),
                        water};
-        desc.point_lights = {support::point_light({0, 0, height}, 10)};
+        desc.lights = {support::point_light({0, 0, height}, 10)};
         const Scene scene(std::move(desc));
         for (beamtree::BeamTreeParams params : all_params()) {
             params.mesh_resolution = 192;
@@ -228,7 +228,7 @@ TEST(BeamFlat, LampOnTheFloor) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
                    support::horizontal("mirror", above, 1.5, false, support::mirror())};
-    desc.point_lights = {support::point_light(lamp, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(lamp, static_cast<float>(intensity))};
     const Scene scene(std::move(desc));
     beamtree::BeamTreeParams params;
     params.mesh_resolution = 128;

@@ -20,7 +20,7 @@ Scene standing_mirror(int resolution) {
     const Shape wall = support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, bsdf);
     desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)),
                    support::mesh("mirror", tessellate_rectangle(resolution), wall.to_world, bsdf)};
-    desc.point_lights = {support::point_light({image.x(), 2 - image.y(), image.z()}, 1)};
+    desc.lights = {support::point_light({image.x(), 2 - image.y(), image.z()}, 1)};
     return Scene(std::move(desc));
 }
 

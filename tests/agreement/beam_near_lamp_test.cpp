@@ -48,8 +48,7 @@ Scene pool(double light, bool mesh) {
     if (mesh) water = support::mesh("water", tessellate_rectangle(64), water.to_world, water.bsdf);
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", -depth, 5, true, support::diffuse(0.5F)), water};
-    desc.point_lights = {
-        support::point_light({lamp_x, lamp_y, light}, static_cast<float>(intensity))};
+    desc.lights = {support::point_light({lamp_x, lamp_y, light}, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 
@@ -79,7 +78,7 @@ TEST(NearLamp, ShinesFromALargeMirrorAsItDoesFromAfar) {
             SceneDesc desc;
             desc.shapes = {support::horizontal("floor", 0, 5, true, support::diffuse(0.5F)),
                            support::horizontal("mirror", 2, half, false, support::mirror())};
-            desc.point_lights = {support::point_light({lamp_x, lamp_y, 2 - light}, 10)};
+            desc.lights = {support::point_light({lamp_x, lamp_y, 2 - light}, 10)};
             const Scene scene(std::move(desc));
             const auto tree = build(scene, beamtree::BeamTreeParams{}, {});
             const Ratio found = ratio(scene, *tree, 0, [&](double r) {

@@ -31,7 +31,7 @@ SceneDesc pool(int resolution) {
     desc.shapes = {support::mesh("water", tessellate_heightfield(field, resolution),
                                  Transform::Identity(), support::glass(1.333F))};
     add_floor_and_walls(desc, support::schlick(0.6F, 0.4F));
-    desc.point_lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
+    desc.lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
     desc.camera = support::camera({0, -0.8, -0.15}, {0, 0.2, -0.9}, {0, 0, 1}, 75, 40, 40);
     return desc;
 }
@@ -43,7 +43,7 @@ SceneDesc ring(int resolution) {
                       Transform(Eigen::Translation3d(0, 0, 0.01) * Eigen::Scaling(0.5, 0.5, 0.25)),
                       support::mirror()),
         support::horizontal("floor", 0, 1.2, true, support::schlick(0.7F, 0.3F))};
-    desc.point_lights = {support::point_light({0, 0.49, 0.4}, 1)};
+    desc.lights = {support::point_light({0, 0.49, 0.4}, 1)};
     desc.camera = support::camera({0, -1.1, 1.5}, {0, 0, 0}, {0, 0, 1}, 36, 40, 40);
     return desc;
 }
@@ -186,7 +186,7 @@ TEST(BeamPhotons, AgreeRoundABall) {
                                  Transform(Eigen::Translation3d(0, 0, 0.6) * Eigen::Scaling(0.5)),
                                  support::mirror()),
                    support::horizontal("floor", 0, 4, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
+    desc.lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
     expect_same_flux(Scene(desc), 1, 2);
 }
 

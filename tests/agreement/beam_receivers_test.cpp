@@ -26,7 +26,7 @@ Scene with_receiver(Shape receiver) {
         support::mesh("mirror", tessellate_rectangle(96), mirror.to_world, support::mirror()),
         std::move(receiver)};
     for (const Lamp& lamp : lamps)
-        desc.point_lights.push_back(support::point_light(lamp.place, lamp.intensity));
+        desc.lights.push_back(support::point_light(lamp.place, lamp.intensity));
     return Scene(std::move(desc));
 }
 

@@ -149,7 +149,7 @@ TEST(BeamRefined, TakesCutPolygons) {
     SceneDesc desc;
     const Transform size(Eigen::Scaling(3.0, 3.0, 1.0));
     desc.shapes = {support::mesh("water", tessellate_rectangle(32), size, support::glass(1.333F))};
-    desc.point_lights = {support::point_light({0.02, 0.03, -1}, 1)};
+    desc.lights = {support::point_light({0.02, 0.03, -1}, 1)};
     const Scene scene(std::move(desc));
     const auto sets = beamtree::trace_all_beams(scene, beamtree::caster_meshes(scene, 2),
                                                 beamtree::sample_lights(scene, 1, 1),

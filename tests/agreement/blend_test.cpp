@@ -35,7 +35,7 @@ Scene room() {
                    support::horizontal("floor", 0, 4, true, blend()),
                    support::rectangle("wall", {3, 0, 1}, Vec3d(0, -4, 0), Vec3d(0, 0, 1),
                                       support::mirror(static_cast<float>(wall)))};
-    desc.point_lights = {support::point_light({0, 0, 1}, static_cast<float>(intensity))};
+    desc.lights = {support::point_light({0, 0, 1}, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 
@@ -140,7 +140,7 @@ TEST(Blend, InASphereItIsAGeometricSeries) {
     for (const int max_bounces : {1, 2, 5, 64}) {
         SceneDesc desc;
         desc.shapes = {support::enclosure(radius, blend())};
-        desc.point_lights = {support::point_light({0, 0, 0}, static_cast<float>(intensity))};
+        desc.lights = {support::point_light({0, 0, 0}, static_cast<float>(intensity))};
         const Scene scene(std::move(desc));
         const auto method = build(
             scene, LightTraceParams{.paths = 300'000, .max_bounces = max_bounces}, RunOptions{});

@@ -8,7 +8,7 @@
 
 #include "core/reference/light_trace.h"
 #include "core/render/renderer.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "photonmap/photon_map.h"
 
 namespace caustics {

@@ -32,8 +32,7 @@ Corner corner() {
         support::horizontal("water", 2, 4, true, support::glass(static_cast<float>(index))),
         support::rectangle("floor", {2, 0, 0}, {2, 0, 0}, {0, 2, 0}, support::diffuse(0.5F)),
         support::rectangle("wall", {0, 0, 1}, {0, 2, 0}, {0, 0, 1}, support::diffuse(0.5F))};
-    corner.desc.directional_lights = {
-        support::directional_light({-std::sin(angle), 0, -std::cos(angle)}, 1)};
+    corner.desc.lights = {support::directional_light({-std::sin(angle), 0, -std::cos(angle)}, 1)};
     corner.floor = std::cos(angle) * (1 - support::fresnel(std::cos(angle), index));
     corner.wall = corner.floor * std::tan(in_water);
     return corner;
@@ -104,7 +103,7 @@ TEST(Corner, ABallLosesNoPhotons) {
     desc.shapes = {
         support::horizontal("water", 3, 2, true, support::glass(static_cast<float>(index))),
         support::sphere("ball", Vec3d::Zero(), 1, support::diffuse(0.5F))};
-    desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+    desc.lights = {support::directional_light({0, 0, -1}, 1)};
     const Scene scene(desc);
     for (const double r : {0.2, 0.5, 0.9}) {
         const auto map =

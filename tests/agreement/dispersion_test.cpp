@@ -47,8 +47,8 @@ SceneDesc block(const Ior& inside) {
 
 Scene lit_from_far(const Ior& inside) {
     SceneDesc desc = block(inside);
-    desc.directional_lights = {support::directional_light(
-        {std::sin(incidence), 0, -std::cos(incidence)}, static_cast<float>(power))};
+    desc.lights = {support::directional_light({std::sin(incidence), 0, -std::cos(incidence)},
+                                              static_cast<float>(power))};
     return Scene(std::move(desc));
 }
 
@@ -256,8 +256,7 @@ TEST(Dispersion, StillWaterIsTheClosedFormOverItsWavelengths) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", -pool::depth, 12, true, support::diffuse(0.5F)),
                    support::horizontal("water", 0, 6, true, glass_of(heavy))};
-    desc.point_lights = {
-        support::point_light({0, 0, pool::height}, static_cast<float>(pool::intensity))};
+    desc.lights = {support::point_light({0, 0, pool::height}, static_cast<float>(pool::intensity))};
     beamtree::BeamTreeParams beams;
     beams.mesh_resolution = 32;
     beams.intensity = beamtree::Intensity::refined;
@@ -291,7 +290,7 @@ TEST(Dispersion, ABallLensIsTheClosedFormOverItsWavelengths) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)),
                    support::sphere("ball", {0, 0, ball_height}, ball_radius, glass_of(heavy))};
-    desc.point_lights = {support::point_light({0, 0, lamp_height}, static_cast<float>(power))};
+    desc.lights = {support::point_light({0, 0, lamp_height}, static_cast<float>(power))};
     beamtree::BeamTreeParams beams;
     beams.mesh_resolution = 96;
     beams.max_bounces = 2;
@@ -405,7 +404,7 @@ TEST(Dispersion, ASlabColoursNothingButItsRim) {
     desc.shapes = {support::horizontal("floor", -0.5, 3, true, support::diffuse(0.5F)),
                    support::horizontal("top", 0.2, 0.4, true, glass_of(heavy)),
                    support::horizontal("bottom", 0, 0.4, false, glass_of(heavy))};
-    desc.directional_lights = {support::directional_light({0.5, 0, -1}, 10)};
+    desc.lights = {support::directional_light({0.5, 0, -1}, 10)};
     const Scene scene(std::move(desc));
     beamtree::BeamTreeParams params;
     params.mesh_resolution = 2;

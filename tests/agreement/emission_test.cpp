@@ -67,13 +67,13 @@ void expect_aim_changes_nothing(const Scene& scene) {
 
 TEST(AimedEmission, OfAPointLight) {
     SceneDesc desc = crowded();
-    desc.point_lights = {support::point_light({0.1, 0.2, 3.5}, 5)};
+    desc.lights = {support::point_light({0.1, 0.2, 3.5}, 5)};
     expect_aim_changes_nothing(Scene(std::move(desc)));
 }
 
 TEST(AimedEmission, OfADirectionalLight) {
     SceneDesc desc = crowded();
-    desc.directional_lights = {support::directional_light({-0.3, 0.1, -1}, 2)};
+    desc.lights = {support::directional_light({-0.3, 0.1, -1}, 2)};
     expect_aim_changes_nothing(Scene(std::move(desc)));
 }
 
@@ -92,8 +92,8 @@ TEST(AimedEmission, OfASphereLight) {
 
 TEST(AimedEmission, LightsAddUpAndPhotonsAreEqual) {
     SceneDesc desc = crowded();
-    desc.point_lights = {support::point_light({0.1, 0.2, 3.5}, 5)};
-    desc.directional_lights = {support::directional_light({-0.3, 0.1, -1}, 2)};
+    desc.lights = {support::point_light({0.1, 0.2, 3.5}, 5),
+                   support::directional_light({-0.3, 0.1, -1}, 2)};
     shine(desc.shapes.back(), 6);
     const Scene scene(std::move(desc));
     const AimedEmission emission(scene);
@@ -133,7 +133,7 @@ TEST(AimedEmission, MirrorsThatHideEachOtherShareTheirSolidAngle) {
         support::enclosure(10, support::diffuse(0.5F)),
         support::rectangle("front", {0, 0, -1}, {0.4, 0, 0}, {0, 0.3, 0}, support::mirror()),
         support::rectangle("back", {0, 0, -1.5}, {1.2, 0, 0}, {0, 0.9, 0}, support::mirror())};
-    desc.point_lights = {support::point_light(Vec3d::Zero(), 1)};
+    desc.lights = {support::point_light(Vec3d::Zero(), 1)};
     const Scene scene(std::move(desc));
     const AimedEmission emission(scene);
     const auto flux = support::flux_by_shape(scene, support::aimed(emission), 500'000, 6, 1000);
@@ -153,7 +153,7 @@ TEST(AimedEmission, AtSmallBallsFarAway) {
         SceneDesc desc;
         desc.shapes = {support::enclosure(2 * d, support::diffuse(0.5F)),
                        support::sphere("ball", Vec3d::Zero(), sine * d, support::mirror())};
-        desc.point_lights = {support::point_light({d * 0.48, d * 0.6, d * 0.64}, 1)};
+        desc.lights = {support::point_light({d * 0.48, d * 0.6, d * 0.64}, 1)};
         const Scene scene(std::move(desc));
         const AimedEmission emission(scene);
         const auto flux = support::flux_by_shape(scene, support::aimed(emission), 20'000, 7);

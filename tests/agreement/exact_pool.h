@@ -38,9 +38,8 @@ inline SceneDesc pool(Shape surface, Lamp lamp) {
     SceneDesc desc;
     desc.shapes = {std::move(surface),
                    support::horizontal("floor", -floor_depth, 3.2, true, support::diffuse(0.5F))};
-    if (lamp == Lamp::point) desc.point_lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
-    if (lamp == Lamp::directional)
-        desc.directional_lights = {support::directional_light({0.3, -0.2, -1}, 2)};
+    if (lamp == Lamp::point) desc.lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
+    if (lamp == Lamp::directional) desc.lights = {support::directional_light({0.3, -0.2, -1}, 2)};
     if (lamp == Lamp::area) {
         desc.shapes.push_back(support::horizontal("lamp", 2.5, 0.3, false, support::diffuse(0)));
         desc.shapes.back().radiance = Spectrum(Spectrum::Constant(20));

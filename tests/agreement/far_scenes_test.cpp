@@ -6,7 +6,7 @@
 
 #include "beamtree/beam_tree.h"
 #include "core/reference/light_trace.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/temporary_folder.h"
@@ -128,7 +128,7 @@ SceneDesc ball_at(double distance) {
     desc.shapes = {support::sphere("ball", {distance, 0, 0}, 1, support::glass(1.5F)),
                    support::rectangle("floor", {distance, 0, -1.5}, {4, 0, 0}, {0, 4, 0},
                                       support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({distance, 0, 4}, 1)};
+    desc.lights = {support::point_light({distance, 0, 4}, 1)};
     return desc;
 }
 

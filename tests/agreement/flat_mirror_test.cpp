@@ -61,7 +61,7 @@ SceneDesc mirror_scene(const Bsdf& mirror_bsdf) {
 
 Scene with_point_light(const Bsdf& mirror_bsdf) {
     SceneDesc desc = mirror_scene(mirror_bsdf);
-    desc.point_lights = {support::point_light(light_position, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(light_position, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 

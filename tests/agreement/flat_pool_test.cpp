@@ -23,7 +23,7 @@ Scene pool(Shape water) {
     water.bsdf = support::glass(static_cast<float>(index));
     desc.shapes = {support::horizontal("floor", -depth, 12, true, support::diffuse(0.5F)),
                    std::move(water)};
-    desc.point_lights = {support::point_light({0, 0, height}, static_cast<float>(intensity))};
+    desc.lights = {support::point_light({0, 0, height}, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 

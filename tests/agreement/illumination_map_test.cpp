@@ -27,7 +27,7 @@ SceneDesc daylight_scene(const Bsdf& plate) {
     desc.shapes.push_back(
         support::rectangle("mirror", {-1, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, support::mirror()));
     desc.shapes.push_back(support::horizontal("plate", 1, plate_half, false, plate));
-    desc.directional_lights.push_back(support::directional_light({1, 0, -1}, daylight));
+    desc.lights.push_back(support::directional_light({1, 0, -1}, daylight));
     return desc;
 }
 
@@ -70,7 +70,7 @@ TEST(IlluminationMap, FollowsAMirroredPointLight) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("mirror", 0, 0.15, true, support::mirror()),
                    support::horizontal("plate", 1, half, false, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0, 0.5}, static_cast<float>(intensity))};
+    desc.lights = {support::point_light({0, 0, 0.5}, static_cast<float>(intensity))};
     const Scene scene(std::move(desc));
     const auto map = map_of(scene, {.emitted = 300'000, .resolution = 16});
     support::Moments middle, outside;
@@ -125,7 +125,7 @@ TEST(IlluminationMap, ShowsTheFluxThatArrives) {
         receiver.flip_normals = &receiver != &receivers[2];
         SceneDesc desc;
         desc.shapes = {support::sphere("ball", {0, 0, 0}, 0.5, support::mirror()), receiver};
-        desc.point_lights.push_back(support::point_light({1, 0.5, -0.7}, 5));
+        desc.lights.push_back(support::point_light({1, 0.5, -0.7}, 5));
         const Scene scene(std::move(desc));
         const auto map = map_of(scene, {.emitted = 20'000, .resolution = 12});
         // Every particle has the same flux, and a perfect mirror keeps it.
@@ -142,7 +142,7 @@ SceneDesc glass_ball() {
     SceneDesc desc;
     desc.shapes.push_back(support::sphere("ball", {0, 0, 0.6}, 0.5, support::glass(1.5F)));
     desc.shapes.push_back(support::horizontal("floor", 0, 1.5, true, support::diffuse(0.5F)));
-    desc.point_lights.push_back(support::point_light({-0.5, -0.4, 3}, 5));
+    desc.lights.push_back(support::point_light({-0.5, -0.4, 3}, 5));
     desc.camera = support::camera({1.5, -2, 1.5}, {0.2, 0.2, 0}, {0, 0, 1}, 40, 24, 18);
     return desc;
 }

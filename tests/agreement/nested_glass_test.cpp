@@ -103,7 +103,7 @@ Scene scene(std::vector<Shape> glass) {
     desc.shapes = std::move(glass);
     desc.shapes.insert(desc.shapes.begin(),
                        support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)));
-    desc.point_lights = {support::point_light({0, 0, light_z}, static_cast<float>(intensity))};
+    desc.lights = {support::point_light({0, 0, light_z}, static_cast<float>(intensity))};
     return Scene(std::move(desc));
 }
 

@@ -19,7 +19,7 @@ struct Case {
 
 void add_light(SceneDesc& desc, const Vec3d& position, bool area) {
     if (!area) {
-        desc.point_lights = {support::point_light(position, 10)};
+        desc.lights = {support::point_light(position, 10)};
         return;
     }
     Shape light = support::horizontal("light", 0, 0.15, false, support::diffuse(0));

@@ -39,7 +39,7 @@ struct SpotScene {
             desc.shapes.back().to_world = Eigen::Translation3d(light) * desc.shapes.back().to_world;
             desc.shapes.back().radiance = Spectrum(Spectrum::Constant(100));
         } else {
-            desc.point_lights = {support::point_light(light, 100)};
+            desc.lights = {support::point_light(light, 100)};
         }
         desc.camera = support::camera({-1, -5, 4}, {-0.5, 1.5, 0}, {0, 0, 1}, 40, width, height);
     }

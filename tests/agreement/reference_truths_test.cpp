@@ -75,8 +75,8 @@ void expect_is(const Film& found, const std::function<double(double)>& irradianc
 
 TEST(ReferenceTruths, LightTraceUnderAPool) {
     SceneDesc desc = pool(0.8);
-    desc.point_lights = {support::point_light({0, 0, support::flat_pool::height},
-                                              static_cast<float>(support::flat_pool::intensity))};
+    desc.lights = {support::point_light({0, 0, support::flat_pool::height},
+                                        static_cast<float>(support::flat_pool::intensity))};
     expect_is(picture(std::move(desc), LightTraceParams{.paths = 1'200'000}, 1),
               [](double r) { return support::flat_pool::floor_irradiance(r); });
 }

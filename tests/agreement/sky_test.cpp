@@ -29,7 +29,7 @@ Scene under_the_sky(const Bsdf& ball) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("receiver", 0, 0.05, true, support::diffuse(0.5F)),
                    support::sphere("ball", {0, 0, height}, radius, ball)};
-    desc.constant_light = ConstantLight{Spectrum(Spectrum::Constant(static_cast<float>(radiance)))};
+    desc.lights = {ConstantLight{Spectrum(Spectrum::Constant(static_cast<float>(radiance)))}};
     return Scene(std::move(desc));
 }
 
@@ -46,7 +46,7 @@ Bsdf dispersive_glass() {
 TEST(Sky, LightsAnOpenFloorByPiTimesItsRadiance) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 5, true, support::diffuse(0.5F))};
-    desc.constant_light = ConstantLight{Spectrum(1, 2, 3)};
+    desc.lights = {ConstantLight{Spectrum(1, 2, 3)}};
     const Scene scene(std::move(desc));
     Rng rng(1, Stage::test, 0);
     const ReceiverPoint point = support::probe(scene, 0, {1, 0, 0}, Vec3d::UnitZ(), 0);
@@ -98,7 +98,7 @@ TEST(Sky, AimsAllLightThatMeetsTheCasters) {
     desc.shapes = {support::sphere("a", {0, 0, 0}, 1, support::mirror()),
                    support::sphere("b", {0.5, 0, 0}, 1, support::mirror()),
                    support::enclosure(20, support::diffuse(0))};
-    desc.constant_light = ConstantLight{};
+    desc.lights = {ConstantLight{}};
     const Scene two(std::move(desc));
     const AimedEmission emission(two);
     std::uint64_t sent = 0;
@@ -134,7 +134,7 @@ TEST(Ambient, IsALayerThatBeautyHolds) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 5, true, support::diffuse(0.25F)),
                    support::sphere("ball", {0, 0, 1}, 0.5, support::mirror())};
-    desc.point_lights = {support::point_light({0, 0, 3}, 1)};
+    desc.lights = {support::point_light({0, 0, 3}, 1)};
     desc.camera = support::camera({0, -4, 2}, {0, 0, 0.5}, {0, 0, 1}, 40, 16, 12);
     const auto picture = [&](const Spectrum& ambient) {
         SceneDesc own = desc;

@@ -85,7 +85,7 @@ TEST(Slab, FluxOnTheFloorIsThatOfTheLight) {
         const Bsdf bsdf = support::glass(1.5F);
         SceneDesc desc = stack({support::horizontal("top", 0, 2, true, bsdf),
                                 support::horizontal("bottom", -1e-3, 2, false, bsdf)});
-        desc.directional_lights = {support::directional_light(direction_at(degrees), 1)};
+        desc.lights = {support::directional_light(direction_at(degrees), 1)};
         const Scene scene(std::move(desc));
         const AimedEmission emission(scene);
         const auto flux = support::flux_by_shape(scene, support::aimed(emission), 500'000, 2);
@@ -137,7 +137,7 @@ TEST(Slab, PhotonsKeepBeersLawInWeakChannels) {
     for (const Spectrum& share :
          {Spectrum(1, 0.0025F, 0.00012F), Spectrum(0.3F, 0.001F, 0.0039F)}) {
         SceneDesc desc = single_slab(1.5F, -share.log() / static_cast<float>(thickness));
-        desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+        desc.lights = {support::directional_light({0, 0, -1}, 1)};
         const photonmap::TracedPhotons traced = photonmap::trace_scene(
             Scene(std::move(desc)), photonmap::PhotonMapParams{.photons = 200'000}, RunOptions{});
         std::array<support::Moments, 3> energy;
@@ -208,7 +208,7 @@ TEST(Ball, BeersLawAlongItsChords) {
     desc.shapes = {support::sphere("ball", Vec3d::Zero(), 1,
                                    support::glass(1.5F, 1, Spectrum::Constant(sigma))),
                    support::enclosure(10, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0, d}, 1)};
+    desc.lights = {support::point_light({0, 0, d}, 1)};
     const Scene scene(std::move(desc));
     const AimedEmission emission(scene);
     const auto flux = support::flux_by_shape(scene, support::aimed(emission), 400'000, 5);

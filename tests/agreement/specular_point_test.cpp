@@ -56,7 +56,7 @@ TEST(SpecularPoints, TellAMirrorBall) {
     SceneDesc desc;
     desc.shapes = {support::sphere("ball", {0, 0, ball_z}, radius, support::mirror()),
                    support::horizontal("ceiling", ceiling, 9, false, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0, light_z}, strength)};
+    desc.lights = {support::point_light({0, 0, light_z}, strength)};
     const Scene scene(std::move(desc));
     const auto landing = [&](double a) {
         const double distance = light_z - ball_z;
@@ -93,7 +93,7 @@ TEST(SpecularPoints, TellAMirrorRing) {
     ring.flip_normals = true;
     ring.bsdf = support::mirror(static_cast<float>(albedo));
     desc.shapes = {ring, support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0, light_z}, strength)};
+    desc.lights = {support::point_light({0, 0, light_z}, strength)};
     const Scene scene(std::move(desc));
     beamtree::BeamTreeParams params = of(beamtree::Intensity::refined, 24);
     params.max_bounces = 1;
@@ -118,7 +118,7 @@ TEST(SpecularPoints, TellStillWaterFromBelow) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("water", 0, 4, true, support::glass(1.333F)),
                    support::horizontal("ceiling", up, 9, false, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0.3, -0.2, -depth}, strength)};
+    desc.lights = {support::point_light({0.3, -0.2, -depth}, strength)};
     const Scene scene(std::move(desc));
     const auto method = build(scene, of(beamtree::Intensity::refined, 64), {});
     const auto landing = [&](double a) {

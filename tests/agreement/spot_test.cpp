@@ -25,18 +25,18 @@ double truth(double r) {
     return intensity * falloff * std::pow(std::cos(angle * pi_d / 180), 3) / (height * height);
 }
 
-PointLight spot(const Vec3d& position, const Vec3& axis) {
-    PointLight light = support::point_light(position, static_cast<float>(intensity));
-    light.spot = SpotCone{axis, static_cast<float>(beam_width * pi_d / 180),
-                          static_cast<float>(cutoff * pi_d / 180)};
-    return light;
+SpotLight spot(const Vec3d& position, const Vec3& axis) {
+    return {position.cast<float>(),
+            Spectrum(Spectrum::Constant(static_cast<float>(intensity))),
+            {axis, static_cast<float>(beam_width * pi_d / 180),
+             static_cast<float>(cutoff * pi_d / 180)}};
 }
 
 Scene scene() {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
                    support::horizontal("mirror", 1, 2, false, support::mirror())};
-    desc.point_lights = {spot({0, 0, 0.5}, Vec3::UnitZ())};
+    desc.lights = {spot({0, 0, 0.5}, Vec3::UnitZ())};
     return Scene(std::move(desc));
 }
 
@@ -68,9 +68,10 @@ TEST(Spot, ANarrowConeIsNotLostBetweenCorners) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
                    support::horizontal("mirror", 1, 2, false, support::mirror())};
-    desc.point_lights = {spot({0.03, 0.02, 0.5}, Vec3::UnitZ())};
-    desc.point_lights[0].spot->cutoff = 0.02F;
-    desc.point_lights[0].spot->beam_width = 0.01F;
+    SpotLight thin = spot({0.03, 0.02, 0.5}, Vec3::UnitZ());
+    thin.cone.cutoff = 0.02F;
+    thin.cone.beam_width = 0.01F;
+    desc.lights = {thin};
     const Scene narrow(std::move(desc));
     beamtree::BeamTreeParams params;
     params.mesh_resolution = 4;
@@ -107,7 +108,7 @@ TEST(Spot, TracedLightFollowsTheFalloff) {
 TEST(Spot, LightsAFloorDirectly) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
-    desc.point_lights = {spot({0, 0, height}, -Vec3::UnitZ())};
+    desc.lights = {spot({0, 0, height}, -Vec3::UnitZ())};
     const Scene floor(std::move(desc));
     Rng rng(1, Stage::test, 0);
     for (const double r : distances) {

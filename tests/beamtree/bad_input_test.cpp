@@ -87,13 +87,13 @@ TEST(BeamTree, InvertedWindingIsDarkAndInvertedBothIsTheInside) {
 TEST(BeamTree, TotalReflectionEverywhereIsDarkBelow) {
     SceneDesc desc = pool_desc(8);
     desc.shapes[0].bsdf = support::glass(1.0F, 3.0F);
-    desc.point_lights = {support::point_light({3, 0, 0.2}, 10)};
+    desc.lights = {support::point_light({3, 0, 0.2}, 10)};
     EXPECT_EQ(mean(on_floor(Scene(desc), 1)), 0);
 }
 
 TEST(BeamTree, NothingLitIsBlack) {
     SceneDesc desc = pool_desc(8);
-    desc.point_lights.clear();
+    desc.lights.clear();
     EXPECT_EQ(mean(on_floor(Scene(desc), 1)), 0);
     desc = pool_desc(8);
     desc.shapes.erase(desc.shapes.begin());
@@ -230,7 +230,7 @@ TEST(BeamTree, BacksOfAClosedMeshSendNothing) {
             EXPECT_TRUE(found[i].value.isApprox(truth[i].value, 1e-5F));
     }
     // A lamp inside lights the inside alone.
-    desc.point_lights = {support::point_light({0.1, 0, 0.7}, 1)};
+    desc.lights = {support::point_light({0.1, 0, 0.7}, 1)};
     EXPECT_EQ(beam_count(Scene(desc)), desc.shapes[0].mesh.triangles.size());
     BeamTreeParams one;
     one.max_bounces = 1;
@@ -271,7 +271,7 @@ TEST(BeamTree, LightsOnACasterGiveNumbers) {
         desc.shapes = {support::mesh("mirror", tessellate_rectangle(8),
                                      Transform(Eigen::Translation3d(0, 0, 0.5)), support::mirror()),
                        support::horizontal("floor", 0, 2, true, support::diffuse(0.5F))};
-        desc.point_lights = {support::point_light(place, 1)};
+        desc.lights = {support::point_light(place, 1)};
         EXPECT_GE(mean(on_floor(Scene(desc), 1)), 0);
     }
 }
@@ -283,8 +283,9 @@ TEST(BeamTree, DoesNotKnowTheSizeOfTheScene) {
         for (Vec3& p : desc.shapes[0].mesh.positions) p *= size;
         desc.shapes[1].to_world =
             Eigen::Scaling(static_cast<double>(size)) * desc.shapes[1].to_world;
-        desc.point_lights[0].position *= size;
-        desc.point_lights[0].intensity *= size * size;
+        auto& lamp = std::get<PointLight>(desc.lights[0]);
+        lamp.position *= size;
+        lamp.intensity *= size * size;
         return desc;
     };
     const auto at = [&](float size, const auto& params) {
@@ -317,7 +318,7 @@ void expect_nothing_lost(const Vec3& place, double tilt) {
     Transform& floor = desc.shapes[1].to_world;
     floor.prerotate(Eigen::AngleAxisd(tilt, Vec3d(1, 0.3, 0).normalized()));
     floor.pretranslate(place.cast<double>());
-    desc.point_lights[0].position += place;
+    std::get<PointLight>(desc.lights[0]).position += place;
     const Vec3d normal = floor.linear().col(2).normalized();
     std::vector<ReceiverPoint> points;
     Rng rng(3, Stage::test, 0);

@@ -26,7 +26,7 @@ BeamScene still_water(int resolution, PolygonKind kind) {
     SceneDesc desc;
     desc.shapes = {support::mesh("water", tessellate_rectangle(resolution), Transform::Identity(),
                                  support::glass(1.25F))};
-    desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+    desc.lights = {support::directional_light({0, 0, -1}, 1)};
     return {"still water", std::move(desc), kind};
 }
 

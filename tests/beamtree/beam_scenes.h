@@ -36,7 +36,7 @@ inline SceneDesc pool_desc(int resolution) {
     desc.shapes = {support::mesh("water", tessellate_heightfield(waves(), resolution),
                                  Transform::Identity(), support::glass(1.333F)),
                    support::horizontal("floor", -1, 3, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
+    desc.lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
     return desc;
 }
 
@@ -45,7 +45,7 @@ inline SceneDesc ring_desc(int resolution) {
     const Transform size(Eigen::Scaling(0.5, 0.5, 0.25));
     desc.shapes = {support::mesh("ring", tessellate_cylinder(resolution), size, support::mirror()),
                    support::horizontal("floor", 0, 2, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0.49, 0.4}, 1)};
+    desc.lights = {support::point_light({0, 0.49, 0.4}, 1)};
     return desc;
 }
 
@@ -54,7 +54,7 @@ inline SceneDesc ball_desc(int resolution) {
     const Transform place(Eigen::Translation3d(0, 0, 0.6) * Eigen::Scaling(0.5));
     desc.shapes = {support::mesh("ball", tessellate_sphere(resolution), place, support::mirror()),
                    support::horizontal("floor", 0, 4, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
+    desc.lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
     return desc;
 }
 
@@ -78,7 +78,7 @@ inline SceneDesc soup_desc(int count) {
     }
     SceneDesc desc;
     desc.shapes = {support::mesh("soup", mesh, Transform::Identity(), support::glass(1.5F))};
-    desc.point_lights = {support::point_light({0.5, 0.5, 4}, 5)};
+    desc.lights = {support::point_light({0.5, 0.5, 4}, 5)};
     return desc;
 }
 

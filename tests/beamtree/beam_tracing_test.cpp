@@ -26,7 +26,7 @@ TEST(BeamTracing, SendsOnTheFluxThatArrives) {
         SceneDesc desc;
         desc.shapes = {support::mesh("mirror", tessellate_rectangle(resolution),
                                      Transform::Identity(), support::mirror(0.8F))};
-        desc.point_lights = {support::point_light({0, 0, 0.7}, 3)};
+        desc.lights = {support::point_light({0, 0, 0.7}, 3)};
         const BeamScene scene("mirror", desc);
         EXPECT_NEAR(flux(scene, false) / (0.8 * 3 * square_solid_angle(1, 0.7)), 1, 1e-6);
         EXPECT_EQ(flux(scene, true), 0);
@@ -46,7 +46,7 @@ TEST(BeamTracing, WeighsADirectionalLightByItsArea) {
     SceneDesc desc;
     desc.shapes = {
         support::mesh("mirror", tessellate_rectangle(4), Transform::Identity(), support::mirror())};
-    desc.directional_lights = {support::directional_light({0.6, 0, -0.8}, 2)};
+    desc.lights = {support::directional_light({0.6, 0, -0.8}, 2)};
     const BeamScene scene("mirror", desc);
     EXPECT_NEAR(flux(scene, false), 2 * 4 * 0.8, 1e-6);
 }
@@ -83,7 +83,7 @@ TEST(BeamTracing, CutsAtTotalReflection) {
         const Transform size(Eigen::Scaling(3.0, 3.0, 1.0));
         desc.shapes = {
             support::mesh("water", tessellate_rectangle(resolution), size, support::glass(1.333F))};
-        desc.point_lights = {support::point_light({0.02, 0.03, -1}, 1)};
+        desc.lights = {support::point_light({0.02, 0.03, -1}, 1)};
         const BeamScene scene("water", desc);
         const bool fine = resolution == 32;
         EXPECT_NEAR(flux(scene, true) / truth, 1, fine ? 5e-3 : 0.025) << resolution;
@@ -99,7 +99,7 @@ TEST(BeamTracing, GivesCutPolygonsUnitRays) {
     SceneDesc desc;
     const Transform size(Eigen::Scaling(3.0, 3.0, 1.0));
     desc.shapes = {support::mesh("water", tessellate_rectangle(32), size, support::glass(1.333F))};
-    desc.point_lights = {support::point_light({0.02, 0.03, -1}, 1)};
+    desc.lights = {support::point_light({0.02, 0.03, -1}, 1)};
     const BeamScene scene("water", desc);
     bool cut = false;
     for (const BeamSet& set : scene.sets)

@@ -38,7 +38,7 @@ SceneDesc wavy_pool(int cells) {
     desc.shapes = {support::mesh("water", tessellate_heightfield(field, cells),
                                  Transform::Identity(), support::glass(static_cast<float>(ior))),
                    support::horizontal("floor", -depth, 4, true, support::diffuse(0.5F))};
-    desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+    desc.lights = {support::directional_light({0, 0, -1}, 1)};
     return desc;
 }
 
@@ -101,7 +101,7 @@ TEST(CausticEdges, KnowWhatMirrorsTurnOver) {
     desc.shapes = {
         support::mesh("mirror", tessellate_rectangle(n), Transform::Identity(), support::mirror()),
         support::horizontal("ceiling", 2, 9, false, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0.1, 0.2, 1}, 1)};
+    desc.lights = {support::point_light({0.1, 0.2, 1}, 1)};
     const auto edges = edges_of(std::move(desc));
     EXPECT_EQ(edges.size(), 3U * n * n + 2 * n);
     EXPECT_EQ(counts(edges)[Kind::direct], edges.size());
@@ -114,7 +114,7 @@ TEST(CausticEdges, FollowLightThroughSeveralEvents) {
                                             Transform(Eigen::Translation3d(0, 0, z)),
                                             support::glass(1.5F)));
     desc.shapes.push_back(support::horizontal("floor", 0, 4, true, support::diffuse(0.5F)));
-    desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+    desc.lights = {support::directional_light({0, 0, -1}, 1)};
     const auto edges = edges_of(std::move(desc));
     EXPECT_EQ(counts(edges)[Kind::fold], 0U);
     EXPECT_EQ(counts(edges)[Kind::folded], 0U);

@@ -19,7 +19,7 @@ TEST(RaySpread, IsThatOfTheImageBehindAPlaneMirror) {
     desc.shapes = {support::mesh("mirror", tessellate_rectangle(64), Transform::Identity(),
                                  support::mirror(0.8F))};
     const Vec3 lamp(0.1F, 0.2F, 0.9F);
-    desc.point_lights = {support::point_light(lamp.cast<double>(), 3)};
+    desc.lights = {support::point_light(lamp.cast<double>(), 3)};
     const Scene scene(std::move(desc));
     const auto sets = refined_sets(scene, caster_meshes(scene, 2));
     ASSERT_EQ(sets.size(), 1U);
@@ -40,7 +40,7 @@ TEST(RaySpread, ChangesItsSignAtTheFocus) {
     SceneDesc desc;
     desc.shapes = {support::mesh("bowl", tessellate_heightfield(bowl, 32), Transform::Identity(),
                                  support::mirror())};
-    desc.directional_lights = {support::directional_light({0, 0, -1}, 2)};
+    desc.lights = {support::directional_light({0, 0, -1}, 2)};
     const Scene scene(std::move(desc));
     const auto sets = refined_sets(scene, caster_meshes(scene, 2));
     const double focus = 1 / (0.25 * 0.16) / 2;

@@ -144,7 +144,7 @@ Answer ask(const Scene& scene, const BeamTreeParams& params, const RunOptions& o
 // this one give the same light to the bit, on every instruction set.
 TEST(SliceTree, GivesThePapersLightWhereTheNormalsAreOne) {
     SceneDesc desc = pool_desc(24);
-    desc.point_lights.push_back(support::point_light({-0.7, 0.2, 1.9}, 6));
+    desc.lights.push_back(support::point_light({-0.7, 0.2, 1.9}, 6));
     const Scene scene(std::move(desc));
     const Answer paper = ask(scene, params_of(Bound::hybrid), {}, -1, 4000);
     std::optional<Answer> first;
@@ -186,9 +186,9 @@ TEST(SliceTree, LeavesOutBeamsThatBeginBelowThePoint) {
 // Lights share a tree, unless it follows the quadtree of the mesh.
 TEST(SliceTree, HoldsTheBeamsOfAllLights) {
     SceneDesc desc = pool_desc(8);
-    desc.point_lights.clear();
+    desc.lights.clear();
     for (const double x : {-0.3, -0.1, 0.2, 0.3})
-        desc.point_lights.push_back(support::point_light({x, 0.2, 6}, 60));
+        desc.lights.push_back(support::point_light({x, 0.2, 6}, 60));
     const Scene scene(std::move(desc));
     BeamTreeParams params = params_of(Bound::two_slice);
     const auto trees = [&] {

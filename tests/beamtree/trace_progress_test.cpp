@@ -16,7 +16,7 @@ Scene glass_ball() {
     SceneDesc desc;
     desc.shapes = {support::sphere("ball", {0, 0, 0.6}, 0.5, support::glass(1.5F)),
                    support::horizontal("floor", 0, 4, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
+    desc.lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
     return Scene(std::move(desc));
 }
 

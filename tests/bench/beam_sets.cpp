@@ -11,15 +11,15 @@ namespace {
 
 SceneDesc pool_under(int resolution, double waves, int lamps) {
     SceneDesc desc = pool_scene(resolution, waves);
-    const PointLight light = desc.point_lights[0];
-    desc.point_lights.clear();
+    const auto light = std::get<PointLight>(desc.lights[0]);
+    desc.lights.clear();
     for (int i = 0; i < lamps * lamps; ++i) {
         PointLight lamp = light;
         const auto n = static_cast<float>(lamps);
         lamp.position += 0.4F / n *
                          Vec3(static_cast<float>(i % lamps) - n / 2 + 0.5F,
                               static_cast<float>(i / lamps) - n / 2 + 0.5F, 0);
-        desc.point_lights.push_back(lamp);
+        desc.lights.push_back(lamp);
     }
     return desc;
 }

@@ -133,7 +133,7 @@ SceneDesc caustic_scene(Caustic caustic) {
                                          medium);
     desc.shapes = {std::move(caster), support::horizontal("floor", 0, floor_half(caustic), true,
                                                           support::schlick(0.8F, 0.1F))};
-    desc.point_lights = {support::point_light(water ? water_light : ball_light, 10)};
+    desc.lights = {support::point_light(water ? water_light : ball_light, 10)};
     return desc;
 }
 

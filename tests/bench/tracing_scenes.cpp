@@ -30,7 +30,7 @@ SceneDesc pool_scene(int resolution, double waves) {
     desc.shapes = {support::mesh("water", tessellate_heightfield(field, resolution),
                                  Transform::Identity(), support::glass(1.333F)),
                    floor_mesh(-1, 4)};
-    desc.point_lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
+    desc.lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
     return desc;
 }
 
@@ -39,7 +39,7 @@ SceneDesc ball_scene(int resolution) {
     desc.shapes = {support::mesh("ball", tessellate_sphere(resolution), Transform::Identity(),
                                  support::glass(1.5F)),
                    floor_mesh(-1.2, 8)};
-    desc.point_lights = {support::point_light({-3, 1, 4}, 10)};
+    desc.lights = {support::point_light({-3, 1, 4}, 10)};
     return desc;
 }
 

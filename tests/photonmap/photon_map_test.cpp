@@ -35,7 +35,7 @@ SceneDesc flat_mirror(const Bsdf& ceiling) {
     above.rotate(Eigen::AngleAxisd(pi_d, Vec3d::UnitX()));
     above.scale(4);
     desc.shapes.push_back(rectangle(above, ceiling));
-    desc.point_lights.push_back({Vec3(0, 0, light_height), intensity});
+    desc.lights.emplace_back(PointLight{Vec3(0, 0, light_height), intensity});
     return desc;
 }
 

@@ -16,7 +16,7 @@ SceneDesc still_life() {
     SceneDesc desc;
     desc.shapes.push_back(support::horizontal("floor", 0, 2, true, support::schlick(0.6F, 0.3F)));
     desc.shapes.push_back(support::sphere("ball", {0, 0, 0.6}, 0.5, support::glass(1.5F)));
-    desc.point_lights.push_back(support::point_light({-0.5, -0.4, 3}, 5));
+    desc.lights.push_back(support::point_light({-0.5, -0.4, 3}, 5));
     desc.camera = support::camera({1, -2, 1.5}, {0, 0, 0}, {0, 0, 1}, 50, 24, 18);
     return desc;
 }
@@ -99,7 +99,7 @@ TEST_F(KeptPhotons, AreRefusedWhereTheLightGoesElsewhere) {
     expect_same_when_loaded(still_life(), {.photons = 3000});
     std::vector<SceneDesc> others(5, still_life());
     others[0].shapes[1].bsdf = support::glass(1.51F);
-    others[1].point_lights[0].position.x() += 0.01F;
+    std::get<PointLight>(others[1].lights[0]).position.x() += 0.01F;
     others[2].shapes[0].to_world.translation().z() -= 0.01;
     others[3].shapes.push_back(
         support::horizontal("shelf", 0.01, 0.1, true, support::diffuse(0.5F)));

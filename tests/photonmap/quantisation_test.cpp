@@ -18,7 +18,7 @@ std::vector<Deposit> ball_deposits(std::size_t count) {
     SceneDesc desc;
     desc.shapes = {support::sphere("ball", {0, 0, 0.35}, 0.3, support::glass(1.5F)),
                    support::horizontal("floor", 0, 0.75, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({-1.2, 0.4, 1.6}, 10)};
+    desc.lights = {support::point_light({-1.2, 0.4, 1.6}, 10)};
     const Scene scene(std::move(desc));
     const AimedEmission emission(scene);
     std::vector<Deposit> deposits;

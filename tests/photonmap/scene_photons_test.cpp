@@ -73,13 +73,13 @@ SceneDesc pool() {
 
 SceneDesc pool_and_point() {
     SceneDesc desc = pool();
-    desc.point_lights = {support::point_light({0.4, 0.3, 2.5}, 5)};
+    desc.lights = {support::point_light({0.4, 0.3, 2.5}, 5)};
     return desc;
 }
 
 SceneDesc pool_and_sun() {
     SceneDesc desc = pool();
-    desc.directional_lights = {support::directional_light({0.3, -0.2, -1}, 2)};
+    desc.lights = {support::directional_light({0.3, -0.2, -1}, 2)};
     return desc;
 }
 
@@ -104,7 +104,7 @@ SceneDesc ball_and_two_lights() {
     desc.shapes = {floor_under(-1.2), support::sphere("ball", {0, 0, 0}, 0.8, support::glass(1.5F)),
                    support::sphere("lamp", {2, 1, 2}, 0.3, support::diffuse(0))};
     desc.shapes.back().radiance = Spectrum(Spectrum::Constant(9));
-    desc.point_lights = {support::point_light({-1, 2, 2}, 3)};
+    desc.lights = {support::point_light({-1, 2, 2}, 3)};
     return desc;
 }
 
@@ -206,7 +206,7 @@ TEST(ScenePhotons, GivesUpWhereNothingArrives) {
     EXPECT_EQ(trace(scene, params(mode, 0, 1'000)).store.size(), 0U);
     SceneDesc no_caster;
     no_caster.shapes = {floor_under(0)};
-    no_caster.point_lights = {support::point_light({0, 0, 1}, 1)};
+    no_caster.lights = {support::point_light({0, 0, 1}, 1)};
     EXPECT_THROW(trace(Scene(std::move(no_caster)), params(mode, 10)), UnsupportedScene);
 }
 

@@ -11,7 +11,7 @@ Scene ball_scene(const Bsdf& floor) {
     SceneDesc desc;
     desc.shapes = {support::sphere("ball", {0, 0, 0.35}, 0.3, support::glass(1.5F)),
                    support::horizontal("floor", 0, 0.75, true, floor)};
-    desc.point_lights = {support::point_light({-1.2, 0.4, 1.6}, 10)};
+    desc.lights = {support::point_light({-1.2, 0.4, 1.6}, 10)};
     return Scene(std::move(desc));
 }
 

@@ -23,7 +23,7 @@ SceneDesc over_a_floor(const std::string& file, const Eigen::AngleAxisd& turn, c
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)),
                    support::mesh("mesh", std::move(mesh), place, bsdf)};
-    desc.point_lights = {support::point_light({0.3, -0.2, 4}, 10)};
+    desc.lights = {support::point_light({0.3, -0.2, 4}, 10)};
     return desc;
 }
 

@@ -16,6 +16,14 @@ std::optional<LightParticle> emit_unaimed(const Scene&, const PointLight& light,
     return LightParticle{spawn_ray({light.position}, direction), light.intensity * 4 * pi};
 }
 
+std::optional<LightParticle> emit_unaimed(const Scene&, const SpotLight& light, Rng& rng) {
+    const float u0 = rng.next();
+    const float u1 = rng.next();
+    const Vec3 direction = uniform_cap(2, u0, u1).normalized();
+    return LightParticle{spawn_ray({light.position}, direction),
+                         light.intensity * light.cone.falloff(direction) * 4 * pi};
+}
+
 std::optional<LightParticle> emit_unaimed(const Scene& scene, const AreaLight& light, Rng& rng) {
     const float u0 = rng.next();
     const float u1 = rng.next();

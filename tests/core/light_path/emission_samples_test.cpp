@@ -42,8 +42,8 @@ SceneDesc lights_of_every_kind() {
                    support::sphere("bulb", {2, 1, 1}, 0.1, support::diffuse(0))};
     desc.shapes[3].radiance = Spectrum(3, 2, 1);
     desc.shapes[4].radiance = Spectrum(20, 30, 40);
-    desc.point_lights = {support::point_light({1, 2, 3}, 2), support::point_light({0, 0, 0}, 1)};
-    desc.directional_lights = {support::directional_light({0, 0.6, -0.8}, 1)};
+    desc.lights = {support::point_light({1, 2, 3}, 2), support::point_light({0, 0, 0}, 1)};
+    desc.lights.emplace_back(support::directional_light({0, 0.6, -0.8}, 1));
     return desc;
 }
 
@@ -79,7 +79,7 @@ TEST(EmissionSamples, MakeTheParticlesOfSinglePaths) {
 TEST(EmissionSamples, MakeNothingWithoutACaster) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 1, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0, 1}, 1)};
+    desc.lights = {support::point_light({0, 0, 1}, 1)};
     const Scene scene(std::move(desc));
     std::vector<LightPathStart> starts;
     AimedEmission(scene).emit(draw(0, 10, Isa::plain), starts);

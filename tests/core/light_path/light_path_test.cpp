@@ -44,7 +44,7 @@ support::Moments send(const AimedEmission& emission, const Sent& sent, std::uint
 SceneDesc ball_lit_from_a_point(double radius, double distance) {
     SceneDesc desc;
     desc.shapes.push_back(support::sphere("ball", {0, 0, 0}, radius, support::glass(1.5F)));
-    desc.point_lights.push_back(support::point_light(Vec3d(1, 2, 2) / 3 * distance, 1));
+    desc.lights.push_back(support::point_light(Vec3d(1, 2, 2) / 3 * distance, 1));
     return desc;
 }
 
@@ -70,7 +70,7 @@ TEST(AimedEmission, AimsAtSmallDistantSpheres) {
 // Overlapping cones: every direction of the union equally often, none twice.
 TEST(AimedEmission, IsUniformOverTheUnionOfTheCasters) {
     SceneDesc desc;
-    desc.point_lights.push_back(support::point_light({0, 0, 0}, 3));
+    desc.lights.push_back(support::point_light({0, 0, 0}, 3));
     const std::vector<Vec3> centres = {{0, 0, 4}, {1, 0, 5}, {-4, 1, 1}};
     const std::vector<float> radii = {1.2F, 1.5F, 0.5F};
     for (std::size_t i = 0; i < centres.size(); ++i)
@@ -118,7 +118,7 @@ TEST(AimedEmission, IsUniformOverTheUnionOfTheCasters) {
 // each first is what rays in all directions find.
 TEST(AimedEmission, LightsOverlappingCastersOfEveryKindAsRaysInAllDirectionsDo) {
     SceneDesc desc;
-    desc.point_lights.push_back(support::point_light({0.1, -0.2, 0.3}, 2));
+    desc.lights.push_back(support::point_light({0.1, -0.2, 0.3}, 2));
     desc.shapes.push_back(support::sphere("ball", {0.4, 0, 2.2}, 0.6, support::glass(1.5F)));
     Transform behind = Transform::Identity();
     behind.translate(Vec3d(1.2, 0.6, 4));
@@ -152,8 +152,8 @@ TEST(AimedEmission, LightsOverlappingCastersOfEveryKindAsRaysInAllDirectionsDo) 
 
 TEST(AimedEmission, SendsNothingWithoutACasterOrALightThatSeesOne) {
     SceneDesc plain;
-    plain.point_lights.push_back(support::point_light({0, 0, 1}, 1));
-    plain.directional_lights.push_back(support::directional_light({0, 0, -1}, 1));
+    plain.lights.push_back(support::point_light({0, 0, 1}, 1));
+    plain.lights.push_back(support::directional_light({0, 0, -1}, 1));
     plain.shapes.push_back(support::horizontal("floor", 0, 1, true, support::diffuse(0.5F)));
     const Scene without_caster(std::move(plain));
     EXPECT_TRUE(AimedEmission(without_caster).empty());
@@ -190,7 +190,7 @@ TEST(AimedEmission, ALampInsideACasterSendsAllItsPower) {
 
 TEST(AimedEmission, DirectionalLightFillsTheUnionOfTheShadows) {
     SceneDesc desc;
-    desc.directional_lights.push_back(support::directional_light({1, 0, -1}, 2));
+    desc.lights.push_back(support::directional_light({1, 0, -1}, 2));
     desc.shapes.push_back(support::sphere("near", {0, 0, 0}, 1, support::glass(1.5F)));
     // In the first one's shadow: their union is the larger disc.
     desc.shapes.push_back(support::sphere("far", {3, 0, -3}, 0.5, support::glass(1.5F)));
@@ -207,7 +207,7 @@ TEST(AimedEmission, DirectionalLightFillsTheUnionOfTheShadows) {
 
 TEST(AimedEmission, SharesParticlesByPower) {
     SceneDesc desc = ball_lit_from_a_point(1, 5);
-    desc.point_lights.push_back(support::point_light(Vec3d(-5, 0, 0), 3));
+    desc.lights.push_back(support::point_light(Vec3d(-5, 0, 0), 3));
     const Scene scene(std::move(desc));
     support::Moments from_first;
     const support::Moments flux =
@@ -220,7 +220,7 @@ TEST(AimedEmission, SharesParticlesByPower) {
 
 TEST(LightPath, EveryPathHasOneEnd) {
     SceneDesc desc = ball_lit_from_a_point(1, 4);
-    desc.point_lights.push_back(support::point_light({-3, 1, 2}, 1));
+    desc.lights.push_back(support::point_light({-3, 1, 2}, 1));
     desc.shapes.push_back(support::sphere("inner", {0.2, 0, 0}, 0.5, support::glass(1.2F, 1.5F)));
     desc.shapes.push_back(support::horizontal("floor", -1.5, 2, true, support::diffuse(0.5F)));
     desc.shapes.push_back(
@@ -329,7 +329,7 @@ TEST(LightPath, CountsWhatSmoothNormalsMisdirect) {
         SceneDesc desc;
         desc.shapes = {support::mesh("cube", cube, Transform::Identity(), support::glass(1.5F)),
                        support::enclosure(10, support::diffuse(0.5F))};
-        desc.point_lights = {support::point_light({0, 0.3, 4}, 1)};
+        desc.lights = {support::point_light({0, 0.3, 4}, 1)};
         const Scene scene(std::move(desc));
         LightPathCounts by_chance, branches;
         std::vector<Deposit> deposits;
@@ -371,7 +371,7 @@ TEST(LightPath, TellsBlackSidesFromBlackWater) {
         desc.shapes.push_back(support::horizontal(
             "water", 1, 1, true, support::glass(1.33F, 1, Spectrum::Constant(absorption))));
         desc.shapes.push_back(support::horizontal("floor", 0, 2, up, support::diffuse(0.5F)));
-        desc.point_lights.push_back(support::point_light({0, 0, 3}, 1));
+        desc.lights.push_back(support::point_light({0, 0, 3}, 1));
         const Scene scene(std::move(desc));
         LightPathCounts counts;
         send(AimedEmission(scene), [&](const LightParticle& particle, Rng& rng) {

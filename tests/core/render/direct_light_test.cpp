@@ -34,7 +34,7 @@ support::Moments direct(const Scene& scene, const Vec3d& at, const Vec3& wo = Ve
 
 TEST(DirectLight, OfAPointFallsWithTheSquareAndTheCosine) {
     SceneDesc desc = floor_scene();
-    desc.point_lights.push_back(support::point_light({0, 0, 2}, 7));
+    desc.lights.push_back(support::point_light({0, 0, 2}, 7));
     const Scene scene(std::move(desc));
     const double expected = 7.0 / (1 + 4) * (2 / std::sqrt(5.0)) * 0.5 / pi_d;
     EXPECT_NEAR(direct(scene, {1, 0, 0}).mean(), expected, 1e-5);
@@ -42,7 +42,7 @@ TEST(DirectLight, OfAPointFallsWithTheSquareAndTheCosine) {
 
 TEST(DirectLight, OfADirectionIsItsIrradianceTimesTheCosine) {
     SceneDesc desc = floor_scene();
-    desc.directional_lights.push_back(support::directional_light({1, 0, -1}, 3));
+    desc.lights.push_back(support::directional_light({1, 0, -1}, 3));
     const Scene scene(std::move(desc));
     EXPECT_NEAR(direct(scene, {1, 0, 0}).mean(), 3 * std::sqrt(0.5) * 0.5 / pi_d, 1e-5);
 }
@@ -106,7 +106,7 @@ Spectrum transparent(const Scene& scene, const Vec3d& at) {
 // (1 - F)^2 / d^2 straight through the pane, F at the angle outside of it.
 TEST(DirectLight, GoesStraightThroughGlassWhereShadowsAreTransparent) {
     SceneDesc desc = under_a_pane();
-    desc.point_lights = {support::point_light({0, 0, 2}, 7)};
+    desc.lights = {support::point_light({0, 0, 2}, 7)};
     const Scene scene(std::move(desc));
     for (const double x : {0.0, 1.0, 4.0}) {
         const double distance2 = 4 + x * x;
@@ -122,14 +122,14 @@ TEST(DirectLight, GoesStraightThroughGlassWhereShadowsAreTransparent) {
 // By Beer's law between, from a light far away, and from one inside the glass.
 TEST(DirectLight, IsAbsorbedOnItsStraightWay) {
     SceneDesc far = under_a_pane(Spectrum(1, 2, 0));
-    far.directional_lights = {support::directional_light({0, 0, -1}, 3)};
+    far.lights = {support::directional_light({0, 0, -1}, 3)};
     const double passed = std::pow(1 - support::fresnel(1, 1.5), 2) * 3 * 0.5 / pi_d;
     const Spectrum value = transparent(Scene(std::move(far)), {0, 0, 0});
     EXPECT_NEAR(static_cast<double>(value[0]), passed * std::exp(-0.2), 1e-5);
     EXPECT_NEAR(static_cast<double>(value[1]), passed * std::exp(-0.4), 1e-5);
     EXPECT_NEAR(static_cast<double>(value[2]), passed, 1e-5);
     SceneDesc inside = under_a_pane(Spectrum(1, 2, 0));
-    inside.point_lights = {support::point_light({0, 0, 1.1}, 7)};
+    inside.lights = {support::point_light({0, 0, 1.1}, 7)};
     EXPECT_NEAR(static_cast<double>(transparent(Scene(std::move(inside)), {0, 0, 0})[1]),
                 7 / 1.21 * 0.5 / pi_d * (1 - support::fresnel(1, 1.5)) * std::exp(-0.2), 1e-5);
 }
@@ -153,15 +153,15 @@ TEST(DirectLight, OfALampBehindGlassIsItsLightTimesWhatPasses) {
 // Mirrors and walls shade as ever.
 TEST(DirectLight, IsStoppedByAllElseWhereShadowsAreTransparent) {
     SceneDesc desc = under_a_pane();
-    desc.point_lights = {support::point_light({0, 0, 2}, 7)};
+    desc.lights = {support::point_light({0, 0, 2}, 7)};
     desc.shapes.push_back(support::sphere("ball", {0, 0, 0.5}, 0.2, support::mirror()));
     EXPECT_TRUE(is_black(transparent(Scene(std::move(desc)), {0, 0, 0})));
 }
 
 TEST(DirectLight, IsBlackInShadowBehindLampsAndBelow) {
     SceneDesc shadow = floor_scene();
-    shadow.point_lights.push_back(support::point_light({0, 0, 2}, 7));
-    shadow.directional_lights.push_back(support::directional_light({0, 0, -1}, 7));
+    shadow.lights.push_back(support::point_light({0, 0, 2}, 7));
+    shadow.lights.push_back(support::directional_light({0, 0, -1}, 7));
     shadow.shapes.push_back(support::sphere("glass", {0, 0, 1}, 0.2, support::glass(1.5F)));
     EXPECT_EQ(direct(Scene(std::move(shadow)), {0, 0, 0}).mean(), 0);
 
@@ -171,7 +171,7 @@ TEST(DirectLight, IsBlackInShadowBehindLampsAndBelow) {
     EXPECT_EQ(direct(Scene(std::move(behind)), {0, 0, 0}).mean(), 0);
 
     SceneDesc below = floor_scene();
-    below.point_lights.push_back(support::point_light({0, 0, -2}, 7));
+    below.lights.push_back(support::point_light({0, 0, -2}, 7));
     EXPECT_EQ(direct(Scene(std::move(below)), {0, 0, 0}).mean(), 0);
 }
 

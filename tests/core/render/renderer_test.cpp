@@ -59,7 +59,7 @@ SceneDesc still_life(int width, int height) {
     desc.shapes.push_back(support::sphere("ball", {-1, 0, 0.5}, 0.5, support::mirror()));
     desc.shapes.push_back(support::horizontal("lamp", 4, 0.5, false, support::diffuse(0)));
     desc.shapes.back().radiance = Spectrum(3, 2, 1);
-    desc.point_lights.push_back(support::point_light({-2, -2, 3}, 5));
+    desc.lights.push_back(support::point_light({-2, -2, 3}, 5));
     desc.camera = support::camera({0, -6, 3}, {0, 0, 1}, {0, 0, 1}, 50, width, height);
     return desc;
 }
@@ -109,7 +109,7 @@ TEST(Renderer, TheSamePictureForAnyNumberOfThreadsAnotherForAnotherSeed) {
 
 TEST(Renderer, TheBackgroundIsBlackAndFarAway) {
     SceneDesc desc;
-    desc.point_lights.push_back(support::point_light({0, 0, 0}, 1));
+    desc.lights.push_back(support::point_light({0, 0, 0}, 1));
     desc.camera.width = 5;
     desc.camera.height = 3;
     const Scene scene(std::move(desc));

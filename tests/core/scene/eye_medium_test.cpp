@@ -18,7 +18,7 @@ SceneDesc pool(double eye_height, const Spectrum& absorption, double fov = 60) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("water", 0, 3, true, support::glass(1.33F, 1, absorption)),
                    support::horizontal("floor", -2, 3, true, support::diffuse(0.5F))};
-    desc.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+    desc.lights = {support::directional_light({0, 0, -1}, 1)};
     desc.camera = support::camera({0, 0, eye_height}, {0, 0, -2}, {0, 1, 0}, fov, 8, 8);
     return desc;
 }

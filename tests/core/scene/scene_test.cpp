@@ -11,8 +11,8 @@ namespace {
 
 SceneDesc small_scene() {
     SceneDesc desc;
-    desc.point_lights.push_back(support::point_light({0, 0, 3}, 1));
-    desc.directional_lights.push_back(support::directional_light({0, 0, -2}, 1));
+    desc.lights.push_back(support::point_light({0, 0, 3}, 1));
+    desc.lights.push_back(support::directional_light({0, 0, -2}, 1));
     desc.shapes.push_back(support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)));
     desc.shapes.push_back(support::sphere("ball", {0, 0, 1}, 0.5, support::glass(1.5F)));
     desc.shapes.push_back(support::horizontal("lamp", 4, 1, false, support::diffuse(0)));

@@ -13,7 +13,7 @@ SceneDesc still_life() {
     desc.shapes.push_back(support::sphere("ball", {0, 0, 1}, 0.5, support::glass(1.5F)));
     desc.shapes.push_back(support::horizontal("lamp", 4, 0.5, false, support::diffuse(0)));
     desc.shapes.back().radiance = Spectrum(3, 2, 1);
-    desc.point_lights.push_back(support::point_light({-2, -2, 3}, 5));
+    desc.lights.push_back(support::point_light({-2, -2, 3}, 5));
     return desc;
 }
 
@@ -37,9 +37,9 @@ TEST(TransportHash, SeesEverythingThatALightPathMeets) {
     others[3].shapes[1].bsdf = support::mirror();
     others[4].shapes[1] = support::sphere("ball", {0, 0, 1}, 0.6, support::glass(1.5F));
     others[5].shapes[2].radiance = Spectrum(3, 2, 2);
-    others[6].point_lights[0].intensity[0] = 6;
+    std::get<PointLight>(others[6].lights[0]).intensity[0] = 6;
     others[7].shapes.pop_back();
-    others[8].directional_lights.push_back(support::directional_light({0, 0, -1}, 1));
+    others[8].lights.emplace_back(support::directional_light({0, 0, -1}, 1));
     for (std::size_t i = 0; i < others.size(); ++i)
         EXPECT_NE(digest(still_life()), digest(others[i])) << i;
 }

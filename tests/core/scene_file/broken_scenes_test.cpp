@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/render/film.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {

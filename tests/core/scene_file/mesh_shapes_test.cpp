@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {

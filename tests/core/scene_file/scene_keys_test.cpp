@@ -1,4 +1,4 @@
-#include "core/scene_file/scene_keys.h"
+#include "core/scene/scene_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "tests/support/known_words.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -121,21 +121,23 @@ TEST(Scene, Lights) {
         "s": {"type": "spot", "to_world": [{"look_at":
               {"origin": [1, 1, 2], "target": [1, 1, 0], "up": [0, 1, 0]}}], "cutoff_angle": 40},
         "lamp": {"type": "disk", "e": {"type": "area", "radiance": 7}})"));
-    ASSERT_EQ(desc.point_lights.size(), 3U);
-    EXPECT_FALSE(desc.point_lights[0].spot);
-    EXPECT_EQ(desc.point_lights[2].position, Vec3(1, 1, 2));
-    ASSERT_TRUE(desc.point_lights[2].spot);
-    expect_near(desc.point_lights[2].spot->axis.cast<double>(), {0, 0, -1});
-    EXPECT_FLOAT_EQ(desc.point_lights[2].spot->cutoff, 40 * std::numbers::pi_v<float> / 180);
-    EXPECT_FLOAT_EQ(desc.point_lights[2].spot->beam_width, 30 * std::numbers::pi_v<float> / 180);
-    EXPECT_EQ(desc.point_lights[0].position, Vec3(1, 2, 3));
-    EXPECT_TRUE(equal(desc.point_lights[0].intensity, Spectrum::Constant(5)));
-    EXPECT_EQ(desc.point_lights[1].position, Vec3(4, 5, 6));
-    EXPECT_TRUE(equal(desc.point_lights[1].intensity, {1, 2, 3}));
-    ASSERT_EQ(desc.directional_lights.size(), 2U);
-    EXPECT_EQ(desc.directional_lights[0].direction, Vec3(0, 0, -1));
-    EXPECT_TRUE(equal(desc.directional_lights[0].irradiance, {3, 2, 1}));
-    expect_near(desc.directional_lights[1].direction.cast<double>(), {0, -1, 0});
+    ASSERT_EQ(desc.lights.size(), 5U);
+    const auto [near, placed] =
+        std::pair(std::get<PointLight>(desc.lights[0]), std::get<PointLight>(desc.lights[1]));
+    EXPECT_EQ(near.position, Vec3(1, 2, 3));
+    EXPECT_TRUE(equal(near.intensity, Spectrum::Constant(5)));
+    EXPECT_EQ(placed.position, Vec3(4, 5, 6));
+    EXPECT_TRUE(equal(placed.intensity, {1, 2, 3}));
+    const auto [given, turned] = std::pair(std::get<DirectionalLight>(desc.lights[2]),
+                                           std::get<DirectionalLight>(desc.lights[3]));
+    EXPECT_EQ(given.direction, Vec3(0, 0, -1));
+    EXPECT_TRUE(equal(given.irradiance, {3, 2, 1}));
+    expect_near(turned.direction.cast<double>(), {0, -1, 0});
+    const auto& spot = std::get<SpotLight>(desc.lights[4]);
+    EXPECT_EQ(spot.position, Vec3(1, 1, 2));
+    expect_near(spot.cone.axis.cast<double>(), {0, 0, -1});
+    EXPECT_FLOAT_EQ(spot.cone.cutoff, 40 * std::numbers::pi_v<float> / 180);
+    EXPECT_FLOAT_EQ(spot.cone.beam_width, 30 * std::numbers::pi_v<float> / 180);
     EXPECT_TRUE(equal(*shape(desc, "lamp").radiance, Spectrum::Constant(7)));
 }
 
@@ -154,7 +156,7 @@ TEST(Scene, CoordinatesAreRelativeToCastersFarAway) {
     expect_near(shape(far, "ball").to_world * Vec3d(0, 0, 1), {0, 0, 0.1});
     expect_near(shape(far, "floor").to_world.translation(), {0, 0, -1});
     EXPECT_EQ(bounds(shape(far, "cube")).min(), Vec3(-0.5F, 0.5F, -0.5F));
-    EXPECT_EQ(far.point_lights[0].position, Vec3(0, 0.25F, 1));
+    EXPECT_EQ(std::get<PointLight>(far.lights[0]).position, Vec3(0, 0.25F, 1));
     expect_near(far.camera.to_world.translation(), {0, 0, 3});
     // What is near the world's origin stays where it is, and the smaller of two casters counts more.
     EXPECT_EQ(

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {

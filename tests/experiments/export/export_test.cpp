@@ -23,8 +23,8 @@ SceneDesc small_scene() {
         support::horizontal("floor", -0.1, 2, true, support::diffuse(0.3F)),
         support::sphere("ball", {0.1, 0.2, 0.7}, 0.3, support::glass(1.5F)),
         support::rectangle("mirror", {0, 1, 1}, {0.3, 0, 0}, {0, 0.1, 0.4}, support::mirror(0.9F))};
-    desc.point_lights = {support::point_light({0.3, -0.4, 2.5}, 7)};
-    desc.directional_lights = {support::directional_light({0.1, 0.2, -1}, 3)};
+    desc.lights = {support::point_light({0.3, -0.4, 2.5}, 7)};
+    desc.lights.emplace_back(support::directional_light({0.1, 0.2, -1}, 3));
     desc.camera = support::camera({0.3, -1.7, 1.3}, {0.1, 0.2, 0.1}, {0.1, 0, 1}, 43, 12, 9);
     return desc;
 }
@@ -89,13 +89,13 @@ TEST(MitsubaScene, SaysEveryNumberOfTheSceneExactly) {
         expect_matrix(element(xml, "id=\"" + plain_name(desc.shapes[i].name, i)),
                       desc.shapes[i].to_world);
     EXPECT_EQ(vector_after(xml, "name=\"position\" value=\"").cast<float>(),
-              desc.point_lights[0].position);
+              std::get<PointLight>(desc.lights[0]).position);
     EXPECT_EQ(vector_after(xml, "name=\"intensity\" value=\"").cast<float>(),
-              desc.point_lights[0].intensity.matrix());
+              std::get<PointLight>(desc.lights[0]).intensity.matrix());
     EXPECT_EQ(vector_after(xml, "name=\"direction\" value=\"").cast<float>(),
-              desc.directional_lights[0].direction);
+              std::get<DirectionalLight>(desc.lights[1]).direction);
     EXPECT_EQ(vector_after(xml, "name=\"irradiance\" value=\"").cast<float>(),
-              desc.directional_lights[0].irradiance.matrix());
+              std::get<DirectionalLight>(desc.lights[1]).irradiance.matrix());
     EXPECT_EQ(numbers_after(xml, "name=\"int_ior\" value=\"").at(0), 1.5);
 }
 
@@ -155,8 +155,8 @@ TEST(MitsubaScene, TakesPathsWhereNoLightIsAPoint) {
     const std::string chosen = "name=\"integrator\" value=\"";
     EXPECT_NE(to_mitsuba(desc, {}).files[0].bytes.find(chosen + "ptracer"), std::string::npos);
     desc.shapes[0].radiance = Spectrum(Spectrum::Ones());
-    desc.point_lights.clear();
-    desc.directional_lights.clear();
+    desc.lights.clear();
+    desc.lights.clear();
     EXPECT_NE(to_mitsuba(desc, {}).files[0].bytes.find(chosen + "path"), std::string::npos);
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/plan/reference_cache.h"
 #include "tests/support/temporary_folder.h"

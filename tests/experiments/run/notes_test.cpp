@@ -19,7 +19,7 @@ SceneDesc ring() {
     desc.shapes = {support::mesh("ring", tessellate_cylinder(8),
                                  Transform(Eigen::Scaling(0.5, 0.5, 0.25)), support::mirror()),
                    support::horizontal("floor", 0, 1.2, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0.49, 0.4}, 1)};
+    desc.lights = {support::point_light({0, 0.49, 0.4}, 1)};
     return desc;
 }
 
@@ -27,7 +27,7 @@ SceneDesc flat_mirror() {
     SceneDesc desc;
     desc.shapes = {support::horizontal("mirror", 1, 1, false, support::mirror()),
                    support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0, 0, 0.5}, 1)};
+    desc.lights = {support::point_light({0, 0, 0.5}, 1)};
     return desc;
 }
 
@@ -63,7 +63,7 @@ SceneDesc panes() {
         desc.shapes.push_back(support::rectangle("pane" + std::to_string(i), middle, 0.15 * u,
                                                  0.15 * v, support::glass(2.4F)));
     }
-    desc.point_lights = {support::point_light({0, 0, 3}, 1)};
+    desc.lights = {support::point_light({0, 0, 3}, 1)};
     return desc;
 }
 
@@ -78,7 +78,7 @@ TEST(Notes, NameTheShapeWhoseSmoothNormalsLoseLight) {
     TriangleMesh cube = tessellate_cube(2);
     cube.normals.clear();
     SceneDesc desc = flat_mirror();
-    desc.point_lights = {support::point_light({0, 0.3, 4}, 1)};
+    desc.lights = {support::point_light({0, 0.3, 4}, 1)};
     desc.shapes[0] = support::mesh("crystal", cube, Transform(Eigen::Translation3d(0, 0, 2)),
                                    support::glass(1.5F));
     const std::vector<std::string> photons = {"photons=2000"};

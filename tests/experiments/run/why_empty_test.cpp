@@ -49,7 +49,7 @@ SceneDesc pool(const Bsdf& water_bsdf = support::glass(1.33F)) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("water", 1, 1, true, water_bsdf),
                    support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
-    desc.point_lights = {support::point_light({0.1, 0.2, 2}, 1)};
+    desc.lights = {support::point_light({0.1, 0.2, 2}, 1)};
     desc.camera = support::camera({0.5, 0.1, 0.9}, {0, 0, 0}, {0, 0, 1}, 50, 6, 4);
     return desc;
 }
@@ -57,15 +57,15 @@ SceneDesc pool(const Bsdf& water_bsdf = support::glass(1.33F)) {
 /// The same by day, for light from one direction.
 SceneDesc pool_by_day(const Vec3d& direction, const Bsdf& water_bsdf) {
     SceneDesc desc = pool(water_bsdf);
-    desc.point_lights.clear();
-    desc.directional_lights = {support::directional_light(direction, 1)};
+    desc.lights.clear();
+    desc.lights = {support::directional_light(direction, 1)};
     return desc;
 }
 
 TEST(WhyEmpty, SaysNothingOfACausticThatIsThere) {
     expect_from_all(pool(), "");
     SceneDesc dark = pool();
-    dark.point_lights.clear();
+    dark.lights.clear();
     EXPECT_EQ(reason(dark, "none", {}), "") << "none is meant to be without";
 }
 
@@ -73,7 +73,7 @@ TEST(WhyEmpty, KnowsThatNothingIsAimed) {
     SceneDesc desc = pool(support::diffuse(0.5F));
     expect_from_all(desc, "no shape is a caster");
     desc = pool();
-    desc.point_lights.clear();
+    desc.lights.clear();
     expect_from_all(desc, "the scene has no light");
     // A lamp that shines upwards.
     desc.shapes.push_back(support::horizontal("lamp", 2, 0.2, true, support::diffuse(0)));
@@ -148,7 +148,7 @@ TEST(WhyEmpty, KnowsWhatAMethodCannotDo) {
         support::rectangle("first", {0, 0, 2}, {0, 0.5, 0}, {-0.5, 0, 0.5}, support::mirror()),
         support::rectangle("second", {3, 0, 2}, {0, 0.1, 0}, {0.5, 0, -0.5}, support::mirror()),
         support::horizontal("floor", 0, 5, true, support::diffuse(0.5F))};
-    periscope.directional_lights = {support::directional_light({0, 0, -1}, 1)};
+    periscope.lights = {support::directional_light({0, 0, -1}, 1)};
     periscope.camera = support::camera({3, 1, 1}, {3, 0, 0}, {0, 0, 1}, 40, 6, 4);
     EXPECT_EQ(reason(periscope, "beamtree", {"mesh_resolution=4"}), "");
     EXPECT_EQ(reason(periscope, "photonmap", {"emitted=3000"}), "");
@@ -167,7 +167,7 @@ TEST(WhyEmpty, KnowsThatTheWorkWasTooLittle) {
 
 TEST(WhyEmpty, IsToldWhenAskedForPhotonsThatCannotBeHad) {
     SceneDesc desc = pool();
-    desc.point_lights.clear();
+    desc.lights.clear();
     try {
         reason(desc, "photonmap", {"photons=100"});
         FAIL() << "expected UnsupportedScene";

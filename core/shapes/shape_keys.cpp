@@ -1,4 +1,4 @@
-#include "core/scene_file/shape_keys.h"
+#include "core/shapes/shape_keys.h"
 
 #include <utility>
 

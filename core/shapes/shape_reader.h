@@ -7,8 +7,10 @@ namespace caustics::scene_file {
 
 const std::vector<std::string>& shape_types();
 const std::vector<std::string>& later_shape_types();
-/// A shape with its nested bsdf and emitter; meshes are loaded or tessellated here. It still has to
-/// be put into the scene's frame (frame.h).
+/// A shape with its nested bsdf and emitter; meshes are loaded or tessellated here. Its `to_world` goes to the
+/// world, and a mesh lies in a frame of its own, until it is put into the scene's frame (scene_frame.h).
 Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets);
+/// Bounds of such a shape in the world.
+Eigen::AlignedBox3d world_bounds(const Shape& shape);
 
 }  // namespace caustics::scene_file

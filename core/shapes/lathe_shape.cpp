@@ -1,4 +1,4 @@
-#include "core/scene_file/lathe_shape.h"
+#include "core/shapes/lathe_shape.h"
 
 namespace caustics::scene_file {
 namespace {

@@ -1,6 +1,8 @@
-#include "core/scene_file/scene_frame.h"
+#include "core/scene/scene_frame.h"
 
 #include <algorithm>
+
+#include "core/shapes/shape_reader.h"
 
 namespace caustics::scene_file {
 namespace {
@@ -8,14 +10,6 @@ namespace {
 constexpr double near_enough = 8;
 
 }  // namespace
-
-Eigen::AlignedBox3d world_bounds(const Shape& shape) {
-    const Eigen::AlignedBox3d local = local_bounds(shape);
-    Eigen::AlignedBox3d box;
-    for (int i = 0; i < 8; ++i)
-        box.extend(shape.to_world * local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
-    return box;
-}
 
 Vec3d frame_origin(const std::vector<Shape>& shapes) {
     const bool any_caster =

@@ -1,4 +1,4 @@
-#include "core/scene_file/heightfield_shape.h"
+#include "core/shapes/heightfield_shape.h"
 
 #include <cmath>
 

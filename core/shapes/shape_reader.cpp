@@ -1,4 +1,4 @@
-#include "core/scene_file/shapes.h"
+#include "core/shapes/shape_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 #include "core/base/lower_case.h"
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/tessellate.h"
-#include "core/scene_file/bsdfs.h"
-#include "core/scene_file/cut_shape.h"
-#include "core/scene_file/heightfield_shape.h"
-#include "core/scene_file/lathe_shape.h"
-#include "core/scene_file/scene_frame.h"
+#include "core/lights/area_light.h"
+#include "core/material/bsdf_reader.h"
+#include "core/shapes/cut_shape.h"
+#include "core/shapes/heightfield_shape.h"
+#include "core/shapes/lathe_shape.h"
 
 namespace caustics::scene_file {
 namespace {
@@ -186,7 +186,7 @@ void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
         known.insert(known.begin(), "area");
         read_type(child, "bsdf or emitter", known, {"homogeneous", "heterogeneous"});
         if (shape.radiance) child.fail("a shape takes one emitter");
-        shape.radiance = read_colour(child, "radiance", 1, unlimited);
+        shape.radiance = AreaLight::read(child);
         child.finish();
         if (shape.primitive == Primitive::heightfield)
             child.fail("an exact heightfield cannot emit; give it a `resolution`");
@@ -206,6 +206,14 @@ const std::vector<std::string>& later_shape_types() {
     static const std::vector<std::string> types{"instance", "shapegroup", "bsplinecurve", "sdfgrid",
                                                 "serialized"};
     return types;
+}
+
+Eigen::AlignedBox3d world_bounds(const Shape& shape) {
+    const Eigen::AlignedBox3d local = local_bounds(shape);
+    Eigen::AlignedBox3d box;
+    for (int i = 0; i < 8; ++i)
+        box.extend(shape.to_world * local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+    return box;
 }
 
 Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) {

@@ -10,9 +10,6 @@ namespace caustics::scene_file {
 /// well far from the world's origin as near it. Below, a shape's `to_world` still goes to the world,
 /// and a mesh lies in its own frame.
 
-/// Bounds of a shape in the world.
-Eigen::AlignedBox3d world_bounds(const Shape& shape);
-
 /// The world's origin where that is no farther from each caster than 8 times its size; else the mean
 /// of the casters' centres, each weighted by 1 / size^2 (the smallest needs it most). Without casters
 /// all shapes are asked.

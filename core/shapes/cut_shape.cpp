@@ -1,9 +1,9 @@
-#include "core/scene_file/cut_shape.h"
+#include "core/shapes/cut_shape.h"
 
 #include <cmath>
 
 #include "core/geometry/cut_solid.h"
-#include "core/scene_file/lathe_shape.h"
+#include "core/shapes/lathe_shape.h"
 
 namespace caustics::scene_file {
 namespace {

@@ -1,15 +1,16 @@
-#include "core/scene_file/scene_reader.h"
+#include "core/scene/scene_reader.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/atomic_file.h"
 #include "core/base/hash.h"
-#include "core/scene_file/bsdfs.h"
+#include "core/lights/ambient_light.h"
+#include "core/material/bsdf_reader.h"
+#include "core/scene/scene_frame.h"
 #include "core/scene_file/json_reader.h"
-#include "core/scene_file/scene_frame.h"
-#include "core/scene_file/shapes.h"
 #include "core/scene_file/values.h"
+#include "core/shapes/shape_reader.h"
 
 namespace caustics {
 namespace {
@@ -121,78 +122,15 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
 struct Draft {
     SceneDesc desc;
     std::vector<JsonNode> shape_nodes;
-    std::vector<Vec3d> point_light_positions;  // in the world
+    std::vector<std::pair<std::string, JsonNode>> light_nodes;  // by type
     bool has_sensor = false;
     Assets assets;
 };
 
-// Half angles of a spot light [degrees in the file].
-SpotCone read_spot_cone(const JsonNode& node, const std::optional<JsonNode>& to_world) {
-    constexpr double degree = pi_d / 180;
-    double cutoff = 20;
-    if (const auto angle = node.find("cutoff_angle")) cutoff = angle->as_number_in(1e-3, 179);
-    double beam = 0.75 * cutoff;
-    if (const auto width = node.find("beam_width")) beam = width->as_number_in(0, cutoff);
-    SpotCone cone;
-    cone.cutoff = static_cast<float>(cutoff * degree);
-    cone.beam_width = static_cast<float>(beam * degree);
-    if (to_world)
-        cone.axis =
-            Vec3d(scene_file::read_transform(*to_world).linear().col(2)).normalized().cast<float>();
-    return cone;
-}
-
-// `point`, or `spot`, which shines along +z.
-void read_point_light(const JsonNode& node, bool is_spot, Draft& draft) {
-    PointLight light;
-    Vec3d place = Vec3d::Zero();
-    const auto position = is_spot ? std::nullopt : node.find("position");
-    const auto to_world = node.find("to_world");
-    if (position && to_world) to_world->fail("give either position or to_world");
-    if (is_spot) light.spot = read_spot_cone(node, to_world);
-    if (position) place = read_vector(*position);
-    if (to_world) place = scene_file::read_transform(*to_world).translation();
-    scene_file::require_near(node, {place});
-    light.intensity = read_colour(node, "intensity", 1, unlimited);
-    node.finish();
-    draft.desc.point_lights.push_back(light);
-    draft.point_light_positions.push_back(place);
-}
-
-void read_directional_light(const JsonNode& node, SceneDesc& desc) {
-    DirectionalLight light;
-    const auto direction = node.find("direction");
-    const auto to_world = node.find("to_world");
-    if (direction && to_world) to_world->fail("give either direction or to_world");
-    if (direction) {
-        const Vec3d towards = read_vector(*direction);
-        if (towards.norm() == 0) direction->fail("must not be zero");
-        light.direction = towards.normalized().cast<float>();
-    }
-    if (to_world)
-        light.direction =
-            Vec3d(scene_file::read_transform(*to_world).linear().col(2)).normalized().cast<float>();
-    light.irradiance = read_colour(node, "irradiance", 1, unlimited);
-    node.finish();
-    desc.directional_lights.push_back(light);
-}
-
-void read_constant_light(const JsonNode& node, SceneDesc& desc) {
-    if (desc.constant_light) node.fail("a scene takes one constant light");
-    desc.constant_light = ConstantLight{read_colour(node, "radiance", 1, unlimited)};
-    node.finish();
-}
-
-void read_ambient_light(const JsonNode& node, SceneDesc& desc) {
-    desc.ambient += read_colour(node, "radiance", 1, unlimited);
-    node.finish();
-}
-
 // The children of the scene are told apart by their types alone.
 void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     const std::string type = node.at("type").as_string();
-    std::vector<std::string> known{"perspective", "point",    "spot",
-                                   "directional", "constant", "ambient"};
+    std::vector<std::string> known{"perspective"};
     std::vector<std::string> later{"envmap",      "projector", "directionalarea",
                                    "sunsky",      "thinlens",  "orthographic",
                                    "homogeneous", "ref",       "heterogeneous"};
@@ -202,16 +140,22 @@ void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
         node.fail(
             "integrators are not supported: the method is chosen on the command line or in "
             "the sweep, not in the scene");
+    std::ranges::copy(light_types(), std::back_inserter(known));
+    known.emplace_back("ambient");
     std::ranges::copy(scene_file::shape_types(), std::back_inserter(known));
     std::ranges::copy(scene_file::later_shape_types(), std::back_inserter(later));
     if (type == "area") node.fail("an area emitter is nested in the shape that emits");
     if (scene_file::is_bsdf_type(type) && type != "ref")
         node.fail("a bsdf is nested in the shape that has it; share one by $include");
     read_type(node, "scene object", known, later);
-    if (type == "point" || type == "spot") return read_point_light(node, type == "spot", draft);
-    if (type == "directional") return read_directional_light(node, draft.desc);
-    if (type == "constant") return read_constant_light(node, draft.desc);
-    if (type == "ambient") return read_ambient_light(node, draft.desc);
+    if (type == "ambient") {
+        draft.desc.ambient += AmbientLight::read(node);
+        return node.finish();
+    }
+    if (std::ranges::find(light_types(), type) != light_types().end()) {
+        draft.light_nodes.emplace_back(type, node);
+        return;
+    }
     if (type != "perspective") {
         draft.desc.shapes.push_back(scene_file::make_for(
             node, [&] { return scene_file::read_shape(key, node, draft.assets); }));
@@ -229,9 +173,13 @@ SceneDesc placed(Draft& draft) {
     for (std::size_t i = 0; i < desc.shapes.size(); ++i)
         scene_file::load_for(draft.shape_nodes[i],
                              [&] { scene_file::place(desc.shapes[i], desc.origin); });
-    for (std::size_t i = 0; i < desc.point_lights.size(); ++i)
-        desc.point_lights[i].position =
-            Vec3d(draft.point_light_positions[i] - desc.origin).cast<float>();
+    bool has_background = false;
+    for (const auto& [type, node] : draft.light_nodes) {
+        desc.lights.push_back(read_light(type, node, desc.origin));
+        if (is_black(background_of(desc.lights.back()))) continue;
+        if (has_background) node.fail("a scene takes one constant light");
+        has_background = true;
+    }
     desc.camera.to_world.pretranslate(-desc.origin);
     return std::move(desc);
 }

@@ -1,4 +1,4 @@
-#include "core/scene/spot_cone.h"
+#include "core/lights/spot_cone.h"
 
 #include <gtest/gtest.h>
 

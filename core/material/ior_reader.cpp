@@ -1,4 +1,4 @@
-#include "core/scene_file/iors.h"
+#include "core/material/ior_reader.h"
 
 #include <array>
 #include <utility>
@@ -74,6 +74,32 @@ Ior read_ior(const JsonNode& parent, const std::string& key, const Ior& fallback
     std::vector<std::string> names;
     for (const auto& [name, ior] : named_iors) names.emplace_back(name);
     return named_iors[node->as_choice(names)].second;
+}
+
+Objects ior_keys() {
+    const auto law = [](const std::string& key, const std::string& meaning, const std::string& type,
+                        const std::string& unit = {}, const std::string& range = {}) {
+        return KeyText{
+            .key = key, .meaning = meaning, .unit = unit, .type = type, .choices = range};
+    };
+    KeyText material = law("material", "A glass by its name, in place of B and C.", "word");
+    material.usual = "none";
+    material.choices = named_glass_list();
+    return {
+        {"cauchy",
+         "A law of dispersion, for an index of refraction: n = A + B / l^2, l the wavelength in "
+         "um.",
+         {type_key(), law("A", "n of very long waves.", "number", "", "-1000000 to 1000000"),
+          law("B", "How it grows to shorter ones.", "number", "um^2", "-1000000 to 1000000")}},
+        {"sellmeier",
+         "A law of dispersion: n^2 = 1 + sum of B l^2 / (l^2 - C), as glass catalogues give it.",
+         {type_key(), material, law("B", "One for each term.", "list of numbers"),
+          law("C", "As many.", "list of numbers", "um^2")}},
+        {"abbe",
+         "A law of dispersion: Cauchy's through n_d, with Abbe's number.",
+         {type_key(), law("n_d", "n at 587.6 nm.", "number", "", "1 to 10"),
+          law("V_d", "(n_d - 1) / (n_F - n_C): small where colours part widely.", "number", "",
+              "above 0, to 1000000")}}};
 }
 
 }  // namespace caustics::scene_file

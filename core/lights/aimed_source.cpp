@@ -1,0 +1,179 @@
+#include "core/lights/aimed_source.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace caustics {
+
+std::vector<Vec3> to_world(const Shape& shape, const std::vector<Vec3d>& local) {
+    std::vector<Vec3> points;
+    for (const Vec3d& p : local) points.push_back(Vec3d(shape.to_world * p).cast<float>());
+    return points;
+}
+
+std::vector<Vec3d> sector_hull(double from, double to, double r0, double height) {
+    const double middle = (from + to) / 2;
+    const double tangent = 1 / std::cos((to - from) / 2);
+    std::vector<Vec3d> corners;
+    for (const double z : {0.0, height})
+        for (const Vec2d& p :
+             {Vec2d(std::cos(from), std::sin(from)), Vec2d(std::cos(to), std::sin(to)),
+              Vec2d(tangent * std::cos(middle), tangent * std::sin(middle)),
+              Vec2d(r0 * std::cos(from), r0 * std::sin(from)),
+              Vec2d(r0 * std::cos(to), r0 * std::sin(to))})
+            corners.emplace_back(p.x(), p.y(), z);
+    return corners;
+}
+
+namespace {
+
+constexpr int cylinder_sectors = 16;
+
+// A part of a caster that is aimed at by itself: a sphere, or the convex hull of some points.
+struct Target {
+    BoundingSphere bound;
+    std::vector<Vec3> hull;  // empty: the sphere itself
+};
+
+Target whole(const Shape& shape) {
+    if (shape.primitive == Primitive::sphere) return {bounding_sphere(shape), {}};
+    return {bounding_sphere(shape), hull_points(shape)};
+}
+
+// The sectors of a tube.
+std::vector<Target> sectors(const Shape& shape) {
+    std::vector<Target> parts;
+    for (int i = 0; i < cylinder_sectors; ++i) {
+        const double step = 2 * pi_d / cylinder_sectors;
+        const auto hull = to_world(shape, sector_hull(i * step, (i + 1) * step, 1, 1));
+        parts.push_back({bounding_sphere(hull), hull});
+    }
+    return parts;
+}
+
+// A cone that holds all directions from the points of a sphere to a target. Round the target's
+// middle: a direction to one of its corners turns by at most asin(radius / distance) as its start
+// moves about the sphere, and a cone narrower than a right angle is convex, so it holds what the
+// corners span.
+DirectionCone cone_towards(const BoundingSphere& from, const Target& target) {
+    const Vec3d start = from.centre.cast<double>();
+    const Vec3d towards = target.bound.centre.cast<double>() - start;
+    const double distance = towards.norm();
+    if (distance == 0) return {};
+    const Vec3d axis = towards / distance;
+    const auto radius = static_cast<double>(from.radius);
+    const double sine = (static_cast<double>(target.bound.radius) + radius) / distance * (1 + 1e-5);
+    double half_angle = sine < 1 ? std::asin(sine) : pi_d;
+    double by_corners = target.hull.empty() ? pi_d : 0;
+    double widest_cosine = 2, widest_reach = 0;
+    for (const Vec3& corner : target.hull) {
+        const Vec3d to_corner = corner.cast<double>() - start;
+        const double reach = to_corner.norm();
+        if (reach <= radius) by_corners = pi_d;
+        if (by_corners >= pi_d) break;
+        const double cosine = axis.dot(to_corner) / reach;
+        if (cosine >= widest_cosine && (radius == 0 || reach >= widest_reach)) continue;
+        const double turned = std::atan2(axis.cross(to_corner).norm(), axis.dot(to_corner)) +
+                              std::asin(radius / reach);
+        if (turned <= by_corners) continue;
+        by_corners = turned;
+        widest_cosine = cosine;
+        widest_reach = reach;
+    }
+    // Unit vectors are good to 1e-7: widened by a few times that.
+    by_corners = by_corners * (1 + 1e-5) + 4e-7;
+    half_angle = std::min(half_angle, by_corners);
+    return half_angle < 1.55 ? cone_of_half_angle(axis, half_angle) : DirectionCone{};
+}
+
+double measure_of(const std::vector<DirectionCone>& cones) {
+    double sum = 0;
+    for (const DirectionCone& cone : cones) sum += cone.solid_angle();
+    return sum;
+}
+
+// The cones from a sphere towards one caster. A tube is mostly air, so it is aimed at by sectors
+// where that is less to fill.
+std::vector<DirectionCone> cones_towards(const BoundingSphere& from, const Shape& caster) {
+    const std::vector<DirectionCone> one = {cone_towards(from, whole(caster))};
+    if (caster.primitive != Primitive::cylinder) return one;
+    std::vector<DirectionCone> cones;
+    for (const Target& sector : sectors(caster)) cones.push_back(cone_towards(from, sector));
+    return measure_of(cones) < measure_of(one) ? cones : one;
+}
+
+void normalise(std::vector<double>& measures) {
+    double sum = 0;
+    for (double& measure : measures) measure = sum += measure;
+    for (double& share : measures) share /= sum;
+}
+
+}  // namespace
+
+DirectionCone cone_of_half_angle(const Vec3d& axis, double half_angle) {
+    const double sine = std::sin(half_angle / 2);
+    return {axis.cast<float>(), static_cast<float>(2 * sine * sine)};
+}
+
+double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSource& source) {
+    std::vector<DirectionCone> cones;
+    for (const std::uint32_t caster : scene.casters)
+        for (const DirectionCone& cone : cones_towards(from, scene.shapes[caster]))
+            cones.push_back(cone);
+    // All directions hold every other cone: they alone are the union.
+    for (const DirectionCone& cone : cones)
+        if (cone.is_whole_sphere()) {
+            cones = {DirectionCone{}};
+            break;
+        }
+    for (const DirectionCone& cone : cones) {
+        source.cones.push_back({cone, Frame(cone.axis)});
+        source.cumulative.push_back(cone.solid_angle());
+    }
+    normalise(source.cumulative);
+    return measure_of(cones);
+}
+
+double aim_discs(const Surroundings& scene, AimedSource& source) {
+    double total = 0;
+    for (const std::uint32_t caster : scene.casters) {
+        const BoundingSphere sphere = bounding_sphere(scene.shapes[caster]);
+        const float radius = sphere.radius * (1 + 1e-5F);
+        source.discs.push_back({sphere.centre, radius});
+        source.cumulative.push_back(pi_d * static_cast<double>(radius) *
+                                    static_cast<double>(radius));
+        total += source.cumulative.back();
+    }
+    normalise(source.cumulative);
+    return total;
+}
+
+// Thinning by the number of cones that hold the direction makes their union uniform.
+bool kept_in_union(const AimedSource& source, const AimedSample& sample, Rng& rng) {
+    if (source.cones.size() == 1) return true;
+    const AimedCone& own = source.cones[sample.region];
+    int holding = 0;
+    for (const AimedCone& other : source.cones)
+        holding += &other == &own || other.cone.contains(sample.direction) ? 1 : 0;
+    return holding == 1 || rng.next() * static_cast<float>(holding) < 1;
+}
+
+std::optional<Ray> through_disc(const Surroundings& scene, const AimedSource& source,
+                                const AimedSample& sample, const Frame& across, Rng& rng) {
+    const AimedDisc& disc = source.discs[sample.region];
+    const Vec3& along = across.n;
+    const Vec3 point =
+        disc.centre + disc.radius * (across.s * sample.disc.x() + across.t * sample.disc.y());
+    if (source.discs.size() > 1) {
+        int holding = 0;
+        for (const AimedDisc& other : source.discs) {
+            const Vec3 offset = point - other.centre;
+            const float aside = Vec3(offset - offset.dot(along) * along).norm();
+            holding += &other == &disc || aside <= other.radius ? 1 : 0;
+        }
+        if (holding > 1 && rng.next() * static_cast<float>(holding) >= 1) return {};
+    }
+    return Ray{point + distance_to_entry(scene.bounds, point, along) * along, along};
+}
+
+}  // namespace caustics

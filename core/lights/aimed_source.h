@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/segment.h"
+#include "core/lights/surroundings.h"
+#include "core/math/frame.h"
+#include "core/math/rng.h"
+#include "core/math/sampling.h"
+#include "core/math/spectrum.h"
+
+namespace caustics {
+
+struct AimedCone {
+    DirectionCone cone;
+    Frame frame{Vec3::UnitZ()};  ///< round the cone's axis
+};
+
+struct AimedDisc {
+    Vec3 centre;
+    float radius = 0;
+};
+
+/// A light, or a piece of a flat area light, with the regions that together hold all its rays to
+/// the casters. The regions may overlap.
+struct AimedSource {
+    std::uint32_t light = 0;
+    Spectrum power = black();      ///< into all regions, overlaps counted again and again [W]
+    std::vector<AimedCone> cones;  ///< of directions: point and area lights
+    /// Across a directional light, or any direction of a constant one.
+    std::vector<AimedDisc> discs;
+    std::vector<double> cumulative;  ///< of the regions' measures, normalised
+    Frame across{Vec3::UnitZ()};     ///< round a directional light's direction
+    float max_cosine = 1;            ///< area lights: bound of the cosine over the cones
+    Vec2 low = Vec2::Zero();         ///< area lights: this piece's numbers of AreaSampler::sample
+    Vec2 high = Vec2::Ones();
+    /// A sphere that shines outwards: seen along a direction it is an even disc, without thinning.
+    std::optional<BoundingSphere> facing_sphere;
+};
+
+/// What a random point of the unit square is mapped to: a region of a source, and a place in it.
+struct AimedSample {
+    std::uint32_t region = 0;
+    Vec2 disc = Vec2::Zero();        ///< of the unit disc, where the region is a disc
+    Vec3 direction = Vec3::UnitZ();  ///< where it is a cone
+};
+
+/// Fills a source's cones from a sphere to all casters; returns their solid angle [sr].
+double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSource& source);
+/// Fills its discs round all casters; returns their area [m^2].
+double aim_discs(const Surroundings& scene, AimedSource& source);
+
+/// Whether a sample of a cone is one of the union of all: thinned by the number of those that hold it.
+bool kept_in_union(const AimedSource& source, const AimedSample& sample, Rng& rng);
+/// The ray through a point of a disc across a direction from far away, thinned likewise.
+std::optional<Ray> through_disc(const Surroundings& scene, const AimedSource& source,
+                                const AimedSample& sample, const Frame& across, Rng& rng);
+
+DirectionCone cone_of_half_angle(const Vec3d& axis, double half_angle);
+/// Corners of the prism round a sector of the unit disc's rim or, from radius r0 on, of its area.
+std::vector<Vec3d> sector_hull(double from, double to, double r0, double height);
+/// Points of a shape's own frame in the scene's.
+std::vector<Vec3> to_world(const Shape& shape, const std::vector<Vec3d>& local);
+
+}  // namespace caustics
