@@ -11,7 +11,7 @@ namespace caustics::beamtree {
 struct BeamTreeParams : BeamParams {
     enum class Tree {
         quadtree,  ///< of a regular subdivision; casters that have none get `binned`, and the report
-                   ///< tells how many
+                   ///< reports how many
         binned
     };
     enum class Leaf {

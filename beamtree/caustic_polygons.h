@@ -8,7 +8,7 @@
 
 namespace caustics::beamtree {
 
-/// `causticpolygons` [Watt 1990, as CC95 tells it]: every beam is swept through every diffuse polygon
+/// `causticpolygons` [Watt 1990, as CC95 describes it]: every beam is swept through every diffuse polygon
 /// of the polygonised receivers, and those it meets keep it; a point is lit by the caustic polygons
 /// that hold it among those of its own diffuse polygon. The same beams, visibility and flux as
 /// `beamtree`; cost n_s n_d n_l.

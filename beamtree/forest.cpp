@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "beamtree/beams/binned_hierarchy.h"
+#include "beamtree/beams/quadtree.h"
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/cones/plane_groups.h"
 #include "core/base/parallel.h"

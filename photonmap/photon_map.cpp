@@ -158,7 +158,7 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     settings.flux_unit = photons.flux_per_energy();
 
     BuildReport report;
-    // What changes no picture is not told of.
+    // What changes no picture is not reported.
     if (const double faint = faint_flux_share(photons.store.photons()); faint >= 0.01)
         report.resolved["faint_flux_share"] = faint;
 

@@ -24,7 +24,7 @@ LAYERS = {
     "tests/bench": ["core", "photonmap", "beamtree", "tests/support"],
     "tests": ["core", "photonmap", "beamtree", "experiments", "tests/support"],
 }
-# The one file that names all methods, what tells of a photon map's file, and what draws beams.
+# The one file that names all methods, what describes a photon map's file, and what draws beams.
 EXCEPTIONS = {
     "experiments/run/methods.cpp": ["photonmap", "beamtree"],
     "experiments/picture/beam_picture.cpp": ["beamtree"],
@@ -36,7 +36,7 @@ LIBRARIES = {
     "embree3/": ["core/scene/intersector.cpp", "tests/bench/"],
     "embree4/": ["core/scene/intersector.cpp", "tests/bench/"],
     "OpenImageIO/": ["core/render/film.cpp", "core/base/picture_file.h", "core/base/picture_file.cpp", "tests/"],
-    "assimp/": ["core/geometry/mesh_io.cpp"],
+    "assimp/": ["core/mesh/mesh_io.cpp"],
     "nlohmann/": ["core/scene_file/json_reader.cpp", "core/scene_file/json_document.h", "core/scene_file/json_document.cpp",
                   "experiments/", "tests/"],
     "tbb/": ["core/base/parallel.cpp"],
@@ -201,7 +201,7 @@ def self_test():
         ("photonmap/kd_tree.cpp", '"experiments/base/stopwatch.h"'), ("experiments/sweep/sweep.cpp", '"photonmap/photons/photon.h"'),
         ("core/scene/camera.cpp", "<embree3/rtcore.h>"), ("photonmap/a.cpp", "<nlohmann/json.hpp>"),
         ("core/scene/scene.h", "<OpenImageIO/imageio.h>"), ("core/math/rng.cpp", "<spdlog/spdlog.h>"),
-        ("core/geometry/mesh.cpp", '"build_info.h"'), ("core/geometry/mesh.cpp", '"tests/support/a.h"'),
+        ("core/mesh/mesh.cpp", '"build_info.h"'), ("core/mesh/mesh.cpp", '"tests/support/a.h"'),
         ("tests/core/a_test.cpp", '"photonmap/photons/photon.h"'), ("tests/photonmap/b_test.cpp", '"beamtree/beams/beam.h"'),
         ("photonmap/b.cpp", '"../beamtree/beams/beam.h"'), ("core/material/optics.cpp", "<photonmap/photons/photon.h>"),
         ("core/scene/light.cpp", '"nowhere.h"'), ("photonmap/c.cpp", "  #  include <tbb/parallel_for.h>"),

@@ -160,7 +160,7 @@ def statistics_md(cells):
     yes = lambda number, form: "" if number is None else format(number, form)
     lines = ["rmse: mean over the seeds ± half its 95 % interval (Student). mse = bias² + variance + (the reference's own "
              "error)², each a mean over pixels and channels; \\* marks errors of which half or more is the reference's: "
-             "cells so marked are not told apart. bias² is what is left of the mse, ± its standard error by the scatter "
+             "cells so marked are not distinguished. bias² is what is left of the mse, ± its standard error by the scatter "
              "of the seeds: an unbiased estimate, so below 0 in half the cells that have no bias; † marks those not "
              "distinguishable from 0 (less than two standard errors above it). efficiency = 1 / (mse × CPU seconds).", "",
              "| scene | method | " + " | ".join([*names, "seeds", "rmse", "bias²", "variance", "CPU s", "efficiency"]) + " |",

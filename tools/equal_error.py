@@ -62,7 +62,7 @@ def truth_of(program, pool, folder, cells, keep):
 
 def make_truth(program, pool, folder, cells, path):
     """Writes the truth's picture, and holds it against lighttrace."""
-    import pool_truth  # here, so that a missing numpy is told apart from bad records
+    import pool_truth  # here, so that a missing numpy differs from bad records
 
     print(f"equal_error: truth, {pool}", file=sys.stderr, flush=True)
     exact = pool_truth.Pool(SCENE, float(POOLS[pool]))
@@ -122,7 +122,7 @@ def contest(pool, trials):
     beams = [dict(trial, ratio=ratio, lower_bound=bound) for trial in trials if trial["method"] == "beamtree"
              for ratio, bound in [against(trial, photons)]]
     best = max(beams, key=lambda trial: trial["ratio"])
-    # A lower bound below the mark tells nothing.
+    # A lower bound below the mark shows nothing.
     met = lambda mark: None if mark is None or (best["lower_bound"] and best["ratio"] < mark) else best["ratio"] >= mark
     return key, {"pool": pool, "ratio": best["ratio"], "lower_bound": best["lower_bound"], "beam": best["settings"],
                  "must": must, "must_met": met(must), "goal": goal, "goal_met": met(goal), "beams": beams,
@@ -182,7 +182,7 @@ def measure(program, chosen):
 
 
 def plot(results):
-    from report import time_plots  # here, so that a missing matplotlib is told apart from bad records
+    from report import time_plots  # here, so that a missing matplotlib differs from bad records
 
     curve = lambda trials: [(trial["seconds"], trial["error"]) for trial in front(trials)]
     return time_plots.draw({f"{one['pool']} pool": {"beamtree, refined": curve(one["beams"]),

@@ -44,7 +44,7 @@ def fill(page, blocks):
 
 
 def write_results(output, folders):
-    from report import beam_plots  # here, so that a missing matplotlib is told apart from bad records
+    from report import beam_plots  # here, so that a missing matplotlib differs from bad records
 
     cells = {name: beam_trials.read(folder) for name, folder in folders.items()}
     watt = [cells["watt_ns"], cells["watt_nd"], cells["watt_nl"]]

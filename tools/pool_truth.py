@@ -16,7 +16,7 @@ SMALLEST = 1e-9  # pixels²: what is smaller lies in one pixel
 
 
 class Pool:
-    """The scene as the file tells it, its waves `scale` times as high."""
+    """The scene as in the file, its waves `scale` times as high."""
 
     def __init__(self, path, scale):
         scene = json.loads(path.read_text(encoding="utf-8"))

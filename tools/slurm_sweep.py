@@ -127,7 +127,7 @@ def parse(arguments):
 
 def main(arguments):
     options = parse(arguments)
-    # A mistake in the sweep is told here, not by a thousand tasks.
+    # A mistake in the sweep is reported here, not by a thousand tasks.
     run([str(options.program), "sweep", *options.sweep_files, "-o", options.output, "--list", *options.sweep])
     script = write(options)
     print(f"script  {script}")

@@ -32,7 +32,7 @@ def main():
 
 
 def write_all(directory, output):
-    from report import time_plots  # here, so that a missing matplotlib is told apart from bad records
+    from report import time_plots  # here, so that a missing matplotlib differs from bad records
 
     cells = records.read(os.path.join(directory, "records.csv")).cells
     scored = [Estimate(cell) for cell in cells if cell.spread("relmse")]

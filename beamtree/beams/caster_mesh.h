@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "beamtree/beams/closed_parts.h"
-#include "core/geometry/mesh.h"
+#include "core/mesh/mesh.h"
 #include "core/scene/scene.h"
 
 namespace caustics::beamtree {

@@ -8,7 +8,7 @@
 
 #include "beamtree/beams/solid_angle.h"
 #include "core/base/interrupt.h"
-#include "core/geometry/vertex_normals.h"
+#include "core/mesh/vertex_normals.h"
 
 namespace caustics::beamtree {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "beamtree/beams/light_sample.h"
-#include "core/geometry/mesh.h"
+#include "core/mesh/mesh.h"
 
 namespace caustics::beamtree {
 
@@ -20,7 +20,7 @@ public:
     /// The side of each part that a light cannot reach straight.
     class Hidden {
     public:
-        /// Whether the light comes to a hidden side when it comes to the triangle's front
+        /// Whether the light arrives on a hidden side when it arrives on the triangle's front
         /// (by its winding) or back. Always false for triangles of no closed part.
         bool operator()(std::uint32_t triangle, bool front) const;
 

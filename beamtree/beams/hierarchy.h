@@ -1,11 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
-
-#include "beamtree/beams/beam.h"
-#include "core/geometry/mesh.h"
 
 namespace caustics::beamtree {
 
@@ -22,16 +18,5 @@ struct Hierarchy {
 
     std::uint32_t height() const;  ///< nodes on the longest way down
 };
-
-/// The quadtree of a mesh's regular subdivision (row B6): four quarters down to a cell, then its
-/// beams, of which a triangle may have any number. Beams of triangles outside of the patches are a
-/// part of their own beside them. `beams`, at least one, are numbers into `set`.
-Hierarchy quadtree(const BeamSet& set, std::span<const std::uint32_t> beams,
-                   std::span<const GridPatch> patches);
-
-/// For any polygons ([CC95 sec. 4], future work): binary, split by 16 bins along the axis of
-/// (position, reach * direction) whose halves have the least sum of n (their diagonals)^2.
-/// `reach` is a typical distance to the receivers [m]; 0 splits by position alone.
-Hierarchy binned_hierarchy(const BeamSet& set, std::span<const std::uint32_t> beams, float reach);
 
 }  // namespace caustics::beamtree

@@ -10,11 +10,11 @@ namespace caustics::beamtree {
 /// How a triangle of a caster's mesh stands to the light.
 struct Facing {
     Vec3 normal;  ///< unit, by the winding
-    bool front;   ///< the light comes to its front
+    bool front;   ///< the light arrives on its front
     bool hidden;  ///< and no light can come to that side
 };
 
-/// Whether the light that comes to a point of a triangle goes on by the event. The rule of
+/// Whether the light that arrives at a point of a triangle leaves by the event. The rule of
 /// split_specular, for a point whose light was bent by the vertex normal alone: the light must come
 /// to the same side of both normals, and leave on the right side of both.
 bool sends_on(const MeshPoint& point, const Facing& facing, Event event);

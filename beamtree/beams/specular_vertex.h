@@ -14,7 +14,7 @@ inline constexpr std::array<Event, 2> events = {reflection, refraction};
 
 /// What the surface does with the light at one point.
 struct SpecularVertex {
-    bool front = false;  ///< the light comes to the normal's side
+    bool front = false;  ///< the light arrives on the normal's side
     std::array<Vec3, 2> direction;
     std::array<Spectrum, 2> weight = {black(), black()};  ///< strength after each event
 };

@@ -20,7 +20,7 @@ MergedCone leaf_cone(const NodeRays& rays, double reach);
 /// [CC95 (4)] for the cap; for the double cone the neck of the children's sections ([CC95 (5)] to
 /// [CC95 (10)]), each a
 /// pair of ellipses, enclosed by boxes and the boxes by a circle (fig. 12). `rays` give what no cone
-/// tells: where the beams begin, and their width and spreading.
+/// shows: where the beams begin, and their width and spreading.
 MergedCone merge_cones(std::span<const MergedCone> children, const NodeRays& rays, double reach);
 
 /// The ellipse in which a plane cuts a cone [CC95 fig. 11].

@@ -13,7 +13,7 @@ namespace caustics::beamtree {
 /// What beams bring to a receiver point that lies inside them (row B8): each the irradiance
 /// flux / area of its caustic polygon [CC95 (11)], whose flux is exact because it is counted by the
 /// solid angle of the specular polygon. Sets with spreads (`intensity: refined`) that exact shapes have
-/// bent once are told by the specular point itself where there is one nearby, all others by refined_density.
+/// bent once are found at the specular point itself where there is one nearby, all others by refined_density.
 /// The cosine at the receiver is part of it. What stands between the point and the place where the light
 /// was bent, or between that place and the light, is asked of the scene.
 class BeamLight {

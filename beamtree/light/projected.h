@@ -27,7 +27,7 @@ inline RayOnPlane on_plane(const VertexRay& ray, const TestPlane& plane) {
 }
 
 /// The signed crossing of the edge a -> b with the half axis y = 0, x > 0; summed round a polygon it
-/// is the winding round the origin. Without branches, as nobody can foretell them.
+/// is the winding round the origin. Without branches, which would be mispredicted.
 inline int edge_crossing(const Vec2d& a, const Vec2d& b) {
     const bool a_above = a.y() > 0;
     const bool b_above = b.y() > 0;

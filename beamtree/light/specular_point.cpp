@@ -16,28 +16,6 @@ constexpr double tolerance = 1e-10;
 // Of the lengths over which the surface changes: central differences err by its square.
 constexpr double relative_step = 1e-5;
 
-// The point of the exact shape beside one near it, in the shape's frame.
-Vec3d on_surface(const Shape& shape, const Vec3d& p) {
-    switch (shape.primitive) {
-        case Primitive::sphere: return p.normalized();
-        case Primitive::cylinder: {
-            const Vec2d xy = p.head<2>().normalized();
-            return {xy.x(), xy.y(), p.z()};
-        }
-        case Primitive::heightfield: return {p.x(), p.y(), shape.field.height(p.head<2>())};
-        default: return {p.x(), p.y(), 0};
-    }
-}
-
-// Over what the surface changes, in its frame.
-double feature_size(const Shape& shape) {
-    if (shape.primitive != Primitive::heightfield) return 1;
-    double size = shape.field.half_size.minCoeff();
-    for (const SineWave& wave : shape.field.waves)
-        size = std::min(size, 1 / std::max(wave.wave_vector.norm(), 1e-300));
-    return size;
-}
-
 // Refractive index on the far side over that on the side of arrival.
 double relative_index(const Bsdf& bsdf, bool from_front, float nm) {
     const auto& glass = std::get<Dielectric>(bsdf.model);
@@ -116,10 +94,11 @@ SpecularSearch::SpecularSearch(const Scene& scene, const BeamSet& set)
       bender_(scene, set.caster, set.light),
       event_(set.refracted ? refraction : reflection),
       to_local_(shape_.to_world.inverse()),
-      step_(relative_step * feature_size(shape_)) {}
+      step_(relative_step *
+            ask_exact(shape_, [](const auto& kind) { return kind.feature_size(); })) {}
 
 std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const Vec3d& local) const {
-    const Vec3d on = on_surface(shape_, local);
+    const Vec3d on = exact_onto(shape_, local);
     Exit exit;
     exit.position = shape_.to_world * on;
     exit.normal = (to_local_.linear().transpose() * exact_normal(shape_, on)).normalized();
@@ -195,7 +174,7 @@ std::optional<SpecularSearch::Image> SpecularSearch::image(
 
 std::optional<SpecularPoint> SpecularSearch::find(const std::array<const VertexRay*, 3>& triangle,
                                                   const VertexRay& guess, const Vec3& point) const {
-    const Vec3d beside = on_surface(shape_, to_local_ * guess.position.cast<double>());
+    const Vec3d beside = exact_onto(shape_, to_local_ * guess.position.cast<double>());
     const Sheet sheet(point.cast<double>(), guess.direction.cast<double>().normalized(), beside,
                       exact_normal(shape_, beside));
     const auto start = exit_at(beside);

@@ -8,7 +8,7 @@
 
 namespace caustics::beamtree {
 
-/// Where a surface bends light so that it comes to a given point, and how dense it is there.
+/// Where a surface bends light so that it reaches a given point, and how dense it is there.
 struct SpecularPoint {
     Vec3 position;              ///< on the surface
     Vec3 normal;                ///< unit, the surface's front side
@@ -26,7 +26,7 @@ public:
     SpecularSearch(const Scene& scene, const BeamSet& set);
 
     /// By Newton's method from the place and direction of `guess`, the ray of a beam's triangle whose light
-    /// comes to the point by [CC95 (11)]. Empty where it does not converge nearby, or comes to a ray of
+    /// reaches the point by [CC95 (11)]. Empty where it does not converge nearby, or finds a ray of
     /// the other side of a caustic.
     std::optional<SpecularPoint> find(const std::array<const VertexRay*, 3>& triangle,
                                       const VertexRay& guess, const Vec3& point) const;

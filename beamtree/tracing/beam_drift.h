@@ -21,7 +21,7 @@ struct DriftAccount {
 
 /// Finds how the rays of a set move with the wavelength (BeamSet::ends): each is sent again, from its place on
 /// the first surface and along its beam's way, at both ends of the light's bin. Where at one end it
-/// comes to another piece of a surface, the other end tells; where at both, the other corners of a beam do.
+/// meets another piece of a surface, the other end decides; where both do, the other corners of a beam.
 class BeamDrift {
 public:
     /// All outlive this.

@@ -21,7 +21,7 @@ namespace caustics::beamtree {
 std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light);
 
-/// How a beam's light is told at a point (row B8, and beyond the paper row B13).
+/// How a beam's light is computed at a point (row B8, and beyond the paper row B13).
 enum class Intensity {
     area,    ///< flux / area of the caustic polygon [CC95 (11)]: right to first order at a point
     refined  ///< by the rays' spreads: right to second order where the light is smooth

@@ -4,6 +4,7 @@
 
 #include "beamtree/tracing/cut_edge.h"
 #include "beamtree/tracing/cut_piece.h"
+#include "beamtree/tracing/next_beams.h"
 #include "beamtree/tracing/piece_detail.h"
 
 namespace caustics::beamtree {
@@ -14,18 +15,6 @@ constexpr int most_splits = 3;
 // What is left of a polygon that is quartered because it is too large for what it meets: ten times.
 constexpr float least_share = 1.0F / (1 << 20);
 constexpr float widest_cosine = 0.5F;
-// Where corners' weights do not tell the mean, this many parts of a side do.
-constexpr int parts = 5;
-
-/// A corner of a beam to be.
-struct Corner {
-    const RayOrigin* origin;
-    const RayArrival* arrival;
-    std::uint32_t parent_ray;  ///< or Beam::none
-};
-
-using Corners = std::array<Corner, 3>;
-
 /// What one set's light does next: the sets of all casters it meets, after each event.
 class NextBounce {
 public:
@@ -36,10 +25,10 @@ public:
           surface_(surface),
           level_(level),
           set_(level.traced.set),
-          least_flux_(least_flux),
           balance_(balance),
           part_(part),
-          stays_(set_.beams.size(), false) {
+          stays_(set_.beams.size(), false),
+          next_(scene, surface, level, least_flux, balance) {
         land_all();
     }
 
@@ -50,7 +39,7 @@ public:
                 follow_triangle(beam, i);
             steps.step();
         }
-        return {std::move(next_), std::move(stays_)};
+        return {next_.take(), std::move(stays_)};
     }
 
 private:
@@ -84,11 +73,11 @@ private:
         if (alike && goes_plainly(a, b, c) && !is_coarse(rays)) {
             for (const Event event : events)
                 if (!is_black(a.weight[event])) {
-                    Corners corners;
+                    BeamCorners corners;
                     for (std::size_t i = 0; i < 3; ++i)
                         corners[i] = {&level_.traced.origins[rays[i]], &level_.arrivals[rays[i]],
                                       rays[i]};
-                    add_beam(beam, corners, event, share_of(beam));
+                    next_.add(beam, corners, event, share_of(beam));
                 }
             return;
         }
@@ -227,7 +216,7 @@ private:
             return;
         }
         const double carried = add_parts(beam, piece, edges, share);
-        if (more) balance_.lost += std::max(0.0, flux(piece) - carried);
+        if (more) balance_.lost += std::max(0.0, next_.flux(piece) - carried);
     }
 
     // A piece none of whose corners goes on.
@@ -241,7 +230,7 @@ private:
         if (splits > 0)
             quarter(beam, path, piece, share, splits - 1);
         else
-            balance_.lost += flux(piece);
+            balance_.lost += next_.flux(piece);
     }
 
     // Returns the flux of the parent's that goes on.
@@ -272,136 +261,14 @@ private:
         double taken = 0;
         for (std::size_t i = 1; i + 1 < count; ++i) {
             const std::array<const PathPoint*, 3> points = {part[0], part[i], part[i + 1]};
-            Corners corners;
+            BeamCorners corners;
             for (std::size_t k = 0; k < 3; ++k)
                 corners[k] = {&points[k]->origin, &points[k]->next, Beam::none};
             for (const Event event : events)
-                if (!is_black(like.next.weight[event])) add_beam(beam, corners, event, share);
-            taken += flux({*points[0], *points[1], *points[2]});
+                if (!is_black(like.next.weight[event])) next_.add(beam, corners, event, share);
+            taken += next_.flux({*points[0], *points[1], *points[2]});
         }
         return taken;
-    }
-
-    double flux(const Piece& piece) const {
-        const auto& [a, b, c] = piece;
-        const Spectrum weight = (a.origin.weight + b.origin.weight + c.origin.weight) / 3;
-        return static_cast<double>(weight.mean()) *
-               measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
-    }
-
-    // As LightBender::flux: by the corners' weights where they are alike; near total reflection the way is
-    // gone from places inside as well.
-    Spectrum flux(std::uint32_t parent, const Corners& corners, Event event) const {
-        std::array<Spectrum, 3> weights;
-        for (std::size_t i = 0; i < 3; ++i)
-            weights[i] = corners[i].origin->weight * corners[i].arrival->weight[event];
-        const std::array<const RayOrigin*, 3> at = {corners[0].origin, corners[1].origin,
-                                                    corners[2].origin};
-        const float whole = static_cast<float>(
-            measure(set_.light, at[0]->position, at[1]->position, at[2]->position));
-        if (!weights_differ({weights[0].mean(), weights[1].mean(), weights[2].mean()}))
-            return (weights[0] + weights[1] + weights[2]) * (whole / 3);
-        const Path path(scene_, surface_, level_, parent);
-        Spectrum sum = black();
-        const auto add = [&](int i, int j, float to_middle) {
-            const float u = (static_cast<float>(i) + to_middle) / parts;
-            const float v = (static_cast<float>(j) + to_middle) / parts;
-            const PathPoint point = path.inside(at, {1 - u - v, u, v});
-            if (goes_on(point) && same_piece(point.next, *corners[0].arrival))
-                sum += point.origin.weight * point.next.weight[event];
-        };
-        for (int i = 0; i < parts; ++i)
-            for (int j = 0; i + j < parts; ++j) {
-                add(i, j, 1.0F / 3);
-                if (i + j + 2 <= parts) add(i, j, 2.0F / 3);
-            }
-        return sum * (whole / (parts * parts));
-    }
-
-    void add_beam(std::uint32_t parent, const Corners& corners, Event event, float share) {
-        const RayArrival& first = *corners[0].arrival;
-        Beam beam;
-        beam.flux = flux(parent, corners, event);
-        const auto mean = static_cast<double>(beam.flux.mean());
-        if (!(mean > 0)) return;
-        const double worth = mean / left_of(corners) / static_cast<double>(share);
-        if (worth < least_flux_) {
-            balance_.lost += mean;
-            balance_.pruned += mean;
-            return;
-        }
-        Level& level = next_level(first.shape, event);
-        beam.triangle = set_.beams[parent].triangle;
-        beam.inside = first.front == (event == refraction);
-        for (const Corner& corner : corners)
-            beam.offset = std::max(beam.offset, 2 * corner.arrival->offset);
-        beam.offset += bulge(corners);
-        beam.corners.fill(Beam::none);
-        for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
-        level.traced.set.beams.push_back(beam);
-        level.worth += worth;
-        level.shares.push_back(share);
-        level.parents.push_back(parent);
-        level.places.push_back(first);
-    }
-
-    // What media have left of a beam's light. Where they absorb much, all light that passes is weak.
-    static double left_of(const Corners& corners) {
-        double left = 0;
-        for (const Corner& corner : corners)
-            left = std::max(left, static_cast<double>(corner.origin->left) *
-                                      static_cast<double>(corner.arrival->left));
-        return left;
-    }
-
-    // How far the surface may lie off the triangle of the corners, as LitCaster::offset. Facets of a
-    // mesh turn by steps.
-    static float bulge(const Corners& corners) {
-        float largest = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const RayArrival& a = *corners[i].arrival;
-            const RayArrival& b = *corners[(i + 1) % 3].arrival;
-            const float turn = std::max((a.shading_normal - b.shading_normal).norm(),
-                                        (a.geometric_normal - b.geometric_normal).norm());
-            largest = std::max(largest, (a.position - b.position).norm() * turn);
-        }
-        return largest / 4;
-    }
-
-    Level& next_level(std::uint32_t shape, Event event) {
-        for (Level& level : next_)
-            if (level.traced.set.path.back().shape == shape && level.event == event) return level;
-        Level& level = next_.emplace_back();
-        level.parent = &level_;
-        level.event = event;
-        level.ray_of_parent.assign(set_.rays.size(), Beam::none);
-        BeamSet& set = level.traced.set;
-        set.light = set_.light;
-        set.caster = set_.caster;
-        set.refracted = event == refraction;
-        set.path = set_.path;
-        set.path.push_back({shape, event == refraction});
-        if (const auto* medium = std::get_if<Dielectric>(&scene_.shapes()[shape].bsdf.model))
-            set.absorption = {medium->ext_absorption, medium->absorption};
-        return level;
-    }
-
-    // Beams that meet in a ray of the parent's share the one it goes on as.
-    static std::uint32_t ray_of(Level& level, const Corner& corner, Event event) {
-        const bool shared = corner.parent_ray != Beam::none;
-        if (shared && level.ray_of_parent[corner.parent_ray] != Beam::none)
-            return level.ray_of_parent[corner.parent_ray];
-        const RayArrival& arrival = *corner.arrival;
-        const auto ray = static_cast<std::uint32_t>(level.traced.set.rays.size());
-        level.traced.set.rays.push_back({arrival.position, arrival.direction[event]});
-        RayOrigin origin = *corner.origin;
-        origin.weight *= arrival.weight[event];
-        origin.left *= arrival.left;
-        if (!shared) origin.vertex = RayOrigin::no_vertex;
-        level.traced.origins.push_back(origin);
-        level.departures.push_back({arrival.shape, arrival.geometric_normal, arrival.offset});
-        if (shared) level.ray_of_parent[corner.parent_ray] = ray;
-        return ray;
     }
 
     const Scene& scene_;
@@ -409,11 +276,10 @@ private:
     const LitCaster& surface_;
     Level& level_;
     BeamSet& set_;
-    double least_flux_;
     FluxBalance& balance_;
     ProgressPart part_;
     std::vector<bool> stays_;
-    std::vector<Level> next_;
+    NextBeams next_;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ struct Departure {
 struct RayArrival {
     static constexpr std::uint32_t nothing = ~0U;
     std::uint32_t shape = nothing;  ///< of a caster; a ray that ends elsewhere has none
-    bool front = false;             ///< it comes to the front side
+    bool front = false;             ///< it arrives on the front side
     bool flat = false;              ///< on a mesh's facet that is shaded flat
     Vec3 position;
     Vec3 geometric_normal;

@@ -6,7 +6,7 @@
 
 namespace caustics {
 
-/// What users are told of a key: of a method's parameter, a scene file or a sweep file.
+/// What help says of a key: of a method's parameter, a scene file or a sweep file.
 struct KeyText {
     std::string key;
     std::string meaning;       ///< one sentence

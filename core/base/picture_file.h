@@ -13,7 +13,7 @@ namespace caustics {
 
 /// A picture opened by OpenImageIO. It decodes from memory where the format can: a '?' in a file's
 /// name would be taken for a query, and pipes are kept away from it. What the formats' own libraries
-/// print meanwhile is left out, since it stands in the error as well; so nothing else should print
+/// print meanwhile is left out, since the error repeats it; so nothing else should print
 /// at that time.
 class PictureFile {
 public:

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/geometry/mesh_rows.h"
+#include "core/mesh/mesh_rows.h"
 
 namespace caustics {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/geometry/lathe.h"
-#include "core/geometry/mesh.h"
 #include "core/geometry/polytope.h"
+#include "core/mesh/mesh.h"
 
 namespace caustics {
 

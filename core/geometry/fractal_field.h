@@ -10,7 +10,7 @@ namespace caustics {
 /// Fractal ground by spectral synthesis [Saupe 1988]: z = Re sum of a exp(i k . x) over the waves
 /// that repeat with the rectangle, a complex Gaussian with E |a|^2 ~ |k|^-(2 hurst + 2), so that the
 /// mean square of z(x + d) - z(x) grows as |d|^(2 hurst). Waves longer than the rectangle are missing,
-/// which tells on smooth ground: 2 hurst = 1.6 comes out as 1.44 over 8 to 128 of 1024 cells.
+/// which shows on smooth ground: 2 hurst = 1.6 comes out as 1.44 over 8 to 128 of 1024 cells.
 struct FractalField {
     static constexpr int least_levels = 2;  ///< one has no wave but the mean's
     static constexpr int most_levels = 12;  ///< 4096 cells along x and y, 33.6 million triangles

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/mesh_rows.h"
+#include "core/mesh/mesh_rows.h"
 
 namespace caustics {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/geometry/mesh.h"
+#include "core/mesh/mesh.h"
 
 namespace caustics {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/geometry/mesh.h"
 #include "core/geometry/profile_curve.h"
+#include "core/mesh/mesh.h"
 
 namespace caustics {
 

@@ -14,7 +14,7 @@ namespace caustics {
 namespace {
 
 constexpr double least_determinant = 1e-9;
-// Of the solid's size: still told apart by floats.
+// Of the solid's size: still distinct as floats.
 constexpr double merging = 1e-6;
 // What bounds are looked for in, in distances of the farthest plane.
 constexpr double room = 1e4;
@@ -138,7 +138,7 @@ Polytope intersect(const std::vector<HalfSpace>& planes) {
         solid.facets.push_back(std::move(found));
     }
     if (solid.vertices.size() < 4 || facets < 4) throw InputError("the planes enclose nothing");
-    if (!is_closed(solid)) throw InputError("some planes meet too closely to be told apart");
+    if (!is_closed(solid)) throw InputError("some planes meet too closely to be distinct");
     return solid;
 }
 

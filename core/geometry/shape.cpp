@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/geometry/surface_offset.h"
 #include "core/math/sampling.h"
@@ -16,39 +17,25 @@ Vec3 world_normal(const Shape& shape, const Vec3d& local_normal) {
     return (shape.flip_normals ? Vec3d(-n) : n).cast<float>();
 }
 
+// 0 of what cannot emit.
 double exact_area(const Shape& shape) {
-    const Eigen::Matrix3d m = shape.to_world.linear();
-    const double plane = m.col(0).cross(m.col(1)).norm();
-    switch (shape.primitive) {
-        case Primitive::rectangle: return 4 * plane;
-        case Primitive::disk: return pi_d * plane;
-        case Primitive::sphere: return 4 * pi_d * m.col(0).squaredNorm();
-        case Primitive::cylinder: return 2 * pi_d * m.col(0).norm() * m.col(2).norm();
-        default: return 0;
-    }
+    if (shape.primitive == Primitive::mesh) return 0;
+    return ask_exact(shape, [&](const auto& kind) -> double {
+        if constexpr (requires { kind.area(shape.to_world.linear()); })
+            return kind.area(shape.to_world.linear());
+        else
+            return 0;
+    });
 }
 
-// A point of the unit primitive, uniform by area, and its normal.
-std::pair<Vec3d, Vec3d> sample_local(Primitive primitive, float u0, float u1) {
-    switch (primitive) {
-        case Primitive::disk: {
-            const Vec2 p = uniform_disc(u0, u1);
-            return {Vec3d(static_cast<double>(p.x()), static_cast<double>(p.y()), 0),
-                    Vec3d::UnitZ()};
-        }
-        case Primitive::sphere: {
-            const Vec3d n = uniform_cap(2, u0, u1).cast<double>().normalized();
-            return {n, n};
-        }
-        case Primitive::cylinder: {
-            const double angle = 2 * pi_d * static_cast<double>(u0);
-            const Vec3d n(std::cos(angle), std::sin(angle), 0);
-            return {n + static_cast<double>(u1) * Vec3d::UnitZ(), n};
-        }
-        default:
-            return {Vec3d(2 * static_cast<double>(u0) - 1, 2 * static_cast<double>(u1) - 1, 0),
-                    Vec3d::UnitZ()};
-    }
+// A point of an exact shape in its frame, uniform by area, and its normal.
+std::pair<Vec3d, Vec3d> sample_local(const Shape& shape, float u0, float u1) {
+    return ask_exact(shape, [&](const auto& kind) -> std::pair<Vec3d, Vec3d> {
+        if constexpr (requires { kind.sample(u0, u1); })
+            return kind.sample(u0, u1);
+        else
+            throw std::logic_error("an exact shape that cannot emit has no sampler");
+    });
 }
 
 AreaSampler::Sample sample_triangle(const TriangleMesh& mesh, std::size_t index, float u0,
@@ -67,21 +54,11 @@ AreaSampler::Sample sample_triangle(const TriangleMesh& mesh, std::size_t index,
 }  // namespace
 
 Eigen::AlignedBox3d local_bounds(const Shape& shape) {
-    switch (shape.primitive) {
-        case Primitive::mesh: {
-            Eigen::AlignedBox3d box;
-            for (const Vec3& p : shape.mesh.positions) box.extend(p.cast<double>());
-            return box;
-        }
-        case Primitive::sphere: return {Vec3d(-1, -1, -1), Vec3d(1, 1, 1)};
-        case Primitive::cylinder: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 1)};
-        case Primitive::heightfield: {
-            const Vec2d half = shape.field.half_size;
-            const double top = shape.field.max_height();
-            return {Vec3d(-half.x(), -half.y(), -top), Vec3d(half.x(), half.y(), top)};
-        }
-        default: return {Vec3d(-1, -1, 0), Vec3d(1, 1, 0)};
-    }
+    if (shape.primitive != Primitive::mesh)
+        return ask_exact(shape, [](const auto& kind) { return kind.bounds(); });
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : shape.mesh.positions) box.extend(p.cast<double>());
+    return box;
 }
 
 std::vector<Vec3> hull_points(const Shape& shape) {
@@ -144,7 +121,7 @@ AreaSampler::AreaSampler(const Shape& shape)
 
 AreaSampler::Sample AreaSampler::sample(const Shape& shape, float u0, float u1) const {
     if (shape.primitive != Primitive::mesh) {
-        const auto [p, n] = sample_local(shape.primitive, u0, u1);
+        const auto [p, n] = sample_local(shape, u0, u1);
         const Vec3 position = Vec3d(shape.to_world * p).cast<float>();
         return {position, world_normal(shape, n),
                 std::max(rounding_offset(position), least_offset_)};

@@ -3,16 +3,13 @@
 #include <optional>
 #include <string>
 
-#include "core/geometry/heightfield.h"
-#include "core/geometry/mesh.h"
+#include "core/exact_shapes/exact_kinds.h"
 #include "core/material/bsdf.h"
 #include "core/math/spectrum.h"
 #include "core/math/vec.h"
+#include "core/mesh/mesh.h"
 
 namespace caustics {
-
-/// The exact shapes, each in a fixed local frame (see tessellate.h), and `mesh`.
-enum class Primitive { rectangle, disk, sphere, cylinder, heightfield, mesh };
 
 /// A shape as the scene file says it, ready to be intersected.
 struct Shape {
@@ -25,6 +22,12 @@ struct Shape {
     Bsdf bsdf;
     std::optional<Spectrum> radiance;  ///< emitted from the front side [W m^-2 sr^-1]
 };
+
+/// Calls `ask` with the kind (exact_kinds.h) of an exact shape. Not for meshes.
+template <class Ask>
+decltype(auto) ask_exact(const Shape& shape, const Ask& ask) {
+    return ask_kind(shape.primitive, shape.field, ask);
+}
 
 /// Bounds in the shape's own frame: that of a mesh's positions.
 Eigen::AlignedBox3d local_bounds(const Shape& shape);

@@ -157,9 +157,9 @@ private:
 }  // namespace
 
 TexelGrid texel_grid(const Shape& shape, int resolution) {
-    const bool round_u =
-        shape.primitive == Primitive::sphere || shape.primitive == Primitive::cylinder;
-    return {resolution, round_u, shape.primitive == Primitive::disk};
+    if (shape.primitive == Primitive::mesh) return {resolution, false, false};
+    return ask_exact(
+        shape, [&](const auto& kind) { return TexelGrid(resolution, kind.round_u, kind.round_v); });
 }
 
 std::vector<double> texel_areas(const Shape& shape, const TexelGrid& grid) {

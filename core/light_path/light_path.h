@@ -46,7 +46,7 @@ struct LightPathCounts {
     std::uint64_t absorbed = 0;   ///< by roulette, a medium, or a coloured surface
     /// Sent to the wrong side of the surface by a smooth normal (SpecularSplit::lost_weight).
     std::uint64_t misdirected = 0;
-    std::uint64_t on_black_side = 0;  ///< arrived where a receiver is black, behind it as a rule
+    std::uint64_t on_black_side = 0;  ///< arrived where a receiver is black, mostly behind it
     std::uint64_t depth_limited = 0;  ///< met one more caster after `max_bounces`
     std::uint64_t stored = 0;
     std::uint64_t dropped = 0;  ///< arrived, but left out so that a wanted number is exact

@@ -11,23 +11,7 @@ std::vector<Vec3> to_world(const Shape& shape, const std::vector<Vec3d>& local) 
     return points;
 }
 
-std::vector<Vec3d> sector_hull(double from, double to, double r0, double height) {
-    const double middle = (from + to) / 2;
-    const double tangent = 1 / std::cos((to - from) / 2);
-    std::vector<Vec3d> corners;
-    for (const double z : {0.0, height})
-        for (const Vec2d& p :
-             {Vec2d(std::cos(from), std::sin(from)), Vec2d(std::cos(to), std::sin(to)),
-              Vec2d(tangent * std::cos(middle), tangent * std::sin(middle)),
-              Vec2d(r0 * std::cos(from), r0 * std::sin(from)),
-              Vec2d(r0 * std::cos(to), r0 * std::sin(to))})
-            corners.emplace_back(p.x(), p.y(), z);
-    return corners;
-}
-
 namespace {
-
-constexpr int cylinder_sectors = 16;
 
 // A part of a caster that is aimed at by itself: a sphere, or the convex hull of some points.
 struct Target {
@@ -40,14 +24,17 @@ Target whole(const Shape& shape) {
     return {bounding_sphere(shape), hull_points(shape)};
 }
 
-// The sectors of a tube.
-std::vector<Target> sectors(const Shape& shape) {
+// Hulls of the parts that it is better aimed at one by one; none where it has none.
+std::vector<Target> parts_of(const Shape& shape) {
     std::vector<Target> parts;
-    for (int i = 0; i < cylinder_sectors; ++i) {
-        const double step = 2 * pi_d / cylinder_sectors;
-        const auto hull = to_world(shape, sector_hull(i * step, (i + 1) * step, 1, 1));
-        parts.push_back({bounding_sphere(hull), hull});
-    }
+    if (shape.primitive == Primitive::mesh) return parts;
+    ask_exact(shape, [&](const auto& kind) {
+        if constexpr (requires { kind.hulls(); })
+            for (const std::vector<Vec3d>& local : kind.hulls()) {
+                const auto hull = to_world(shape, local);
+                parts.push_back({bounding_sphere(hull), hull});
+            }
+    });
     return parts;
 }
 
@@ -92,14 +79,12 @@ double measure_of(const std::vector<DirectionCone>& cones) {
     return sum;
 }
 
-// The cones from a sphere towards one caster. A tube is mostly air, so it is aimed at by sectors
-// where that is less to fill.
+// The cones from a sphere towards one caster, or towards its parts where that is less to fill.
 std::vector<DirectionCone> cones_towards(const BoundingSphere& from, const Shape& caster) {
     const std::vector<DirectionCone> one = {cone_towards(from, whole(caster))};
-    if (caster.primitive != Primitive::cylinder) return one;
     std::vector<DirectionCone> cones;
-    for (const Target& sector : sectors(caster)) cones.push_back(cone_towards(from, sector));
-    return measure_of(cones) < measure_of(one) ? cones : one;
+    for (const Target& part : parts_of(caster)) cones.push_back(cone_towards(from, part));
+    return !cones.empty() && measure_of(cones) < measure_of(one) ? cones : one;
 }
 
 void normalise(std::vector<double>& measures) {

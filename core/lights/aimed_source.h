@@ -59,8 +59,6 @@ std::optional<Ray> through_disc(const Surroundings& scene, const AimedSource& so
                                 const AimedSample& sample, const Frame& across, Rng& rng);
 
 DirectionCone cone_of_half_angle(const Vec3d& axis, double half_angle);
-/// Corners of the prism round a sector of the unit disc's rim or, from radius r0 on, of its area.
-std::vector<Vec3d> sector_hull(double from, double to, double r0, double height);
 /// Points of a shape's own frame in the scene's.
 std::vector<Vec3> to_world(const Shape& shape, const std::vector<Vec3d>& local);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/geometry/surface_offset.h"
 #include "core/lights/light_text.h"
@@ -29,27 +30,20 @@ float max_cosine(const Vec3& n, const std::vector<AimedCone>& cones) {
 
 // A sphere round the points of a flat light whose numbers lie between low and high.
 BoundingSphere piece_bound(const Shape& shape, const Vec2& low, const Vec2& high) {
-    std::vector<Vec3d> local;
-    if (shape.primitive == Primitive::disk) {
-        // The sampler's radius is the root of the first number; its inner corners lie closer in.
-        const double from = 2 * pi_d * static_cast<double>(low.y());
-        const double to = 2 * pi_d * static_cast<double>(high.y());
-        const auto outer = std::sqrt(static_cast<double>(high.x()));
-        const auto inner = std::sqrt(static_cast<double>(low.x())) / outer;
-        for (const Vec3d& p : sector_hull(from, to, inner, 0)) local.push_back(outer * p);
-    } else {
-        for (const float x : {low.x(), high.x()})
-            for (const float y : {low.y(), high.y()})
-                local.emplace_back(2 * static_cast<double>(x) - 1, 2 * static_cast<double>(y) - 1,
-                                   0);
-    }
+    const auto local = ask_exact(shape, [&](const auto& kind) -> std::vector<Vec3d> {
+        if constexpr (requires { kind.piece(low, high); })
+            return kind.piece(low, high);
+        else
+            throw std::logic_error("only flat lights have pieces");
+    });
     BoundingSphere bound = bounding_sphere(to_world(shape, local));
     bound.radius *= 1 + 1e-5F;
     return bound;
 }
 
 bool is_flat(const Shape& shape) {
-    return shape.primitive == Primitive::rectangle || shape.primitive == Primitive::disk;
+    return shape.primitive != Primitive::mesh &&
+           ask_exact(shape, [](const auto& kind) { return kind.is_flat; });
 }
 
 // Whether the light is so large that it is better aimed piece by piece.

@@ -9,7 +9,7 @@
 namespace caustics {
 
 /// The front side of a shape of the scene; the shape's file entry holds it, and the exporters write it
-/// there. What its members are for is told in light.h.
+/// there. Its members: light.h.
 struct AreaLight {
     std::uint32_t shape = 0;
     Spectrum radiance = Spectrum::Ones();  ///< [W m^-2 sr^-1]

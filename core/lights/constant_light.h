@@ -8,8 +8,8 @@
 
 namespace caustics {
 
-/// The same radiance from everywhere, from infinitely far away (Mitsuba's `constant`). What its members are
-/// for is told in light.h.
+/// The same radiance from everywhere, from infinitely far away (Mitsuba's `constant`). Its
+/// members: light.h.
 struct ConstantLight {
     Spectrum radiance = Spectrum::Ones();  ///< [W m^-2 sr^-1]
 

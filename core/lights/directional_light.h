@@ -8,7 +8,7 @@
 
 namespace caustics {
 
-/// Parallel rays from far away. What its members are for is told in light.h.
+/// Parallel rays from far away. Its members: light.h.
 struct DirectionalLight {
     Vec3 direction = Vec3::UnitZ();          ///< unit, the way the light travels
     Spectrum irradiance = Spectrum::Ones();  ///< on a plane across the direction [W/m^2]

@@ -8,7 +8,7 @@
 namespace caustics {
 namespace {
 
-/// A kind that stands in a scene file by itself.
+/// A kind that a scene file holds as an object of its own.
 template <class Kind>
 concept StandsAlone = requires(const JsonNode& node, const Vec3d& origin) {
     { Kind::read(node, origin) } -> std::same_as<Kind>;

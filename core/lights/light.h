@@ -44,7 +44,7 @@ void scale(Light& light, const Spectrum& factor);
 MitsubaEmitter to_mitsuba(const Light& light);
 PovrayLight to_povray(const Light& light, const Surroundings& scene);
 
-/// Types that stand in a scene file as objects of their own.
+/// Types that a scene file holds as objects of their own.
 const std::vector<std::string>& light_types();
 Light read_light(const std::string& type, const JsonNode& node, const Vec3d& origin);
 /// All kinds, `ambient` among them, with their keys.

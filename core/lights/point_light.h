@@ -8,7 +8,7 @@
 
 namespace caustics {
 
-/// Shines alike all round. What its members are for is told in light.h.
+/// Shines alike all round. Its members: light.h.
 struct PointLight {
     Vec3 position = Vec3::Zero();
     Spectrum intensity = Spectrum::Ones();  ///< [W/sr]

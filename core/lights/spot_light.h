@@ -8,7 +8,7 @@
 
 namespace caustics {
 
-/// Shines about an axis (Mitsuba's `spot`). What its members are for is told in light.h.
+/// Shines about an axis (Mitsuba's `spot`). Its members: light.h.
 struct SpotLight {
     Vec3 position = Vec3::Zero();
     Spectrum intensity = Spectrum::Ones();  ///< along the axis [W/sr]

@@ -19,7 +19,7 @@ struct Dielectric {
     Spectrum specular_transmittance = Spectrum::Ones();
 
     bool is_dispersive() const { return int_ior.is_dispersive() || ext_ior.is_dispersive(); }
-    /// Index of refraction behind the interface over that before it, for light that comes to its front or
+    /// Index of refraction behind the interface over that before it, for light that arrives on its front or
     /// back, at a wavelength [nm]; 0: as Ior::at.
     float relative_ior(bool front, float nm) const;
 

@@ -29,7 +29,7 @@ inline Vec3 uniform_cap(float one_minus_cos, float u0, float u1) {
     return {sine * std::cos(angle), sine * std::sin(angle), 1 - height};
 }
 
-/// The directions within an angle of a unit axis. The angle is kept as 1 - cos, which still tells
+/// The directions within an angle of a unit axis. The angle is kept as 1 - cos, which still resolves
 /// narrow cones apart where cos itself rounds to 1 (below 3e-4 rad in float).
 struct DirectionCone {
     Vec3 axis = Vec3::UnitZ();

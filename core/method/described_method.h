@@ -4,7 +4,7 @@
 
 namespace caustics {
 
-/// A method told by a params struct with its defaults in place and a table of its members.
+/// A method described by a params struct with its defaults in place and a table of its members.
 template <class Params>
 struct MethodTable {
     MethodFacts facts;

@@ -1,6 +1,34 @@
 #include "core/method/none.h"
 
+#include <algorithm>
+
 namespace caustics {
+namespace {
+
+class NoCaustic : public CausticEstimator {
+public:
+    explicit NoCaustic(const NoneParams& params) : params_(params) {}
+
+    Shadows shadows() const override { return params_.shadows; }
+    void radiance(std::span<const ReceiverPoint>, std::span<Estimate> out,
+                  QueryContext&) const override {
+        std::fill(out.begin(), out.end(), Estimate{});
+    }
+    void irradiance(std::span<const ReceiverPoint>, std::span<Estimate> out,
+                    QueryContext&) const override {
+        std::fill(out.begin(), out.end(), Estimate{});
+    }
+
+private:
+    NoneParams params_;
+};
+
+}  // namespace
+
+std::unique_ptr<const CausticEstimator> build(const Scene&, const NoneParams& params,
+                                              const RunOptions&) {
+    return std::make_unique<NoCaustic>(params);
+}
 
 const DescribedMethod<NoneParams>& none_method() {
     using P = NoneParams;

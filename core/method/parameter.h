@@ -29,7 +29,7 @@ double read_length(const JsonNode& node, const std::string& otherwise);
 /// A file, whose relative name starts at the folder of the file that names it.
 std::filesystem::path read_file_name(const JsonNode& node);
 
-/// A row of a method's table of parameters: how one key is read, told and recorded.
+/// A row of a method's table of parameters: how one key is read, described and recorded.
 template <class Params>
 struct Parameter {
     KeyText text;

@@ -34,7 +34,7 @@ private:
     std::span<const ReceiverPoint> points_;
     std::span<const float> radii_;
     float cell_size_ = 1;
-    /// Each disc stands in every cell its bounding box meets, ascending.
+    /// Each disc is listed in every cell its bounding box meets, ascending.
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
 };
 

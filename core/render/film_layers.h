@@ -15,7 +15,7 @@ struct PixelSums {
     SpectrumSum ambient = SpectrumSum::Zero();
     SpectrumSum caustic = SpectrumSum::Zero();
     SpectrumSum caustic_squares = SpectrumSum::Zero();
-    SpectrumSum own_variance = SpectrumSum::Zero();  ///< as the method tells it of each sample
+    SpectrumSum own_variance = SpectrumSum::Zero();  ///< as the method reports it of each sample
     SpectrumSum beauty_squares = SpectrumSum::Zero();
     SpectrumSum albedo = SpectrumSum::Zero();
     Vec3d normal = Vec3d::Zero();

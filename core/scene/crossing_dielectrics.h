@@ -9,7 +9,7 @@
 namespace caustics {
 
 /// Pairs of dielectric shapes (indices into Scene::shapes, the lower first) whose surfaces cross: of a
-/// place inside both nobody knows which medium fills it, so the light there means nothing. Shapes
+/// place inside both the medium is not defined, so the light there means nothing. Shapes
 /// inside one another (a bubble in glass) and shapes that touch (water in a glass) do not cross.
 ///
 /// Found along the edges of the shapes' meshes, some thousands a shape; so a crossing smaller than a

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -22,64 +21,21 @@
 
 #include "core/base/interrupt.h"
 #include "core/base/parallel.h"
-#include "core/geometry/exact_shape.h"
-#include "core/geometry/surface_offset.h"
+#include "core/scene/placed_surfaces.h"
 
 namespace caustics {
 namespace {
 
-// An interrupted commit is told by throw_if_interrupted() after it.
+// throw_if_interrupted() reports an interrupted commit after it.
 void throw_embree_error(void*, RTCError code, const char* text) {
     if (code == RTC_ERROR_CANCELLED) return;
     throw std::runtime_error("Embree: " + std::string(text) + " (error " +
                              std::to_string(static_cast<int>(code)) + ")");
 }
 
-// An exact shape with its world -> local map, as Embree's user geometry sees it.
-struct ExactGeometry {
-    const Shape* shape = nullptr;
-    Transform to_local = Transform::Identity();
-    float least_offset = 0;
-
-    std::optional<ExactHit> intersect(const Vec3& origin, const Vec3& direction, float t_min,
-                                      float t_max) const {
-        const Vec3d o = to_local * origin.cast<double>();
-        const Vec3d d = to_local.linear() * direction.cast<double>();
-        return intersect_exact(*shape, o, d, static_cast<double>(t_min),
-                               static_cast<double>(t_max));
-    }
-};
-
-// A mesh's vertex in half a cache line. Embree reads the positions where they lie; it may read
-// 16 bytes from each.
-struct Vertex {
-    Vec3 position;
-    float u;
-    Vec3 normal;
-    float v;
-};
-static_assert(sizeof(Vertex) == 32);
-
-struct Mesh {
-    const Shape* shape = nullptr;
-    std::vector<Vertex> vertices;
-    bool smooth = false;  // has normals
-    bool mapped = false;  // has texture coordinates
-
-    explicit Mesh(const Shape& s)
-        : shape(&s), smooth(!s.mesh.normals.empty()), mapped(!s.mesh.uvs.empty()) {
-        vertices.reserve(s.mesh.positions.size());
-        for (std::size_t i = 0; i < s.mesh.positions.size(); ++i) {
-            const Vec2 uv = mapped ? s.mesh.uvs[i] : Vec2(Vec2::Zero());
-            const Vec3 normal = smooth ? s.mesh.normals[i] : Vec3(Vec3::Zero());
-            vertices.push_back({s.mesh.positions[i], uv.x(), normal, uv.y()});
-        }
-    }
-};
-
 void exact_bounds(const RTCBoundsFunctionArguments* args) {
-    const auto* geometry = static_cast<const ExactGeometry*>(args->geometryUserPtr);
-    const Box box = bounds(*geometry->shape);
+    const auto* geometry = static_cast<const PlacedExact*>(args->geometryUserPtr);
+    const Box box = bounds(geometry->shape());
     // Outwards by more than float rounding, so that the exact shape lies inside.
     const float pad = 1e-5F * box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff();
     const Vec3 low = box.min().array() - pad;
@@ -92,7 +48,7 @@ std::optional<ExactHit> exact_hit(const void* user, RTCRayN* rays, unsigned n, u
                       RTCRayN_org_z(rays, n, i));
     const Vec3 direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i),
                          RTCRayN_dir_z(rays, n, i));
-    return static_cast<const ExactGeometry*>(user)->intersect(
+    return static_cast<const PlacedExact*>(user)->intersect(
         origin, direction, RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i));
 }
 
@@ -130,18 +86,18 @@ void exact_occluded(const RTCOccludedFunctionNArguments* args) {
             RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
 }
 
-RTCGeometry mesh_geometry(RTCDevice device, const Mesh& mesh) {
-    const std::vector<Vertex>& vertices = mesh.vertices;
-    const auto& triangles = mesh.shape->mesh.triangles;
+RTCGeometry mesh_geometry(RTCDevice device, const PlacedMesh& mesh) {
+    const auto& vertices = mesh.vertices();
+    const auto& triangles = mesh.mesh().triangles;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               vertices.data(), 0, sizeof(Vertex), vertices.size());
+                               vertices.data(), 0, sizeof(PlacedMesh::Vertex), vertices.size());
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                triangles.data(), 0, 3 * sizeof(std::uint32_t), triangles.size());
     return geometry;
 }
 
-RTCGeometry exact_geometry(RTCDevice device, ExactGeometry& exact) {
+RTCGeometry exact_geometry(RTCDevice device, PlacedExact& exact) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
     rtcSetGeometryUserData(geometry, &exact);
@@ -227,50 +183,12 @@ void occlude_scene(RTCScene scene, RTCRay& ray) {
 #endif
 }
 
-void fill_mesh_point(const Mesh& mesh, std::uint32_t primitive, float u, float v,
-                     SurfacePoint& point) {
-    const std::array<std::uint32_t, 3>& triangle = mesh.shape->mesh.triangles[primitive];
-    const Vertex& a = mesh.vertices[triangle[0]];
-    const Vertex& b = mesh.vertices[triangle[1]];
-    const Vertex& c = mesh.vertices[triangle[2]];
-    const float w = 1 - u - v;
-    // In double, so that the point lies on the plane to its own rounding, however large the triangle.
-    point.position = (static_cast<double>(w) * a.position.cast<double>() +
-                      static_cast<double>(u) * b.position.cast<double>() +
-                      static_cast<double>(v) * c.position.cast<double>())
-                         .cast<float>();
-    const Vec3 across = (b.position - a.position).cross(c.position - a.position);
-    const float twice_area = across.norm();
-    point.geometric_normal = twice_area > 0 ? Vec3(across * (1 / twice_area)) : across;
-    point.offset =
-        triangle_offset(point.position, point.geometric_normal, a.position, b.position, c.position);
-    point.shading_normal = point.geometric_normal;
-    if (mesh.smooth) {
-        const Vec3 n = w * a.normal + u * b.normal + v * c.normal;
-        const float length = n.norm();
-        if (length > 0) point.shading_normal = n * (1 / length);
-    }
-    point.uv = mesh.mapped ? Vec2(w * Vec2(a.u, a.v) + u * Vec2(b.u, b.v) + v * Vec2(c.u, c.v))
-                           : Vec2(u, v);
-}
-
-void fill_exact_point(const ExactGeometry& exact, const Vec3d& local, SurfacePoint& point) {
-    const Shape& shape = *exact.shape;
-    const Vec3d n = exact.to_local.linear().transpose() * exact_normal(shape, local);
-    point.position = Vec3d(shape.to_world * local).cast<float>();
-    point.offset = std::max(rounding_offset(point.position), exact.least_offset);
-    point.geometric_normal = n.normalized().cast<float>();
-    if (shape.flip_normals) point.geometric_normal = -point.geometric_normal;
-    point.shading_normal = point.geometric_normal;
-    point.uv = exact_uv(shape, local);
-}
-
 }  // namespace
 
 struct Intersector::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<std::variant<Mesh, ExactGeometry>> geometries;  ///< of the shapes
+    std::vector<std::variant<PlacedMesh, PlacedExact>> geometries;  ///< of the shapes
 
     explicit Embree(std::size_t shapes) {
         geometries.reserve(shapes);  // so that none moves
@@ -299,12 +217,11 @@ struct Intersector::Embree {
     void attach(const Shape& shape, std::size_t index) {
         RTCGeometry geometry = nullptr;
         if (shape.primitive == Primitive::mesh) {
-            geometries.emplace_back(Mesh(shape));
-            geometry = mesh_geometry(device, std::get<Mesh>(geometries.back()));
+            geometries.emplace_back(PlacedMesh(shape));
+            geometry = mesh_geometry(device, std::get<PlacedMesh>(geometries.back()));
         } else {
-            geometries.emplace_back(
-                ExactGeometry{&shape, shape.to_world.inverse(), least_offset(shape)});
-            geometry = exact_geometry(device, std::get<ExactGeometry>(geometries.back()));
+            geometries.emplace_back(PlacedExact(shape));
+            geometry = exact_geometry(device, std::get<PlacedExact>(geometries.back()));
         }
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(index));
@@ -332,10 +249,10 @@ void Intersector::fill(const Arrival& arrival, SurfacePoint& point) const {
     point.shape = arrival.geometry;
     point.distance = arrival.distance;
     const auto& geometry = embree_->geometries[arrival.geometry];
-    if (const auto* mesh = std::get_if<Mesh>(&geometry))
-        fill_mesh_point(*mesh, arrival.primitive, arrival.u, arrival.v, point);
+    if (const auto* mesh = std::get_if<PlacedMesh>(&geometry))
+        mesh->fill(arrival.primitive, arrival.u, arrival.v, point);
     else
-        fill_exact_point(std::get<ExactGeometry>(geometry), arrival.exact.local, point);
+        std::get<PlacedExact>(geometry).fill(arrival.exact.local, point);
 }
 
 std::optional<SurfacePoint> Intersector::intersect(const Ray& ray) const {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/shapes/shape_reader.h"
+#include "core/scene/shape_reader.h"
 
 namespace caustics::scene_file {
 namespace {

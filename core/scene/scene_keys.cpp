@@ -6,7 +6,7 @@
 #include "core/material/bsdf_reader.h"
 #include "core/material/ior_reader.h"
 #include "core/material/texture_reader.h"
-#include "core/shapes/shape_keys.h"
+#include "core/scene/shape_reader.h"
 
 namespace caustics::scene_file {
 

@@ -8,9 +8,9 @@
 #include "core/lights/ambient_light.h"
 #include "core/material/bsdf_reader.h"
 #include "core/scene/scene_frame.h"
+#include "core/scene/shape_reader.h"
 #include "core/scene_file/json_reader.h"
 #include "core/scene_file/values.h"
-#include "core/shapes/shape_reader.h"
 
 namespace caustics {
 namespace {
@@ -127,7 +127,7 @@ struct Draft {
     Assets assets;
 };
 
-// The children of the scene are told apart by their types alone.
+// The children of the scene differ by their types alone.
 void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     const std::string type = node.at("type").as_string();
     std::vector<std::string> known{"perspective"};

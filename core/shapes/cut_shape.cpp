@@ -1,5 +1,7 @@
 #include "core/shapes/cut_shape.h"
 
+#include "core/exact_shapes/shape_keys.h"
+
 #include <cmath>
 
 #include "core/geometry/cut_solid.h"
@@ -52,6 +54,38 @@ TriangleMesh read_cut(const JsonNode& node, const std::optional<JsonNode>& resol
         solid.inner_sectors = static_cast<int>(resolution->as_integer_in(3, 4096));
     }
     return load_for(node, [&] { return tessellate_cut(solid); });
+}
+
+Objects cut_keys() {
+    KeyText inner{.key = "inner",
+                  .meaning = "Of a bowl: a smooth inside, from the rim at the height to the axis.",
+                  .type = "object",
+                  .usual = "none"};
+    return {
+        {"cut",
+         "A shape, a mesh: a gem or a cut bowl with flat facets, what is common to at most 200 "
+         "half-spaces.",
+         joined(turned_keys("Sectors of the inside."),
+                {{.key = "rings",
+                  .meaning = "Facets round z.",
+                  .type = "list of rings",
+                  .usual = "none"},
+                 {.key = "planes",
+                  .meaning = "Facets that look to (nx, ny, nz), d over its length from the origin.",
+                  .unit = "m",
+                  .type = "list of [nx, ny, nz, d]",
+                  .usual = "none"},
+                 number("height", "Cuts the top off at this z.", "m", "none", "-1e+30 to 1e+30"),
+                 inner})},
+        {"ring",
+         "An element of rings.",
+         {whole("count", "Of the ring's facets.", "", "", "1 to 200"),
+          number("angle", "Elevation of what the facets look to: 0 outwards, 90 up, -90 down.",
+                 "degrees", "", "-90 to 90"),
+          number("distance", "Of the facets' planes from the origin.", "m", "", "-1e+30 to 1e+30"),
+          number("phase", "Turns the ring, by facets; at 0 the first looks to +x.", "facets", "0",
+                 "-1000 to 1000")}},
+        {"inner", "In a cut.", profile_keys()}};
 }
 
 }  // namespace caustics::scene_file

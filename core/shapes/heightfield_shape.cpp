@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/base/picture_file.h"
+#include "core/exact_shapes/shape_keys.h"
 #include "core/geometry/fractal_field.h"
 
 namespace caustics::scene_file {
@@ -78,6 +79,14 @@ Vec2d read_half_size(const JsonNode& node) {
     return {half[0], half[1]};
 }
 
+KeyText half_size_key() {
+    return {.key = "half_size",
+            .meaning = "Half the rectangle's extent in x and y.",
+            .unit = "m",
+            .type = "[x, y]",
+            .usual = "[1, 1]"};
+}
+
 }  // namespace
 
 bool is_height_grid(const JsonNode& node) { return node.has("fractal") || node.has("filename"); }
@@ -97,6 +106,48 @@ std::variant<SineHeightfield, HeightGrid> read_heights(const JsonNode& node, Ass
     field.half_size = half_size;
     for (const JsonNode& wave : waves->as_array()) field.waves.push_back(read_wave(wave));
     return field;
+}
+
+Objects heightfield_keys() {
+    KeyText picture = file(
+        "Heights by a picture of one channel, 16-bit PNG or EXR, in place of waves; its pixels are "
+        "the corners of the cells, the top row at +y.");
+    picture.usual = "none";
+    return {
+        {"heightfield",
+         "A shape over a rectangle round the origin, facing up: a sum of sines; or a mesh by "
+         "fractal or filename, which takes no resolution.",
+         joined(grid_keys(), {{.key = "waves",
+                               .meaning = "The sines that are added.",
+                               .type = "list of waves",
+                               .usual = "none"},
+                              {.key = "fractal",
+                               .meaning = "Fractal ground in place of waves.",
+                               .type = "object",
+                               .usual = "none"},
+                              picture,
+                              number("height", "Of the picture's value 1 (white) over 0.", "m",
+                                     "1 with filename", "-1e+30 to 1e+30"),
+                              half_size_key()})},
+        {"wave",
+         "An element of waves: amplitude sin(wave_vector . (x, y) + phase).",
+         {number("amplitude", "Of the sine.", "m", "", "-1e+30 to 1e+30"),
+          {.key = "wave_vector",
+           .meaning = "Direction of the crests' motion; its length is 2 pi over the wavelength.",
+           .unit = "rad/m",
+           .type = "[x, y]"},
+          number("phase", "At the origin.", "rad", "0", "-1e+30 to 1e+30")}},
+        {"fractal",
+         "In a heightfield: random waves that repeat with the rectangle; finer levels add shorter "
+         "ones.",
+         {whole("levels", "2^levels cells along x and y: 512 at 9, 33.6 million triangles at 12.",
+                "", "", "2 to 12"),
+          number("hurst", "From rough to smooth: (z(x + d) - z(x))^2 grows as |d|^(2 hurst).", "",
+                 "0.8", "0 to 1"),
+          number("rms", "Root of the mean square height, about 0.", "m", "", "0 to 1e+30"),
+          number("lowest", "Waves along the longer side; longer waves are damped.", "waves", "1",
+                 "1 to half the cells along x"),
+          whole("seed", "Of the random numbers.", "", "0", "0 to 4294967295")}}};
 }
 
 }  // namespace caustics::scene_file

@@ -1,5 +1,7 @@
 #include "core/shapes/lathe_shape.h"
 
+#include "core/exact_shapes/shape_keys.h"
+
 namespace caustics::scene_file {
 namespace {
 
@@ -29,6 +31,31 @@ TriangleMesh read_lathe(const JsonNode& node, int sectors) {
     LatheProfile profile = read_profile(node);
     if (const auto open = node.find("open")) profile.open = open->as_bool();
     return load_for(node.at("profile"), [&] { return tessellate_lathe(profile, sectors); });
+}
+
+Keys profile_keys() {
+    return {{.key = "profile",
+             .meaning = "The curve's points, each [r, z] or a profile point; r is from the axis z.",
+             .unit = "m",
+             .type = "list of points"},
+            choice("interpolation", "Straight lines, or Catmull-Rom curves from crease to crease.",
+                   "linear", "linear, catmullrom"),
+            whole("segments", "Straight pieces between two points.", "", "1, or 8 with catmullrom",
+                  "1 to 4096")};
+}
+
+Objects lathe_keys() {
+    return {
+        {"lathe",
+         "A shape, a mesh: a profile turned round z. Its front is on the right of the profile's "
+         "way, outside where that goes up.",
+         joined(joined(turned_keys("Sectors round the axis; parts with as many fit together."),
+                       profile_keys()),
+                {yes_or_no("open", "The profile may end off the axis.", "false")})},
+        {"profile point",
+         "An element of profile, where the surface has an edge.",
+         {{.key = "at", .meaning = "Its place.", .unit = "m", .type = "[r, z]"},
+          yes_or_no("crease", "Splits the normal; without, it is smooth.", "false")}}};
 }
 
 }  // namespace caustics::scene_file

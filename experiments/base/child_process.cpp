@@ -61,7 +61,7 @@ void write_all(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t written = write(descriptor, bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) _exit(1);  // nobody listens
+        if (written <= 0) _exit(1);  // the reader is gone
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
 }

@@ -51,14 +51,14 @@ public:
     ChildProcess(ChildProcess&& other) noexcept;
     ChildProcess& operator=(ChildProcess&& other) = delete;
 
-    /// Reads what the child told, without waiting; kills it when its time is over or its memory too
+    /// Reads what the child wrote, without waiting; kills it when its time is over or its memory too
     /// large. True when it has ended.
     bool has_ended();
-    /// Milliseconds after which has_ended() should be asked again, though nothing was told.
+    /// Milliseconds after which has_ended() should be asked again, though nothing was written.
     int patience() const;
     /// How it ended; only when it has.
     const ChildEnd& end() const { return end_; }
-    double share() const { return share_; }   ///< told last
+    double share() const { return share_; }   ///< as last reported
     double seconds() const;                   ///< since it began, until its end
     int descriptor() const { return pipe_; }  ///< becomes readable when there is something to do
     pid_t id() const { return process_; }

@@ -18,7 +18,7 @@ private:
     struct Moment {
         double wall = 0;  ///< seconds
         double own = 0;   ///< seconds of this process on all processors
-        double all = 0;   ///< seconds of everybody
+        double all = 0;   ///< seconds of all processes
     };
     static Moment now();
 

@@ -12,7 +12,7 @@ namespace caustics::experiments {
 struct Eta {
     Eta(double all, bool more_to_come = false) : seconds(all), at_least(more_to_come) {}
     double seconds;
-    bool at_least;  ///< some of the work cannot be told yet
+    bool at_least;  ///< some of the work is not known yet
 };
 
 /// Tells on stderr how far a job of many steps is: on a terminal one line kept up to date, with an

@@ -48,7 +48,7 @@ std::optional<Eta> StepProgress::remaining(double share) const {
     return Eta(seconds_since(start_) * (static_cast<double>(steps_) - done) / done);
 }
 
-/// By what it took so far, or else by what was expected; empty when nothing tells.
+/// By what it took so far, or else by what was expected; empty when neither is known.
 std::optional<Eta> StepProgress::remaining_of_step(double share) const {
     const double spent = seconds_since(begun_);
     if (share > 0) return Eta(spent * (1 - share) / share);

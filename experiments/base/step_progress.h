@@ -16,7 +16,7 @@ class StepProgress {
 public:
     explicit StepProgress(std::size_t steps) : progress_(steps, 0), steps_(steps) {}
 
-    /// A step begins. `expected`: the seconds that it will take, if something tells.
+    /// A step begins. `expected`: the seconds that it will take, if known.
     void begin(const std::string& what, std::optional<double> expected = {});
     /// What the steps after the next one will take, for work whose steps differ much.
     void expect_later(Eta later);

@@ -53,7 +53,7 @@ void append_text(std::string& text, const char* title, const nlohmann::json& met
                                 : value.dump());
 }
 
-/// What the reference's own standard error leaves of a difference, in one line; empty where it tells none.
+/// What the reference's own standard error leaves of a difference, in one line; empty where it has none.
 std::string said_of_reference(const Film& reference, const std::string& layer,
                               const PixelMask& reached, const nlohmann::json& metrics) {
     const auto share =
@@ -64,7 +64,7 @@ std::string said_of_reference(const Film& reference, const std::string& layer,
     return fmt::format(
         "the reference's own standard error is {:.4g} W/(m^2 sr) (root mean square): {}\n", error,
         rmse <= 1.5 * error
-            ? "the difference is within it, and tells nothing of the picture"
+            ? "the difference is within it, and says nothing about the picture"
             : fmt::format("{:.0f} % of rmse squared", 100 * error * error / (rmse * rmse)));
 }
 

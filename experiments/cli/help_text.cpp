@@ -90,7 +90,7 @@ std::string record_help() {
     return text;
 }
 
-/// A kind of file that help tells about.
+/// A kind of file that help describes.
 struct FileTopic {
     const char* name;
     const char* meaning;
@@ -101,7 +101,7 @@ constexpr FileTopic file_topics[] = {{"scene", "the keys of scene files", scene_
                                      {"records", "the columns of a sweep's table", record_help}};
 
 std::string topic_list() {
-    std::string text = "help TOPIC tells every key with its type, range, unit and default.\n";
+    std::string text = "help TOPIC prints every key with its type, range, unit and default.\n";
     for (const MethodDescription* method : all_methods())
         text += wrapped(fmt::format("  {:<18} ", method->facts().name), method->facts().summary);
     for (const FileTopic& topic : file_topics)

@@ -5,7 +5,7 @@
 
 namespace caustics::experiments {
 
-/// What `help` tells about: each method, and the kinds of files.
+/// What `help` describes: each method, and the kinds of files.
 std::vector<std::string> help_topics();
 
 /// What `help TOPIC` prints, in lines of at most 100 columns; the topics for an empty one. Throws

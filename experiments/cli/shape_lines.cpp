@@ -2,21 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/mesh_audit.h"
+#include "core/mesh/mesh_audit.h"
 
 namespace caustics::experiments {
 namespace {
 
-const char* primitive_name(Primitive primitive) {
-    switch (primitive) {
-        case Primitive::rectangle: return "exact rectangle";
-        case Primitive::disk: return "exact disk";
-        case Primitive::sphere: return "exact sphere";
-        case Primitive::cylinder: return "exact cylinder";
-        case Primitive::heightfield: return "exact heightfield";
-        case Primitive::mesh: return "mesh";
-    }
-    return "";
+std::string kind_of(const Shape& shape) {
+    if (shape.primitive == Primitive::mesh)
+        return fmt::format("mesh of {} triangles", triangle_count(shape));
+    return ask_exact(shape, [](const auto& kind) { return fmt::format("exact {}", kind.type); });
 }
 
 // What a glass catalogue says of the inside.
@@ -60,13 +54,10 @@ std::vector<std::string> shape_lines(const Scene& scene) {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < scene.shapes().size(); ++i) {
         const Shape& shape = scene.shapes()[i];
-        std::string kind = primitive_name(shape.primitive);
-        if (shape.primitive == Primitive::mesh)
-            kind += fmt::format(" of {} triangles", triangle_count(shape));
         const bool caster = is_caster(shape.bsdf);
         const bool receiver = is_receiver(shape.bsdf);
         lines.push_back(fmt::format(
-            "  {:<16} {:<28} {}{}\n", shape.name, kind,
+            "  {:<16} {:<28} {}{}\n", shape.name, kind_of(shape),
             caster && receiver ? "caster and receiver"
             : caster           ? "caster"
                                : "receiver",

@@ -35,7 +35,7 @@ struct SweepFlags {
 
 SweepOptions options_of(const SweepFlags& flags) {
     if (flags.memory > 0 && resident_bytes() == 0)
-        throw InputError("--memory: cannot be held without /proc, which tells what a trial has");
+        throw InputError("--memory: cannot be held without /proc, which shows what a trial uses");
     SweepOptions options;
     options.folder = flags.folder;
     if (!flags.shard.empty()) options.shard = parse_shard(flags.shard);
@@ -110,7 +110,7 @@ Verb add_sweep(CLI::App& app) {
     verb->footer(
         "Each trial runs in a process of its own; what it leaves behind is whole or absent. Trials "
         "with a record are\nskipped, so that the same command goes on where it was stopped. Writes "
-        "DIR/records.csv and .jsonl (one row a\ntrial; results/records.md tells the columns), "
+        "DIR/records.csv and .jsonl (one row a\ntrial; results/records.md lists the columns), "
         "DIR/trials/ID/{record.json,image.exr,log.txt},\nDIR/report/figures/ID.png (reference | "
         "picture | signed error), DIR/plan.json, DIR/environment.json.\n"
         "Example:\n  causticbench sweep experiments/sweeps/tiny.json -o out --timeout 600 --memory "

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "core/geometry/mesh.h"
 #include "core/material/texture.h"
+#include "core/mesh/mesh.h"
 
 namespace caustics::experiments {
 

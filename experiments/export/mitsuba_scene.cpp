@@ -157,13 +157,12 @@ private:
 
     void open_exact(std::size_t i, const std::string& name) {
         const Shape& shape = scene_.shapes[i];
-        const bool round =
-            shape.primitive == Primitive::sphere || shape.primitive == Primitive::cylinder;
+        const bool round = ask_exact(shape, [](const auto& kind) { return kind.needs_similarity; });
+        const std::string type = ask_exact(shape, [](const auto& kind) { return kind.type; });
         // Mitsuba turns the normals of a round shape with a negative radius round.
         if (round && shape.to_world.linear().determinant() < 0)
             refuse(i, "Mitsuba turns a mirrored round shape inside out; give it a `resolution`");
-        static const char* const types[] = {"rectangle", "disk", "sphere", "cylinder"};
-        xml_.open("shape", {{"type", types[static_cast<int>(shape.primitive)]}, {"id", name}});
+        xml_.open("shape", {{"type", type}, {"id", name}});
         transform("to_world", shape.to_world.matrix());
         if (shape.flip_normals) value("boolean", "flip_normals", "true");
     }

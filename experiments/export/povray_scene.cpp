@@ -53,6 +53,12 @@ std::string mesh2(const TriangleMesh& mesh, const Checkerboard* board) {
     return text;
 }
 
+// An exact shape in POV-Ray's words; nullptr: it is written as a mesh.
+const char* words_of(const Shape& shape) {
+    if (shape.primitive == Primitive::mesh) return nullptr;
+    return ask_exact(shape, [](const auto& kind) { return kind.povray; });
+}
+
 constexpr const char* mirror_photons =
     "photons { target reflection on refraction off collect off }";
 
@@ -188,10 +194,7 @@ private:
 
     void write_geometry(const Shape& shape) {
         const Checkerboard* board = checkerboard(shape);
-        const char* exact = nullptr;
-        if (shape.primitive == Primitive::sphere) exact = "sphere { 0, 1";
-        if (shape.primitive == Primitive::disk) exact = "disc { 0, z, 1";
-        if (shape.primitive == Primitive::cylinder) exact = "cylinder { 0, z, 1 open";
+        const char* const exact = words_of(shape);
         if (exact != nullptr && board == nullptr) {
             text_ += fmt::format("{}\n  {}\n", exact, matrix(shape.to_world));
             return;
@@ -222,9 +225,7 @@ private:
     // One-sided surfaces are black from behind.
     void write_opaque(const Shape& shape, const std::string& texture, const std::string& photons) {
         const std::string black = "pigment { rgb 0 } finish { ambient 0 diffuse 0 }";
-        const bool inverted = shape.flip_normals && shape.primitive != Primitive::rectangle &&
-                              shape.primitive != Primitive::mesh &&
-                              shape.primitive != Primitive::heightfield;
+        const bool inverted = shape.flip_normals && words_of(shape) != nullptr;
         const bool both = shape.bsdf.twosided;
         text_ += fmt::format("  texture {{ {} }}\n", inverted && !both ? black : texture);
         if (!both)

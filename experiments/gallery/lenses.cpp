@@ -24,7 +24,7 @@ std::function<double(double)> of_ring(double irradiance) {
     return [irradiance](double rho) { return 2 * pi_d * irradiance * rho; };
 }
 
-// Paths of these events alone, so that what is reflected to and fro inside counts for nobody.
+// Paths of these events alone, so that light reflected to and fro inside counts for no method.
 void allow_events(GalleryScene& scene, const std::string& count) {
     for (Series& each : scene.series)
         for (Effort& effort : each.efforts) effort.parameters.push_back("max_bounces=" + count);

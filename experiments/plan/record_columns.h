@@ -13,7 +13,7 @@ struct RecordColumn {
     const char* pointer;  ///< into record.json
     Kind kind;
     const char* unit;     ///< empty: none, or "1" for a ratio
-    const char* meaning;  ///< as results/records.md tells it
+    const char* meaning;  ///< as in results/records.md
 };
 
 /// In the order of the table.

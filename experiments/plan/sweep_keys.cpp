@@ -58,7 +58,7 @@ ObjectText method() {
         "An element of methods.",
         {method_key(),
          {.key = "param",
-          .meaning = "Its parameters, each a value or a list of values; help METHOD tells them.",
+          .meaning = "Its parameters, each a value or a list of values; help METHOD lists them.",
           .type = "object",
           .usual = "{}"}}};
 }

@@ -75,7 +75,7 @@ SceneFile load(const SweepFile& sweep, const SceneVariant& variant) {
     }
 }
 
-/// What loading the variant tells: {"hash", "reference_key"}. Loads it as trials will, so that
+/// What loading the variant gives: {"hash", "reference_key"}. Loads it as trials will, so that
 /// whatever is wrong shows before anything runs.
 json examine(const SweepFile& sweep, const SceneVariant& variant) {
     const SceneFile file = load(sweep, variant);
@@ -124,7 +124,7 @@ std::string slug_word(const std::string& text) {
     return word;
 }
 
-/// For people to read; what tells trials apart is the hash behind it.
+/// For people to read; what distinguishes trials is the hash behind it.
 std::string slug(const Trial& trial) {
     constexpr std::size_t longest = 100;
     std::string words = slug_word(trial.scene_name) + "-" + trial.request.method.name;

@@ -14,7 +14,7 @@ namespace caustics::experiments {
 /// What the table of a sweep has to say in some lines, gathered one row at a time.
 class SweepSummary {
 public:
-    /// `swept`: the columns by which trials are told apart.
+    /// `swept`: the columns by which trials differ.
     explicit SweepSummary(const std::vector<std::string>& swept) : swept_(swept) {}
 
     void add(const TableRow& row);

@@ -17,7 +17,7 @@ namespace caustics::experiments {
 
 /// What the records of a folder's trials say, as rows: taken from the table that an earlier run
 /// left where the record is still the file its row was made from, else read from the record. A
-/// table that is not the one its index tells of serves for nothing.
+/// table that is not the one its index describes is not used.
 class TrialRows {
 public:
     TrialRows(const std::filesystem::path& folder, const TrialStore& store);

@@ -44,7 +44,7 @@ nlohmann::json describe(const Method& method);
 /// InputError for a file that is not what the parameter asks for.
 std::map<std::string, std::string> files_read(const Method& method);
 
-/// What tells two runs apart: describe() with the hashes of files in place of their names.
+/// What distinguishes two runs: describe() with the hashes of files in place of their names.
 nlohmann::json identity(const Method& method);
 
 /// How often the method goes through its precompute pass (`passes`); 1 for most.

@@ -8,8 +8,8 @@
 #include <optional>
 #include <variant>
 
-#include "core/geometry/vertex_normals.h"
 #include "core/light_path/light_path.h"
+#include "core/mesh/vertex_normals.h"
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
 

@@ -21,6 +21,7 @@
 #include "experiments/report/sweep_summary.h"
 #include "experiments/run/cli_options.h"
 #include "experiments/sweep/sweep_status.h"
+#include "experiments/sweep/sweep_warnings.h"
 
 namespace caustics::experiments {
 
@@ -58,13 +59,6 @@ std::size_t trials_of_others(const SweepPlan& plan, const TrialStore& store) {
     for (const Trial& trial : plan.trials) own.insert(trial.id);
     return static_cast<std::size_t>(std::ranges::count_if(
         store.trials(), [&](const std::string& id) { return !own.contains(id); }));
-}
-
-/// "a.json b.json"
-std::string sweep_words(const PlanFile& plan) {
-    std::string words;
-    for (const std::string& sweep : plan.sweeps) words += (words.empty() ? "" : " ") + sweep;
-    return words;
 }
 
 class Sweep {
@@ -122,57 +116,13 @@ private:
         return found == status_.statuses.end() ? std::string() : found->second;
     }
 
-    /// A warning of finished trials that the table leaves out, because this sweep has none such.
-    std::string others_text() const {
-        if (others_ == 0) return {};
-        return fmt::format(
-            "warning: {} holds {} trials that {} does not name, by other sweeps or by other "
-            "scenes: "
-            "records.csv leaves them out{}",
-            options_.folder.string(), others_, sweep_words(plan_file(plan_)), earlier_sweep());
-    }
-
-    /// How to get a table of both, where the plan before is one of other sweep files.
-    std::string earlier_sweep() const {
-        try {
-            const PlanFile before = read_plan_of(options_.folder);
-            const PlanFile now = plan_file(plan_);
-            if (before.sweeps == now.sweeps) return {};
-            return fmt::format(" (the plan before was of {}; name both for one table)",
-                               sweep_words(before));
-        } catch (const InputError&) {
-            return {};
-        }
-    }
-
     void warn() {
         for (const auto& [id, what] : status_.broken) {
             progress_->note("note: " + what);
             store_.remove(id);
         }
-        if (const std::string line = others_text(); !line.empty()) progress_->note(line);
-        const std::string code = status_.code_warning();
-        if (!code.empty() && !options_.force) progress_->note("warning: " + code);
-        if (plan_.duplicates > 0)
-            progress_->note(
-                fmt::format("note: the sweep names {} trials more than once; each is "
-                            "run once",
-                            plan_.duplicates));
-        const std::size_t failed = status_.count("failed") + status_.count("timeout");
-        if (failed > 0 && !options_.rerun_failed && !options_.force)
-            progress_->note(fmt::format(
-                "note: {} trials failed or took too long before (--rerun failed runs them again)",
-                failed));
-        const std::size_t processors = own_processors().size();
-        for (const Trial* trial : status_.todo) {
-            const int wanted = options_.trials.jobs * options_.trials.threads_of(*trial);
-            if (options_.trials.jobs == 1 || static_cast<std::size_t>(wanted) <= processors)
-                continue;
-            progress_->note(fmt::format(
-                "warning: {} trials at a time share {} processors: their times are no measurement",
-                options_.trials.jobs, processors));
-            return;
-        }
+        for (const std::string& line : sweep_warnings(plan_, options_, status_, others_))
+            progress_->note(line);
     }
 
     /// References use every thread there is: their time is no measurement.
@@ -270,7 +220,7 @@ private:
         progress_->show(running[0].trial->id + more, running[0].share, remaining());
     }
 
-    /// Seconds that the trials will still take; empty before anything tells.
+    /// Seconds that the trials will still take; empty before anything is known.
     std::optional<double> remaining() {
         const auto now = std::chrono::steady_clock::now();
         const double age = std::chrono::duration<double>(now - estimated_).count();

@@ -25,7 +25,7 @@ struct SweepStatus {
     std::size_t count(const std::string& status) const;
     /// The references of `todo` that have to be rendered, each once.
     std::vector<const ReferenceRequest*> references(const ReferenceCache& cache) const;
-    /// Seconds and bytes of `todo`, one after the other; empty when nothing tells.
+    /// Seconds and bytes of `todo`, one after the other; empty when not known.
     std::optional<Cost> cost() const;
     /// A line on results by other code; empty when there are none.
     std::string code_warning() const;

@@ -41,7 +41,7 @@ std::vector<ReceiverPoint> receiver_points(const Scene& scene, const GalleryScen
 std::vector<Estimate> answers(const CausticEstimator& method, const GalleryScene& gallery,
                               const std::vector<ReceiverPoint>& points, QueryContext& context);
 
-/// Runs one method on one scene at growing effort. What it refuses (UnsupportedScene) is told.
+/// Runs one method on one scene at growing effort. What it refuses (UnsupportedScene) is reported.
 SeriesOutcome run_series(const GalleryScene& scene, const Series& series,
                          const RunOptions& options);
 

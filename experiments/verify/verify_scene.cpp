@@ -237,7 +237,7 @@ private:
         return seeds * found->second;
     }
 
-    /// What comparing these methods takes, at least: which will want more effort, nothing tells.
+    /// What comparing these methods takes, at least: which will want more effort is not known.
     Eta comparing(std::span<const MethodDescription* const> methods) const {
         Eta eta(0);
         for (const MethodDescription* method : methods) {

@@ -27,7 +27,7 @@ struct SceneReport {
 ///   * each light's account (light_audit.h);
 ///   * each method's picture, bit for bit the same with one thread, two, and as many as `options` has;
 ///   * each method against the reference in 6 x 4 cells of the picture. Their scatter over twelve seeds
-///     tells errors. `lighttrace` and `pathtrace` must agree within them; the methods may in addition be
+///     estimates errors. `lighttrace` and `pathtrace` must agree within them; the methods may in addition be
 ///     off by a tenth of a cell's light and of the mean, and by 2 % in the whole, or by more (10 %) if that
 ///     shrinks with more effort: an estimate by the nearest photons gains light in the dark beside a
 ///     bright edge;

@@ -28,7 +28,7 @@ struct ChosenPhotons {
 /// Only directions decide. On the tangent plane each photon lies in some direction from the point;
 /// where light is even the directions are too, and do not depend on the distances. For K = 5, 7, 8,
 /// 11, 14, ... up to N the resultant of the K nearest photons' unit vectors is tested (Rayleigh's
-/// test [Mardia & Jupp 2000]), and that of the vectors at twice their angles, which tells a ridge.
+/// test [Mardia & Jupp 2000]), and that of the vectors at twice their angles, which shows a ridge.
 /// The first K that leans too far for chance, |sum|^2 > 6 K or 9 K, is too many: the light changes
 /// within its disc. Significance lags behind the change; so the K two steps before is taken.
 ///
@@ -46,7 +46,7 @@ class AdaptiveN {
 public:
     explicit AdaptiveN(Isa isa);
 
-    /// Chooses among the photons gathered at the point, with their positions; `full` tells whether
+    /// Chooses among the photons gathered at the point, with their positions; `full` says whether
     /// they are the N nearest, or all within the maximum radius.
     ChosenPhotons choose(const ReceiverPoint& point, const GatheredPhotons& gathered, bool full,
                          NScratch& scratch) const;

@@ -44,7 +44,7 @@ struct PhotonMapParams {
     static constexpr int most_adaptive_nearest = 100'000;
     int nearest = 50;       ///< N; at least 2 for `unbiased`
     bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveN)
-    double max_radius = 0;  ///< [m]; 0: chosen from the photons, told in the report
+    double max_radius = 0;  ///< [m]; 0: chosen from the photons, see the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
     FilterKind filter = FilterKind::none;
     double filter_k = 1.1;       ///< of the cone
@@ -61,7 +61,7 @@ struct PhotonMapParams {
     /// File that the traced photons are written to; empty: none. See photon_map_file.h.
     std::filesystem::path save = {};
     /// File that the photons come from instead of being traced; empty: none. Then photons and
-    /// emitted are 0, and how the photons were traced stands in the file.
+    /// emitted are 0, and the file says how the photons were traced.
     std::filesystem::path load = {};
 };
 

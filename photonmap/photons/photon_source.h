@@ -7,7 +7,7 @@ namespace caustics::photonmap {
 
 /// The photons that a map stands on: traced in phase "trace", or those of the file `params.load`, in
 /// phase "load"; and written to `params.save`, in phase "save". A file that cannot be written to is
-/// told before anything is traced. Throws InputError when the loaded photons are not those of the
+/// reported before anything is traced. Throws InputError when the loaded photons are not those of the
 /// scene: its transport_hash differs.
 SavedPhotons photon_source(const Scene& scene, const PhotonMapParams& params,
                            const RunOptions& options);

@@ -29,7 +29,7 @@ class ScenePaths final : public PathTracer {
 public:
     struct Settings {
         LightPathSettings path;
-        /// Strata of the paths: path number i stands in stratum i, or, where `repeated`, i modulo
+        /// Strata of the paths: path number i is in stratum i, or, where `repeated`, i modulo
         /// their number. Other paths are random.
         std::optional<StratifiedSquare> strata;
         bool repeated = false;

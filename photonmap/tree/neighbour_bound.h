@@ -7,7 +7,7 @@
 
 namespace caustics::photonmap {
 
-/// What one query's answer tells the next: the distance of the N-th nearest photon changes by no more than
+/// What one query's answer gives the next: the distance of the N-th nearest photon changes by no more than
 /// the point moves, so that it bounds the next search exactly.
 class NeighbourBound {
 public:

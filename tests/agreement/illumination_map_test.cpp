@@ -1,4 +1,5 @@
 #include "core/illumination_map/illumination_map.h"
+#include "core/method/none.h"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include "beamtree/beam_tree.h"
 #include "core/base/error.h"
 #include "core/light_path/aimed_emission.h"
+#include "core/method/none.h"
 #include "core/reference/light_trace.h"
 #include "core/reference/path_trace.h"
 #include "core/render/direct_light.h"

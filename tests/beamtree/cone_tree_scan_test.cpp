@@ -8,6 +8,8 @@
 #include <optional>
 #include <tuple>
 
+#include "beamtree/beams/binned_hierarchy.h"
+#include "beamtree/beams/quadtree.h"
 #include "beamtree/cones/cone_tree.h"
 #include "beamtree/cones/plane_groups.h"
 #include "beamtree/light/find_in_beam.h"

@@ -1,4 +1,6 @@
 #include "beamtree/cones/cone_tree.h"
+#include "beamtree/beams/binned_hierarchy.h"
+#include "beamtree/beams/quadtree.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "beamtree/beam_tree.h"
-#include "core/geometry/mesh_io.h"
 #include "core/light_path/aimed_emission.h"
+#include "core/mesh/mesh_io.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/light_flux.h"
 #include "tests/support/statistics.h"

@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/geometry/mesh_io.h"
+#include "core/mesh/mesh_io.h"
 
 namespace caustics {
 namespace {

@@ -41,7 +41,7 @@ def bounds(scenes):
 
 
 def draw_thresholds(ax, cells, quantity):
-    """`quantity`: (median, low, high) of a cell; what no time can be told of (a low of 0 or less) has no lower end."""
+    """`quantity`: (median, low, high) of a cell; a time without a lower bound (a low of 0 or less) has no lower end."""
     hybrid = thresholds(cells)
     middle, low, high = zip(*(quantity(cell) for cell in hybrid))
     ax.errorbar([float(cell.value("spread_threshold")) for cell in hybrid], middle,

@@ -7,7 +7,7 @@ import dataclasses
 from report.records import PHOTON_PARAMETERS, natural
 
 QUANTITIES = {"photons": "stored photons", "time": "time", "alpha": "alpha", "mesh_resolution": "mesh_resolution"}
-# Okabe and Ito's palette without its yellow: told apart by every kind of colour vision.
+# Okabe and Ito's palette without its yellow: distinct to every kind of colour vision.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 MARKERS = "osD^vPX*"
 LINES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)))  # series differ by more than colour
@@ -90,7 +90,7 @@ def arrange(kind, cells, series):
     names = [name for name in varying(cells)
              if name not in (*kind.parameters_on_axes(), "nearest", *series.own_parameters)]
     panels = {}
-    # A method without photons is compared with every number of photons, so it stands in all of their panels.
+    # A method without photons is compared with every number of photons, so it is drawn in all of their panels.
     photons = [name for name in names if name in PHOTON_PARAMETERS]
     everywhere = [cell for cell in cells if photons and cell.photon_parameter() is None]
     for cell in cells:

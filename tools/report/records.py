@@ -211,7 +211,7 @@ def group(path, rows, parameters):
         same = repeated(members)
         if same:
             raise RecordsError(f"{path}: lines {same[0]} and {same[1]} have the same scene, method, parameters, seed "
-                               "and repeat; a column that tells them apart is missing after code_version")
+                               "and repeat; a column that distinguishes them is missing after code_version")
         cell.records = [row for _, row in members]
     return [cell for cell, _ in result], photons_counted
 

@@ -1,4 +1,4 @@
-"""What the tools that make reports from records share: whole files, and failures told in one line."""
+"""What the tools that make reports from records share: whole files, and failures reported in one line."""
 import os
 import sys
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "tests/core/geometry/mesh_measures.h"
+#include "tests/core/mesh/mesh_measures.h"
 
 namespace caustics {
 namespace {

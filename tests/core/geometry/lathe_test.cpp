@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/tessellate.h"
-#include "tests/core/geometry/mesh_measures.h"
+#include "tests/core/mesh/mesh_measures.h"
 
 namespace caustics {
 namespace {

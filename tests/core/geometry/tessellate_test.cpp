@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "tests/core/geometry/mesh_measures.h"
+#include "tests/core/mesh/mesh_measures.h"
 
 namespace caustics {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "core/geometry/tessellate.h"
-#include "core/geometry/vertex_normals.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/math/sampling.h"
+#include "core/mesh/vertex_normals.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 

@@ -5,8 +5,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/geometry/mesh_io.h"
 #include "core/geometry/tessellate.h"
+#include "core/mesh/mesh_io.h"
 #include "experiments/export/exported_scene.h"
 #include "experiments/export/mesh_bytes.h"
 #include "experiments/export/xml_writer.h"

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/geometry/tessellate.h"
-#include "core/geometry/vertex_normals.h"
 #include "core/math/rng.h"
+#include "core/mesh/vertex_normals.h"
 #include "experiments/run/method.h"
 #include "tests/support/build_scene.h"
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace caustics {
+
+/// Counts by name, summed over threads in any order (they are whole numbers).
+using Counters = std::map<std::string, std::uint64_t>;
+
+/// What a built method holds.
+struct BuildReport {
+    std::uint64_t bytes = 0;  ///< of the built data
+    Counters counters;
+    /// Parameters the method chose by itself, by name (a maximum radius, say).
+    std::map<std::string, double> resolved;
+};
+
+}  // namespace caustics

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "core/exact_shapes/cells.h"
+#include "core/exact_shapes/exact_hit.h"
+#include "core/mesh/mesh.h"
+#include "core/scene_file/key_texts.h"
+#include "core/scene_file/values.h"
+
+namespace caustics {
+
+/// Its mesh: quads of two triangles each.
+TriangleMesh tessellate_rectangle(Cells n);
+
+/// The square from -1 to 1 in x and y at z = 0, facing +z. Its members: exact_kinds.h.
+struct Rectangle {
+    static constexpr const char* type = "rectangle";
+    static constexpr bool is_flat = true, needs_similarity = false;
+    static constexpr bool round_u = false, round_v = false;
+    static constexpr int least_cells = 1;
+    static constexpr bool is_grid = true;
+    static constexpr const char* povray = nullptr;
+
+    std::optional<ExactHit> intersect(const Vec3d& o, const Vec3d& d, RayInterval range) const;
+    Vec3d normal(const Vec3d& p) const;
+    Vec2d uv(const Vec3d& p) const;
+    std::pair<Vec3d, Vec3d> tangents(const Vec2d& uv) const;
+    Vec3d onto(const Vec3d& p) const;
+    double feature_size() const { return 1; }
+    Eigen::AlignedBox3d bounds() const;
+    double area(const Eigen::Matrix3d& to_world) const;
+    std::pair<Vec3d, Vec3d> sample(float u0, float u1) const;
+    std::vector<Vec3d> piece(const Vec2& low, const Vec2& high) const;
+    TriangleMesh tessellate(Cells n) const { return tessellate_rectangle(n); }
+    static ObjectText text();
+};
+
+}  // namespace caustics

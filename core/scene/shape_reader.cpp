@@ -1,0 +1,227 @@
+#include "core/scene/shape_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/lower_case.h"
+#include "core/exact_shapes/shape_keys.h"
+#include "core/geometry/tessellate.h"
+#include "core/lights/area_light.h"
+#include "core/material/bsdf_reader.h"
+#include "core/mesh/mesh_io.h"
+#include "core/shapes/cut_shape.h"
+#include "core/shapes/heightfield_shape.h"
+#include "core/shapes/lathe_shape.h"
+
+namespace caustics::scene_file {
+namespace {
+
+bool is_similarity(const Transform& transform) {
+    const Eigen::Matrix3d square = transform.linear().transpose() * transform.linear();
+    const double scale = square.trace() / 3;
+    return (square - scale * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-6 * scale;
+}
+
+// Keys that every shape has.
+struct CommonKeys {
+    std::optional<JsonNode> transform_node, resolution;
+    Transform to_world = Transform::Identity();
+    bool flip_normals = false;
+    bool face_normals = false;
+
+    CommonKeys(const JsonNode& node, const std::string& type) {
+        transform_node = node.find("to_world");
+        if (transform_node) to_world = read_transform(*transform_node);
+        if (const auto flip = node.find("flip_normals")) flip_normals = flip->as_bool();
+        const bool file = type == "obj" || type == "ply";
+        const bool mesh = file || type == "cube" || type == "lathe" || type == "cut" ||
+                          (type == "heightfield" && is_height_grid(node));
+        if (file && node.has("resolution"))
+            node.at("resolution")
+                .fail("a mesh file has its own resolution; only analytic shapes take one");
+        if (!file) resolution = node.find("resolution");
+        const auto faces = node.find("face_normals");
+        if (faces && !mesh && !resolution)
+            faces->fail("only a mesh has face normals; give the shape a `resolution`");
+        if (faces) face_normals = faces->as_bool();
+    }
+
+    int count(int least) const { return static_cast<int>(resolution->as_integer_in(least, 4096)); }
+    Cells cells() const {
+        if (!resolution->is_array()) return count(1);
+        const std::vector<JsonNode> both = resolution->as_array();
+        if (both.size() != 2) resolution->fail("must be a whole number or [nx, ny]");
+        return {static_cast<int>(both[0].as_integer_in(1, 4096)),
+                static_cast<int>(both[1].as_integer_in(1, 4096))};
+    }
+
+    void finish_mesh(TriangleMesh& mesh) const {
+        if (face_normals) mesh.normals.clear();
+        if (flip_normals) flip(mesh);
+    }
+};
+
+void read_mesh_file(const JsonNode& node, const std::string& type, const CommonKeys& keys,
+                    Shape& shape, Assets& assets) {
+    shape.primitive = Primitive::mesh;
+    MeshLoadOptions options;
+    options.face_normals = keys.face_normals;
+    options.flip_normals = keys.flip_normals;
+    const JsonNode name = node.at("filename");
+    const std::filesystem::path file = read_file_name(name, assets);
+    if (lower_case(file.extension().string()) != "." + type)
+        name.fail("a shape of type " + type + " takes a ." + type + " file (known: obj, ply)");
+    shape.mesh = load_for(name, [&] { return load_mesh(file, options); });
+    shape.to_world = keys.to_world;
+}
+
+// The cells of an exact shape's mesh; those along x and y may differ where its keys say so.
+Cells cells_of(const CommonKeys& keys, int least, bool is_grid) {
+    return is_grid ? keys.cells() : Cells(keys.count(least));
+}
+
+void read_exact(const JsonNode& node, Primitive primitive, CommonKeys keys, Shape& shape) {
+    shape.primitive = primitive;
+    ask_exact(shape, [&]<class Kind>(const Kind& kind) {
+        if (Kind::needs_similarity && !keys.resolution && !is_similarity(keys.to_world))
+            keys.transform_node->fail(std::string("an exact ") + Kind::type +
+                                      " takes rotations, translations and one scale only; give it "
+                                      "a `resolution` to stretch it");
+        if constexpr (requires { Kind::read_placement(node); })
+            keys.to_world = keys.to_world * Kind::read_placement(node);
+        shape.to_world = keys.to_world;
+        if (keys.resolution)
+            shape.mesh = kind.tessellate(cells_of(keys, Kind::least_cells, Kind::is_grid));
+        else
+            shape.flip_normals = keys.flip_normals;
+    });
+    if (!keys.resolution) return;
+    shape.primitive = Primitive::mesh;
+    keys.finish_mesh(shape.mesh);
+}
+
+// What is a mesh by its nature.
+void set_mesh(TriangleMesh mesh, const CommonKeys& keys, Shape& shape) {
+    shape.primitive = Primitive::mesh;
+    shape.to_world = keys.to_world;
+    shape.mesh = std::move(mesh);
+    keys.finish_mesh(shape.mesh);
+}
+
+void read_heightfield(const JsonNode& node, const CommonKeys& keys, Shape& shape, Assets& assets) {
+    const auto heights = read_heights(node, assets);
+    if (const auto* field = std::get_if<SineHeightfield>(&heights)) {
+        shape.field = *field;
+        return read_exact(node, Primitive::heightfield, keys, shape);
+    }
+    if (keys.resolution) keys.resolution->fail("the heights have a resolution of their own");
+    set_mesh(tessellate_grid(std::get<HeightGrid>(heights)), keys, shape);
+}
+
+// Those with words of their own in a scene file.
+constexpr std::array exact_primitives{Primitive::rectangle, Primitive::disk, Primitive::sphere,
+                                      Primitive::cylinder};
+
+template <class Kind>
+ObjectText text_of() {
+    if constexpr (requires { Kind::text(); })
+        return Kind::text();
+    else
+        throw std::logic_error("a heightfield's keys are not those of its sines alone");
+}
+
+Primitive exact_of(const std::string& type) {
+    const auto has_type = [&](Primitive primitive) {
+        return ask_kind(primitive, {}, [&](const auto& kind) { return type == kind.type; });
+    };
+    return *std::ranges::find_if(exact_primitives, has_type);
+}
+
+// What is nested in a shape under keys of the user's choice: a bsdf and an emitter.
+void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
+    bool has_bsdf = false;
+    const auto children = node.children();
+    node.finish();
+    for (const auto& [key, child] : children) {
+        const std::string type = child.at("type").as_string();
+        if (is_bsdf_type(type)) {
+            if (has_bsdf) child.fail("a shape takes one bsdf");
+            has_bsdf = true;
+            shape.bsdf = read_bsdf(child, assets);
+            continue;
+        }
+        std::vector<std::string> known = bsdf_types();
+        known.insert(known.begin(), "area");
+        read_type(child, "bsdf or emitter", known, {"homogeneous", "heterogeneous"});
+        if (shape.radiance) child.fail("a shape takes one emitter");
+        shape.radiance = AreaLight::read(child);
+        child.finish();
+        if (shape.primitive == Primitive::heightfield)
+            child.fail("an exact heightfield cannot emit; give it a `resolution`");
+    }
+}
+
+}  // namespace
+
+Objects shape_keys() {
+    Objects all;
+    for (const Primitive primitive : exact_primitives)
+        all.push_back(
+            ask_kind(primitive, {}, []<class Kind>(const Kind&) { return text_of<Kind>(); }));
+    all.push_back({"cube", "A shape: the box from -1 to 1, a mesh.", parametric_keys("1")});
+    all.push_back({"obj", "A shape: a mesh of a Wavefront file.",
+                   joined(mesh_keys(), {file("The .obj file, relative to the scene's.")})});
+    all.push_back({"ply", "A shape: a mesh of a PLY file.",
+                   joined(mesh_keys(), {file("The .ply file, relative to the scene's.")})});
+    for (Objects family : {heightfield_keys(), lathe_keys(), cut_keys()})
+        for (ObjectText& object : family) all.push_back(std::move(object));
+    return all;
+}
+
+const std::vector<std::string>& shape_types() {
+    static const std::vector<std::string> types{"rectangle", "disk", "sphere", "cylinder",
+                                                "cube",      "obj",  "ply",    "heightfield",
+                                                "lathe",     "cut"};
+    return types;
+}
+
+const std::vector<std::string>& later_shape_types() {
+    static const std::vector<std::string> types{"instance", "shapegroup", "bsplinecurve", "sdfgrid",
+                                                "serialized"};
+    return types;
+}
+
+Eigen::AlignedBox3d world_bounds(const Shape& shape) {
+    const Eigen::AlignedBox3d local = local_bounds(shape);
+    Eigen::AlignedBox3d box;
+    for (int i = 0; i < 8; ++i)
+        box.extend(shape.to_world * local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+    return box;
+}
+
+Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) {
+    const std::string type = read_type(node, "shape", shape_types(), later_shape_types());
+    Shape shape;
+    shape.name = name;
+    const CommonKeys keys(node, type);
+    if (type == "obj" || type == "ply")
+        read_mesh_file(node, type, keys, shape, assets);
+    else if (type == "cube")
+        set_mesh(tessellate_cube(keys.resolution ? keys.count(1) : 1), keys, shape);
+    else if (type == "lathe")
+        set_mesh(read_lathe(node, keys.resolution ? keys.count(3) : 64), keys, shape);
+    else if (type == "cut")
+        set_mesh(read_cut(node, keys.resolution), keys, shape);
+    else if (type == "heightfield")
+        read_heightfield(node, keys, shape, assets);
+    else
+        read_exact(node, exact_of(type), keys, shape);
+    const Eigen::AlignedBox3d box = world_bounds(shape);
+    require_near(node, {box.min(), box.max()});
+    read_nested(node, shape, assets);
+    return shape;
+}
+
+}  // namespace caustics::scene_file
