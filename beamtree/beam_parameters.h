@@ -16,7 +16,7 @@ std::vector<Parameter<Params>> beam_parameters() {
             {{"triangles", PolygonKind::triangle}, {"quads", PolygonKind::quad}},
             {.key = "polygons",
              .meaning = "What casters are divided into; quads only where they have a grid.",
-             .source = "[CC95 3.1]"}),
+             .source = "[CC95 sec. 3.1]"}),
         parameter::whole_number<Params>(&BeamParams::light_samples, 1, 65'536,
                                         {.key = "light_samples",
                                          .meaning = "Points that stand for each area light.",

@@ -25,7 +25,7 @@ std::vector<Parameter<P>> tree_parameters() {
             {.key = "spread_threshold",
              .meaning = "With the bound hybrid: spread up to which a node's cone is double.",
              .unit = "degrees",
-             .source = "[CC95 3.1]"})
+             .source = "[CC95 sec. 3.1]"})
             .only_if([](const P& p) { return p.bound == Bound::hybrid; }),
         parameter::choice<P>(
             &P::merging, {{"rays", Merging::rays}, {"cones", Merging::cones}},
@@ -37,7 +37,7 @@ std::vector<Parameter<P>> tree_parameters() {
             {.key = "hierarchy",
              .meaning = "The caster's own subdivision, or a tree of any polygons; with two_slice "
                         "usually binned.",
-             .source = "[CC95 3.1]"}),
+             .source = "[CC95 sec. 3.1]"}),
         parameter::choice<P>(&P::leaf, {{"receiver", P::Leaf::n, "n"}, {"fixed", P::Leaf::k, "k"}},
                              {.key = "leaf",
                               .meaning = "Plane of the caustic polygons: across the receiver's "
@@ -95,8 +95,8 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
         {.facts = {.name = "beamtree",
                    .summary = "Chuang and Cheng 1995: beams of specular polygons, found through a "
                               "tree of cones",
-                   .serves = "every scene; beams of polygons that are coarse for what they meet "
-                             "lose light, and the record says how much",
+                   .serves = "every scene; on coarse meshes beams lose light, and the record "
+                             "says how much",
                    .effort = {"mesh_resolution=64"},
                    .more_effort = {"mesh_resolution=128"}},
          .parameters = joined(tree_parameters(), beam_parameters<P>()),

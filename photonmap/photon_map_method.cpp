@@ -25,7 +25,7 @@ std::vector<Parameter<P>> photon_parameters() {
             {.key = "photons",
              .meaning = "Photons to store; light paths are traced until so many are.",
              .unit = "photons",
-             .source = "[J96 2]"})
+             .source = "[J96 sec. 2]"})
             .only_if([](const P& p) { return p.photons > 0; }),
         parameter::whole_number<P>(&P::emitted, 1, most_paths,
                                    {.key = "emitted",
@@ -38,13 +38,13 @@ std::vector<Parameter<P>> photon_parameters() {
             {{"random", P::Emission::random}, {"stratified", P::Emission::stratified}},
             {.key = "emission",
              .meaning = "Draws light paths at random, or one jittered path from each stratum.",
-             .source = "[J96 2]"})
+             .source = "[J96 sec. 2]"})
             .only_if(is_traced),
         parameter::choice<P>(&P::interaction,
                              {{"roulette", Interaction::roulette}, {"split", Interaction::split}},
                              {.key = "interaction",
                               .meaning = "At glass, follows one way by Russian roulette, or both.",
-                              .source = "[J96 2]"})
+                              .source = "[J96 sec. 2]"})
             .only_if(is_traced),
         parameter::max_bounces<P>().only_if(is_traced),
         parameter::written_file<P>(
@@ -66,7 +66,7 @@ std::vector<Parameter<P>> estimate_parameters() {
             {.key = "tree",
              .meaning =
                  "How photons are ordered for finding the nearest; all give the same answers.",
-             .source = "[J96 2]"}),
+             .source = "[J96 sec. 2]"}),
         parameter::whole_number<P>(
             &P::nearest, 1, most_nearest,
             {.key = "nearest",

@@ -27,13 +27,13 @@ MergedCone merge_cones(std::span<const MergedCone> children, const NodeRays& ray
 struct ConeSection {
     Vec3d centre = Vec3d::Zero();
     Vec3d major_axis = Vec3d::UnitX();  ///< unit, in the plane
-    double major = 0;                   ///< semi-axes, eqs. 5 and 6
+    double major = 0;                   ///< semi-axes [CC95 (5)], [CC95 (6)]
     double minor = 0;
 };
 
 /// The cone of half-angle `spread` from `apex` along the unit `cone_axis`, cut by the plane across
-/// `plane_axis` at the signed axial distance `height` from the apex. Eq. 9 is corrected: the centre
-/// lies on the plane's axis through the apex, moved by eq. 10 along the major axis (as printed, with
+/// `plane_axis` at the signed axial distance `height` from the apex. [CC95 (9)] is corrected: the centre
+/// lies on the plane's axis through the apex, moved by [CC95 (10)] along the major axis (as printed, with
 /// the cone's axis, it does not lie on the plane). Empty when the section is no ellipse, that is when
 /// spread + angle between the axes reaches 90 degrees.
 std::optional<ConeSection> cone_section(const Vec3d& apex, const Vec3d& cone_axis, double spread,

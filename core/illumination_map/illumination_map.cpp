@@ -151,9 +151,8 @@ const DescribedMethod<IlluminationMapParams>& illuminationmap_method() {
         {.facts = {.name = "illuminationmap",
                    .summary = "Arvo 1986: light gathered on texels over the receivers' texture "
                               "coordinates (`resolution` squared), read bilinearly",
-                   .serves =
-                       "diffuse receivers whose texture coordinates name each place once: any "
-                       "exact shape, meshes with an atlas",
+                   .serves = "diffuse receivers without overlapping texture coordinates: any "
+                             "exact shape, meshes with an atlas",
                    .effort = {"emitted=1000000", "resolution=64"},
                    .more_effort = {"emitted=4000000", "resolution=128"}},
          .parameters = {parameter::whole_number<P>(

@@ -20,7 +20,8 @@ struct MirrorPart {
 /// A surface's scattering. One-sided models (all but Dielectric) are black from behind unless
 /// `twosided`, as in Mitsuba. A new model is a file of its own and a place in the list below. What is asked of
 /// it: `text` and `read`, its keys in a scene file and itself; `add_to`, what a photon map depends on; of a
-/// receiver's, four functions that those below ask for: f_r, albedo, sample and pdf.
+/// receiver's, four functions that those below ask for: f_r, albedo, sample and pdf; of a caster's, a place in
+/// is_caster and split_specular (optics.h).
 struct Bsdf {
     std::variant<Diffuse, Schlick, Phong, Dielectric, Conductor> model = Diffuse{};
     bool twosided = false;

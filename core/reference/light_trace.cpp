@@ -167,16 +167,17 @@ private:
 const DescribedMethod<LightTraceParams>& lighttrace_method() {
     using P = LightTraceParams;
     static const DescribedMethod<P> method(
-        {.facts = {.name = "lighttrace",
-                   .summary =
-                       "particle tracing connected to the pinhole, or gathered over a disc in "
-                       "`probe`",
-                   .serves = "every light; not pixels that see the receiver through glass (layer "
-                             "`unreached`)",
-                   .is_unbiased = true,
-                   .samples = {.parameter = "paths"},
-                   .gathers_over_discs = true,
-                   .effort = {"paths=400000"}},
+        {.facts =
+             {.name = "lighttrace",
+              .summary =
+                  "particle tracing connected to the camera; `probe` gathers its particles over a "
+                  "disc at each point",
+              .serves = "every light; not pixels that see the receiver through glass (layer "
+                        "`unreached`)",
+              .is_unbiased = true,
+              .samples = {.parameter = "paths"},
+              .gathers_over_discs = true,
+              .effort = {"paths=400000"}},
          .parameters =
              {parameter::whole_number<P>(&P::paths, 1, 1'000'000'000'000,
                                          {.key = "paths",

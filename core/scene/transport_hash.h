@@ -8,7 +8,7 @@ namespace caustics {
 
 /// A hash of all that light paths from the lights to the receivers depend on: geometry, casters' and
 /// lights' properties, and on which sides receivers scatter. Camera, film and what receivers reflect
-/// do not count: a photon map serves another view and another receiver BRDF [J96, section 5].
+/// do not count: a photon map serves another view and another receiver BRDF [J96 sec. 5].
 std::uint64_t transport_hash(const Scene& scene);
 
 }  // namespace caustics

@@ -36,7 +36,7 @@ std::string wrapped(const std::string& start, const std::string& text) {
     return all + line + "\n";
 }
 
-/// "whole number, 1 to 1000 paths, default 16 [J96 2]"
+/// "whole number, 1 to 1000 paths, default 16 [J96 sec. 2]"
 std::string kind_of(const KeyText& key) {
     std::string text = key.type == "choice" ? "one of " + key.choices : key.type;
     if (key.type != "choice" && !key.choices.empty()) text += ", " + key.choices;

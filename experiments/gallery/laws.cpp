@@ -50,7 +50,7 @@ GalleryScene furnace() {
     return scene;
 }
 
-// [J96] eqs. 5 and 6 with t = n.h, in double.
+// [J96 (5)] and [J96 (6)] with t = n.h, in double.
 double schlick(double alpha, const Vec3d& n, const Vec3d& wo, const Vec3d& wi) {
     const double v = n.dot(wo), v_in = n.dot(wi), t = n.dot((wo + wi).normalized());
     const double z = alpha / std::pow(1 + alpha * t * t - t * t, 2);

@@ -21,7 +21,7 @@ struct ChosenPhotons {
     double factor = 1;  ///< of the density that they give
 };
 
-/// How many of the N nearest photons to take, by where they lie round the point [J96, section 5:
+/// How many of the N nearest photons to take, by where they lie round the point [J96 sec. 5:
 /// "an adaptive method that based upon the local density of the photons determined how many photons
 /// to use"].
 ///

@@ -8,7 +8,7 @@
 namespace caustics::photonmap {
 
 /// f_r of one receiver point seen from one direction, over the 65,536 directions that a stored
-/// photon can have: the lookup table that [J96, section 5] proposes. Photons near one point come
+/// photon can have: the lookup table that [J96 sec. 5] proposes. Photons near one point come
 /// from few directions, so an entry is worked out when it is first asked for, and forgetting all
 /// entries costs nothing. A thread's scratch of 1 MB.
 class BrdfLobeTable {

@@ -23,7 +23,7 @@ struct EstimateScratch {
 /// Radiance from the N nearest photons, [J96 (1)], [J96 (2)]: the sum of f_r times flux over the area
 /// pi r^2 of the disc that holds them; each photon weighs as the filter says (density_filter.h).
 ///
-/// `raw` is eq. 4: r is the distance of the N-th photon. It reads high by w(1) / (N-1), w(1) being
+/// `raw` is [J96 (4)]: r is the distance of the N-th photon. It reads high by w(1) / (N-1), w(1) being
 /// the filter's weight at the rim, because the disc is drawn through a photon. `unbiased` leaves
 /// that outermost photon out of the sum. When fewer than N lie within the maximum radius R, both
 /// sum all over pi R^2. In a uniform field `unbiased` is exactly so for any N, R and filter: given

@@ -8,7 +8,7 @@
 
 namespace caustics::photonmap {
 
-/// The 20-byte photon of [J96, section 2].
+/// The 20-byte photon of [J96 sec. 2].
 struct Photon {
     float position[3];   ///< world frame [m]
     Rgbe energy;         ///< flux in the map's unit (see TracedPhotons)

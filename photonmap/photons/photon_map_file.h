@@ -31,7 +31,7 @@ struct SavedPhotons {
     std::uint32_t version = photon_map_version;  ///< of the file they come from
 };
 
-/// One map serves many views [J96, section 5]: the photons of a scene in the order of their paths,
+/// One map serves many views [J96 sec. 5]: the photons of a scene in the order of their paths,
 /// before any tree is built, so that pictures from the file are bit-identical. The format, all
 /// numbers little-endian: "causticbench photon map\n", its version (u32), length of the header
 /// (u32), the header (transport, seed u64; emission, interaction, max_bounces u32; the 13 counts

@@ -9,7 +9,7 @@ namespace caustics::photonmap {
 
 /// How a map's photons are ordered for finding the nearest; all give the same answers.
 enum class TreeKind {
-    balanced,    ///< the left-balanced heap of [J96, section 2], 20 bytes a photon
+    balanced,    ///< the left-balanced heap of [J96 sec. 2], 20 bytes a photon
     unbalanced,  ///< photons inserted in the order of arrival, with child pointers, 28 bytes
     packed       ///< buckets of photons, searched a register at a time, 20.1 bytes
 };
@@ -24,11 +24,11 @@ enum class FilterKind { none, cone, gaussian, epanechnikov };
 const char* name(FilterKind kind);
 
 /// `photonmap` [J96]: photons traced from the lights through the casters, stored 20 bytes each in
-/// a kd-tree, radiance from the N nearest (eqs. 1-4) or from all within a radius.
+/// a kd-tree, radiance from the N nearest [J96 (4)] or from all within a radius.
 struct PhotonMapParams {
     enum class Estimator {
         unbiased,  ///< the outermost photon only sets the radius: mean (N-1)/(pi r_N^2)
-        raw        ///< eq. 4 as printed; reads high by N/(N-1) in a uniform field
+        raw        ///< [J96 (4)] as printed; reads high by N/(N-1) in a uniform field
     };
     enum class Emission {
         random,
@@ -54,7 +54,7 @@ struct PhotonMapParams {
     /// (progressive.h).
     int passes = 1;
     Estimator estimator = Estimator::unbiased;
-    /// Shade by tables of f_r over the directions that stored photons can have [J96, section 5],
+    /// Shade by tables of f_r over the directions that stored photons can have [J96 sec. 5],
     /// one photon after another, instead of a register of photons at a time.
     bool tables = false;
     int max_bounces = 16;  ///< specular events between light and receiver

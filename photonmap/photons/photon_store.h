@@ -9,7 +9,7 @@
 
 namespace caustics::photonmap {
 
-/// Photons in blocks of 65,536 [J96, section 2]. All blocks lie in one reserved range of address
+/// Photons in blocks of 65,536 [J96 sec. 2]. All blocks lie in one reserved range of address
 /// space: memory is taken only as photons arrive, no photon ever moves when another block begins,
 /// and the whole is one array for the kd-tree, which may write behind the last photon up to the end of
 /// its block.

@@ -5,7 +5,7 @@
 
 namespace caustics::photonmap {
 
-/// Turns an array of photons into the balanced kd-tree of [J96, section 2], in place with O(1) extra
+/// Turns an array of photons into the balanced kd-tree of [J96 sec. 2], in place with O(1) extra
 /// memory: a heap (left_balanced.h), node i = photon i - 1 of the array, whose root is the median along the
 /// largest interval of the photons' tight bounding box, and so on. The two lowest bits of a
 /// photon's flags hold its splitting axis. Positions must be finite. The same tree on every instruction

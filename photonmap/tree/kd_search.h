@@ -12,7 +12,7 @@ inline float squared_distance(const Photon& photon, const float point[3]) {
     return x * x + y * y + z * z;
 }
 
-/// The search of a tree that has a photon at every node [J96, section 2], nearest side first. Tree
+/// The search of a tree that has a photon at every node [J96 sec. 2], nearest side first. Tree
 /// says where nodes and children are: `root()`, `photon(node)`, `index(node)`, `child(node, right)`,
 /// `exists(node)`.
 ///

@@ -4,7 +4,7 @@
 
 namespace caustics::photonmap {
 
-/// What the paper's balanced tree is compared with [J96, section 2]: photons inserted one by one in the
+/// What the paper's balanced tree is compared with [J96 sec. 2]: photons inserted one by one in the
 /// order of their arrival, the axes taken in turn x, y, z from level to level, each node with two
 /// child pointers. Searched by the same code as the balanced tree.
 class UnbalancedKdTree final : public KdTreeBase {
