@@ -49,7 +49,7 @@ double sampling_p_value(const Bsdf& bsdf, const Vec3& n, const Vec3& wo, std::ui
         }
         EXPECT_NEAR(wi->norm(), 1, 1e-5F);
         const Vec3 local = about.to_local(*wi);
-        const double share = std::pow((1 - static_cast<double>(local.z())) / 2, 0.25);
+        const double share = std::pow(std::max(0.0, 1 - static_cast<double>(local.z())) / 2, 0.25);
         const int row = std::clamp(static_cast<int>(share * rows), 0, rows - 1);
         const double turn =
             std::atan2(static_cast<double>(local.y()), static_cast<double>(local.x()));
