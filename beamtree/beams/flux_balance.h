@@ -5,7 +5,7 @@ namespace caustics::beamtree {
 /// What becomes of the light that casters bend [W, mean of channels].
 struct FluxBalance {
     double lit = 0;     ///< leaves first surfaces that the light sees
-    double lost = 0;    ///< goes on to a further caster, and no beam carries it
+    double lost = 0;    ///< reaches a further caster, and no beam carries it
     double pruned = 0;  ///< and of that in paths too weak to be followed
 
     void add(const FluxBalance& other) {

@@ -38,7 +38,7 @@ struct BeamExtras {
 /// along its edges, and three different things quarter it. What lies between corners that do one
 /// thing is taken to do the same: an obstacle smaller than a polygon does not interrupt a beam on its
 /// way. The last leg, from the last event to a receiver, is left to the shadow ray of a query; all
-/// beams stay for that, but those which no receiver can come near before their light goes on.
+/// beams stay for that, but those which no receiver can come near before their light leaves.
 ///
 /// Sets with less than 1e-4 of the first events' flux, and beams with less than 1e-3 of those of the
 /// first events on average, are not kept; `balance` counts them. What media absorb counts for neither:
@@ -50,7 +50,7 @@ public:
 
     /// Keeps the sets of the first events and those of all events after them.
     void follow(std::array<TracedSet, 2> first, const ProgressPart& part);
-    /// Sets in the order of their light: each before those that its light goes on to.
+    /// Sets in the order of their light: each before those that its light reaches.
     TracedBeams take() { return std::move(traced_); }
 
 private:

@@ -27,7 +27,7 @@ struct Level {
     std::vector<std::uint32_t> parents;
     std::vector<RayArrival> places;
     std::vector<std::uint32_t>
-        ray_of_parent;  ///< for rays of the parent: the one that goes on here
+        ray_of_parent;  ///< for rays of the parent: the one that continues it here
 
     /// One a beam, or none where all are 1: what division for detail (piece_detail.h) has left of the polygon.
     std::vector<float> shares;

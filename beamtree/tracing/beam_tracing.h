@@ -33,7 +33,7 @@ struct TraceSettings {
 };
 
 /// All sets that hold a beam: lights outermost, then first casters, reflection before refraction, each
-/// set before those that its light goes on to. With `refined` they have spreads.
+/// set before those that its light reaches. With `refined` they have spreads.
 TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
                             const std::vector<LightSample>& lights, const TraceSettings& settings,
                             const RunOptions& options);

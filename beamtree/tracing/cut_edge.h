@@ -6,7 +6,7 @@ namespace caustics::beamtree {
 
 /// Whether the light of a point has come to a caster after its path.
 bool goes_on(const PathPoint& point);
-/// Whether the light of both does the same next: ends, or goes on by the same events from the same piece of a
+/// Whether the light of both does the same next: ends, or continues by the same events from the same piece of a
 /// caster.
 bool alike(const PathPoint& a, const PathPoint& b);
 

@@ -83,7 +83,7 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity) {
     for (const Light& light : scene.lights())
-        if (!is_black(background_of(light)))
+        if (surrounds(light))
             throw UnsupportedScene(
                 method + ": beams start from points or directions, and a " + type_of(light) +
                 " light shines from everywhere (photonmap and the references take it)");

@@ -1,10 +1,8 @@
 #include "core/exact_shapes/cylinder.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/exact_shapes/shape_keys.h"
-#include "core/math/sampling.h"
 #include "core/mesh/mesh_rows.h"
 
 namespace caustics {

@@ -1,6 +1,5 @@
 #include "core/exact_shapes/disk.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/exact_shapes/shape_keys.h"
@@ -30,12 +29,9 @@ TriangleMesh tessellate_disk(int n) {
 }
 
 std::optional<ExactHit> Disk::intersect(const Vec3d& o, const Vec3d& d, RayInterval range) const {
-    if (d.z() == 0) return {};
-    const double t = -o.z() / d.z();
-    if (!range.holds(t)) return {};
-    const Vec3d p(o.x() + t * d.x(), o.y() + t * d.y(), 0);
-    if (p.squaredNorm() > 1) return {};
-    return ExactHit{t, p};
+    const std::optional<ExactHit> hit = hit_of_plane(o, d, range);
+    if (hit && hit->local.squaredNorm() > 1) return {};
+    return hit;
 }
 
 Vec3d Disk::normal(const Vec3d&) const { return Vec3d::UnitZ(); }

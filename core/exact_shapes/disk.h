@@ -1,7 +1,8 @@
 #pragma once
 
-#include <string>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/exact_shapes/cells.h"
 #include "core/exact_shapes/exact_hit.h"

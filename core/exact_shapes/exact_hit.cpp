@@ -10,6 +10,13 @@ constexpr double turn = 2 * pi_d;
 
 }  // namespace
 
+std::optional<ExactHit> hit_of_plane(const Vec3d& o, const Vec3d& d, RayInterval range) {
+    if (d.z() == 0) return {};
+    const double t = -o.z() / d.z();
+    if (!range.holds(t)) return {};
+    return ExactHit{t, Vec3d(o.x() + t * d.x(), o.y() + t * d.y(), 0)};
+}
+
 std::optional<std::pair<double, double>> quadratic_roots(double a, double b, double c,
                                                          double discriminant) {
     if (a == 0 || discriminant < 0) return {};

@@ -20,6 +20,9 @@ struct RayInterval {
     bool holds(double t) const { return t > low && t < high; }
 };
 
+/// The plane z = 0.
+std::optional<ExactHit> hit_of_plane(const Vec3d& o, const Vec3d& d, RayInterval range);
+
 /// Roots of a t^2 + 2 b t + c without cancellation, ascending; empty when not real.
 std::optional<std::pair<double, double>> quadratic_roots(double a, double b, double c,
                                                          double discriminant);

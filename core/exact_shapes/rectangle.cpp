@@ -1,10 +1,8 @@
 #include "core/exact_shapes/rectangle.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/exact_shapes/shape_keys.h"
-#include "core/math/sampling.h"
 #include "core/mesh/mesh_rows.h"
 
 namespace caustics {
@@ -24,12 +22,9 @@ TriangleMesh tessellate_rectangle(Cells n) {
 
 std::optional<ExactHit> Rectangle::intersect(const Vec3d& o, const Vec3d& d,
                                              RayInterval range) const {
-    if (d.z() == 0) return {};
-    const double t = -o.z() / d.z();
-    if (!range.holds(t)) return {};
-    const Vec3d p(o.x() + t * d.x(), o.y() + t * d.y(), 0);
-    if (std::abs(p.x()) > 1 || std::abs(p.y()) > 1) return {};
-    return ExactHit{t, p};
+    const std::optional<ExactHit> hit = hit_of_plane(o, d, range);
+    if (hit && (std::abs(hit->local.x()) > 1 || std::abs(hit->local.y()) > 1)) return {};
+    return hit;
 }
 
 Vec3d Rectangle::normal(const Vec3d&) const { return Vec3d::UnitZ(); }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <optional>
 #include <utility>
 
 #include "core/exact_shapes/cells.h"

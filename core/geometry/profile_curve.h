@@ -27,7 +27,7 @@ struct LatheProfile {
 struct ProfileStation {
     Vec2d at;             ///< (r, z) [m]
     Vec2d normal_before;  ///< unit, (dz, -dr) of the way that comes here; differs at a crease
-    Vec2d normal_after;   ///< of the way that goes on
+    Vec2d normal_after;   ///< of the way that follows
     double v;             ///< share of the curve's length, 0 .. 1
 };
 

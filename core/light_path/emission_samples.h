@@ -14,7 +14,7 @@ namespace caustics {
 const EmissionKernels& emission_kernels(Isa isa);
 
 /// What consecutive paths start from, side by side: a point of the unit square for each, and the
-/// random numbers that it goes on with.
+/// random numbers that it continues with.
 class EmissionSamples {
 public:
     static constexpr std::size_t most = 256;

@@ -64,7 +64,7 @@ enum class Interaction {
     split      ///< both are followed, each with its weight (POV-Ray's way, as [C11] describes it)
 };
 
-/// With `split`, a branch that carries less than this share of its particle's flux goes on with a
+/// With `split`, a branch that carries less than this share of its particle's flux continues with a
 /// probability of (its share / this), and then with this share: its mean stays, and a path has at
 /// most 1 / this branches at a time on average.
 inline constexpr float lightest_branch = 1.0F / 64;

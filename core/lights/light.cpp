@@ -78,7 +78,13 @@ Spectrum background_of(const Light& light) {
         light);
 }
 
-bool has_extent(const Light& light) { return !point_of(light); }
+bool surrounds(const Light& light) {
+    return std::visit([](const auto& kind) { return requires { kind.background(); }; }, light);
+}
+
+bool has_extent(const Light& light) {
+    return std::visit([](const auto& kind) { return !requires { kind.point(); }; }, light);
+}
 
 void scale(Light& light, const Spectrum& factor) {
     std::visit(

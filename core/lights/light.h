@@ -35,7 +35,8 @@ std::optional<Ray> send(const Light& light, const Surroundings& scene, const Aim
 std::optional<LightArrival> arrival_from(const Light& light, const Surroundings& scene,
                                          const Vec3& at, Rng& rng);
 std::optional<LightPoint> point_of(const Light& light);
-/// Black but for lights that shine from everywhere [W m^-2 sr^-1].
+/// Whether it shines from everywhere, and what rays find that meet nothing: black but for such [W m^-2 sr^-1].
+bool surrounds(const Light& light);
 Spectrum background_of(const Light& light);
 /// Whether directions chosen at random can meet it.
 bool has_extent(const Light& light);

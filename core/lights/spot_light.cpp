@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/lights/light_text.h"
+#include "core/lights/point_light.h"
 
 namespace caustics {
 
@@ -86,11 +87,11 @@ std::optional<Ray> SpotLight::send(const Surroundings&, const AimedSource& sourc
     return Ray{position, sample.direction};
 }
 
-std::optional<LightArrival> SpotLight::arrival(const Surroundings&, const Vec3& at, Rng&) const {
-    const Vec3 towards = position - at;
-    const float distance2 = towards.squaredNorm();
-    const Vec3 wi = towards / std::sqrt(distance2);
-    return LightArrival{wi, SegmentEnd{position}, intensity * cone.falloff(-wi), distance2};
+std::optional<LightArrival> SpotLight::arrival(const Surroundings& scene, const Vec3& at,
+                                               Rng& rng) const {
+    auto arrival = PointLight{position, intensity}.arrival(scene, at, rng);
+    arrival->strength *= cone.falloff(-arrival->wi);
+    return arrival;
 }
 
 MitsubaEmitter SpotLight::to_mitsuba() const {

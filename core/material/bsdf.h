@@ -19,9 +19,9 @@ struct MirrorPart {
 
 /// A surface's scattering. One-sided models (all but Dielectric) are black from behind unless
 /// `twosided`, as in Mitsuba. A new model is a file of its own and a place in the list below. What is asked of
-/// it: `text` and `read`, its keys in a scene file and itself; `add_to`, what a photon map depends on; of a
-/// receiver's, four functions that those below ask for: f_r, albedo, sample and pdf; of a caster's, a place in
-/// is_caster and split_specular (optics.h).
+/// it: `text` and `read`, its keys in a scene file and itself; of a receiver's,
+/// four functions that those below ask for: f_r, albedo, sample and pdf; of a caster's, `add_to`, what a photon
+/// map depends on, and a place in is_caster and split_specular (optics.h).
 struct Bsdf {
     std::variant<Diffuse, Schlick, Phong, Dielectric, Conductor> model = Diffuse{};
     bool twosided = false;
@@ -32,7 +32,7 @@ struct Bsdf {
 /// with a mirror part is both.
 bool is_caster(const Bsdf& bsdf);
 bool is_receiver(const Bsdf& bsdf);
-/// Whether light of different wavelengths goes on from the surface in different ways.
+/// Whether light of different wavelengths leaves the surface in different ways.
 bool is_dispersive(const Bsdf& bsdf);
 /// Whether light arriving from the front (or the back) of the surface is scattered at all.
 bool scatters_from(const Bsdf& bsdf, bool front);

@@ -30,7 +30,4 @@ Diffuse Diffuse::read(const JsonNode& node, Assets& assets) {
     return {read_texture(node, "reflectance", 0.5, assets)};
 }
 
-// A photon map does not depend on how receivers scatter.
-void Diffuse::add_to(ValueHash&) const {}
-
 }  // namespace caustics

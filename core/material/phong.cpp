@@ -101,7 +101,4 @@ Phong Phong::read(const JsonNode& node, Assets& assets) {
     return phong;
 }
 
-// A photon map does not depend on how receivers scatter.
-void Phong::add_to(ValueHash&) const {}
-
 }  // namespace caustics

@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "core/material/texture.h"
-#include "core/math/value_hash.h"
 #include "core/math/vec.h"
 #include "core/scene_file/key_texts.h"
 #include "core/scene_file/values.h"
@@ -32,7 +31,6 @@ struct Phong {
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Phong read(const JsonNode& node, scene_file::Assets& assets);
-    void add_to(ValueHash& hash) const;
 };
 
 }  // namespace caustics

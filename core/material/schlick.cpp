@@ -89,7 +89,4 @@ Schlick Schlick::read(const JsonNode& node, Assets& assets) {
     return schlick;
 }
 
-// A photon map does not depend on how receivers scatter.
-void Schlick::add_to(ValueHash&) const {}
-
 }  // namespace caustics

@@ -32,7 +32,7 @@ struct SampledWavelength {
 /// `u` is uniform in [0, 1).
 SampledWavelength sample_wavelength(double u);
 
-/// A part of all wavelengths that goes one way: with the index of refraction at `nm`.
+/// A part of all wavelengths that takes one way: with the index of refraction at `nm`.
 struct WavelengthBin {
     float nm = 0;                        ///< the mean of the bin, by the channels' mean density
     float from = 0;                      ///< [nm]

@@ -1,7 +1,6 @@
 #include "core/scene/scene.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "core/scene/intersector.h"

@@ -26,7 +26,7 @@ struct PixelSampling {
     int max_sample_count = 0;  ///< of adaptive sampling; 0 = the same number everywhere
     float max_error = 0.05F;   ///< of adaptive sampling: allowed standard error / brightness
     /// So many specular events from the eye follow reflection and refraction both, however faint; from
-    /// there on a part that is worth less than 5 % of the picture goes on by chance. Whitted's way, which
+    /// there on a part that is worth less than 5 % of the picture continues by roulette. Whitted's way, which
     /// leaves no specks on glass.
     int split_depth = 0;
     static constexpr int most_split_depth = 6;

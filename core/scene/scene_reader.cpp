@@ -173,12 +173,12 @@ SceneDesc placed(Draft& draft) {
     for (std::size_t i = 0; i < desc.shapes.size(); ++i)
         scene_file::load_for(draft.shape_nodes[i],
                              [&] { scene_file::place(desc.shapes[i], desc.origin); });
-    bool has_background = false;
+    bool is_surrounded = false;
     for (const auto& [type, node] : draft.light_nodes) {
         desc.lights.push_back(read_light(type, node, desc.origin));
-        if (is_black(background_of(desc.lights.back()))) continue;
-        if (has_background) node.fail("a scene takes one constant light");
-        has_background = true;
+        if (!surrounds(desc.lights.back())) continue;
+        if (is_surrounded) node.fail("a scene takes one constant light");
+        is_surrounded = true;
     }
     desc.camera.to_world.pretranslate(-desc.origin);
     return std::move(desc);

@@ -1,7 +1,6 @@
 #include "core/scene/shape_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -120,10 +119,6 @@ void read_heightfield(const JsonNode& node, const CommonKeys& keys, Shape& shape
     set_mesh(tessellate_grid(std::get<HeightGrid>(heights)), keys, shape);
 }
 
-// Those with words of their own in a scene file.
-constexpr std::array exact_primitives{Primitive::rectangle, Primitive::disk, Primitive::sphere,
-                                      Primitive::cylinder};
-
 template <class Kind>
 ObjectText text_of() {
     if constexpr (requires { Kind::text(); })
@@ -181,9 +176,15 @@ Objects shape_keys() {
 }
 
 const std::vector<std::string>& shape_types() {
-    static const std::vector<std::string> types{"rectangle", "disk", "sphere", "cylinder",
-                                                "cube",      "obj",  "ply",    "heightfield",
-                                                "lathe",     "cut"};
+    static const std::vector<std::string> types = [] {
+        std::vector<std::string> all;
+        for (const Primitive primitive : exact_primitives)
+            all.push_back(
+                ask_kind(primitive, {}, [](const auto& kind) -> std::string { return kind.type; }));
+        for (const char* mesh : {"cube", "obj", "ply", "heightfield", "lathe", "cut"})
+            all.emplace_back(mesh);
+        return all;
+    }();
     return types;
 }
 

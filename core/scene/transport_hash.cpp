@@ -13,7 +13,12 @@ void add_bsdf(const Bsdf& bsdf, ValueHash& hash) {
         hash.add(scatters_from(bsdf, true));
         hash.add(scatters_from(bsdf, false));
     }
-    std::visit([&](const auto& model) { model.add_to(hash); }, bsdf.model);
+    // A photon map does not depend on how receivers scatter.
+    std::visit(
+        [&](const auto& model) {
+            if constexpr (requires { model.add_to(hash); }) model.add_to(hash);
+        },
+        bsdf.model);
     if (bsdf.mirror) {
         hash.add(bsdf.mirror->weight);
         hash.add(bsdf.mirror->reflectance);
