@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -69,9 +70,14 @@ inline Vec2 uniform_disc(float u0, float u1) {
 /// around [0, 1).
 template <std::uint64_t base>
 double radical_inverse(std::uint64_t number, double shift) {
-    constexpr double step = static_cast<double>(base);
-    for (double share = 1 / step; number > 0; number /= base, share /= step)
-        shift += static_cast<double>(number % base) * share;
+    constexpr auto shares = [] {
+        std::array<double, 64> all{};
+        double share = 1;
+        for (double& digit : all) digit = share /= static_cast<double>(base);
+        return all;
+    }();
+    for (std::size_t digit = 0; number > 0; number /= base, ++digit)
+        shift += static_cast<double>(number % base) * shares[digit];
     return shift - std::floor(shift);
 }
 
