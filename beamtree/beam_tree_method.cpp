@@ -1,6 +1,6 @@
 #include "beamtree/beam_tree_method.h"
 
-#include "beamtree/beam_parameters.h"
+#include "beamtree/beam_param_table.h"
 
 namespace caustics::beamtree {
 
@@ -99,7 +99,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
                              "says how much",
                    .effort = {"mesh_resolution=64"},
                    .more_effort = {"mesh_resolution=128"}},
-         .parameters = joined(tree_parameters(), beam_parameters<P>()),
+         .parameters = joined(tree_parameters(), beam_param_table<P>()),
          .settle =
              [](const JsonNode& node, P& params) {
                  settle_bound(node, params);

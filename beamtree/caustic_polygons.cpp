@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "beamtree/beam_estimator.h"
-#include "beamtree/beam_parameters.h"
+#include "beamtree/beam_param_table.h"
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/light/find_in_beam.h"
 #include "beamtree/receiver_polygons.h"
@@ -138,7 +138,7 @@ const DescribedMethod<CausticPolygonsParams>& causticpolygons_method() {
                    .effort = {"mesh_resolution=32"},
                    .more_effort = {"mesh_resolution=64"}},
          .parameters = joined(
-             beam_parameters<P>(),
+             beam_param_table<P>(),
              {parameter::whole_number<P>(
                  &P::receiver_resolution, 2, 4096,
                  {.key = "receiver_resolution",

@@ -1,5 +1,7 @@
 #include "core/material/bsdf.h"
 
+#include <fmt/format.h>
+
 namespace caustics {
 namespace {
 
@@ -7,6 +9,13 @@ template <class Model>
 concept Receiver = requires(const Model& model, const Vec3& v) {
     { model.pdf(v, v, v) };
 };
+
+template <class Model>
+concept Caster = requires(const Model& model) { model.split(SpecularArrival{}); };
+
+// Both of its sides scatter light, as each is a medium's.
+template <class Model>
+concept Interface = requires(const Model& model) { model.medium(true); };
 
 // What a receiver's model answers; `otherwise` for a caster's.
 template <class Result, class Ask>
@@ -24,8 +33,8 @@ Result ask_receiver(const Bsdf& bsdf, const Ask& ask, const Result& otherwise) {
 }  // namespace
 
 bool is_caster(const Bsdf& bsdf) {
-    return std::holds_alternative<Dielectric>(bsdf.model) ||
-           std::holds_alternative<Conductor>(bsdf.model) || bsdf.mirror.has_value();
+    return bsdf.mirror ||
+           std::visit([]<class Model>(const Model&) { return Caster<Model>; }, bsdf.model);
 }
 
 bool is_receiver(const Bsdf& bsdf) {
@@ -33,12 +42,19 @@ bool is_receiver(const Bsdf& bsdf) {
 }
 
 bool is_dispersive(const Bsdf& bsdf) {
-    const auto* glass = std::get_if<Dielectric>(&bsdf.model);
-    return glass != nullptr && glass->is_dispersive();
+    return std::visit(
+        [](const auto& model) {
+            if constexpr (requires { model.is_dispersive(); })
+                return model.is_dispersive();
+            else
+                return false;
+        },
+        bsdf.model);
 }
 
 bool scatters_from(const Bsdf& bsdf, bool front) {
-    return front || bsdf.twosided || std::holds_alternative<Dielectric>(bsdf.model);
+    return front || bsdf.twosided ||
+           std::visit([]<class Model>(const Model&) { return Interface<Model>; }, bsdf.model);
 }
 
 Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) {
@@ -64,6 +80,40 @@ std::optional<Vec3> sample_direction(const Bsdf& bsdf, const Vec3& n, const Vec3
 float direction_pdf(const Bsdf& bsdf, const Vec3& n, const Vec3& wo, const Vec3& wi) {
     if (n.dot(wi) <= 0) return 0;
     return ask_receiver<float>(bsdf, [&](const auto& model) { return model.pdf(n, wo, wi); }, 0);
+}
+
+namespace {
+
+// For a model that another program lacks.
+template <class Model>
+ExportRefusal unknown(const char* program) {
+    return {fmt::format("{} has no {} bsdf; give the shape one that it has", program,
+                        Model::text().name),
+            "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}"};
+}
+
+}  // namespace
+
+MitsubaBsdf to_mitsuba(const Bsdf& bsdf) {
+    return std::visit(
+        []<class Model>(const Model& model) -> MitsubaBsdf {
+            if constexpr (requires { model.to_mitsuba(); })
+                return model.to_mitsuba();
+            else
+                return {.refused = unknown<Model>("Mitsuba")};
+        },
+        bsdf.model);
+}
+
+PovraySurface to_povray(const Bsdf& bsdf) {
+    return std::visit(
+        []<class Model>(const Model& model) -> PovraySurface {
+            if constexpr (requires { model.to_povray(); })
+                return model.to_povray();
+            else
+                return {.refused = unknown<Model>("POV-Ray")};
+        },
+        bsdf.model);
 }
 
 }  // namespace caustics

@@ -19,9 +19,10 @@ struct MirrorPart {
 
 /// A surface's scattering. One-sided models (all but Dielectric) are black from behind unless
 /// `twosided`, as in Mitsuba. A new model is a file of its own and a place in the list below. What is asked of
-/// it: `text` and `read`, its keys in a scene file and itself; of a receiver's,
-/// four functions that those below ask for: f_r, albedo, sample and pdf; of a caster's, `add_to`, what a photon
-/// map depends on, and a place in is_caster and split_specular (optics.h).
+/// it: `text` and `read`, its keys in a scene file and itself; `to_mitsuba` and `to_povray`, where those know it;
+/// of a receiver's, four functions that those below ask for: f_r, albedo, sample and pdf; of a caster's, `split`
+/// (specular_split.h) and `add_to`, what a photon map depends on; `medium` where it bounds two, and
+/// `is_dispersive` where wavelengths part.
 struct Bsdf {
     std::variant<Diffuse, Schlick, Phong, Dielectric, Conductor> model = Diffuse{};
     bool twosided = false;
@@ -40,6 +41,10 @@ bool scatters_from(const Bsdf& bsdf, bool front);
 /// f_r [1/sr] of a receiver, without the cosine. `n` is the unit shading normal on the viewer's
 /// side; `wo`, `wi` are unit and point away from the surface. 0 when either is below n.
 Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi);
+
+/// The model of a surface, without a mirror part, in the words of another program.
+MitsubaBsdf to_mitsuba(const Bsdf& bsdf);
+PovraySurface to_povray(const Bsdf& bsdf);
 
 /// Directional-hemispherical reflectance of a receiver's texture (without a mirror part), for the albedo
 /// layer; 1 for what is a caster alone.

@@ -1,8 +1,18 @@
 #include "core/material/conductor.h"
 
+#include "core/material/fresnel.h"
+
 namespace caustics {
 
 using namespace scene_file;
+
+SpecularSplit Conductor::split(const SpecularArrival& light) const {
+    SpecularSplit split;
+    split.reflected = reflect(light.w, light.n);
+    ((light.ng.dot(split.reflected) > 0) == light.front ? split.reflected_weight
+                                                        : split.lost_weight) = specular_reflectance;
+    return split;
+}
 
 ObjectText Conductor::text() {
     const KeyText reflected = colour(
@@ -21,5 +31,14 @@ Conductor Conductor::read(const JsonNode& node, Assets&) {
 }
 
 void Conductor::add_to(ValueHash& hash) const { hash.add(specular_reflectance); }
+
+MitsubaBsdf Conductor::to_mitsuba() const {
+    return {"conductor",
+            {{"material", std::string("none")}, {"specular_reflectance", specular_reflectance}}};
+}
+
+PovraySurface Conductor::to_povray() const {
+    return {.diffuse = 0, .reflection = specular_reflectance};
+}
 
 }  // namespace caustics

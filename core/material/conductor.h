@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/material/bsdf_words.h"
+#include "core/material/specular_split.h"
 #include "core/math/spectrum.h"
 #include "core/math/value_hash.h"
 #include "core/scene_file/key_texts.h"
@@ -11,10 +13,14 @@ namespace caustics {
 struct Conductor {
     Spectrum specular_reflectance = Spectrum::Ones();
 
+    SpecularSplit split(const SpecularArrival& light) const;
+
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Conductor read(const JsonNode& node, scene_file::Assets& assets);
     void add_to(ValueHash& hash) const;
+    MitsubaBsdf to_mitsuba() const;
+    PovraySurface to_povray() const;
 };
 
 }  // namespace caustics

@@ -1,5 +1,12 @@
 #include "core/material/dielectric.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/material/fresnel.h"
+
 #include "core/material/ior_reader.h"
 
 namespace caustics {
@@ -14,6 +21,32 @@ float Dielectric::relative_ior(bool front, float nm) const {
     const auto inside = static_cast<float>(int_ior.n());
     const auto outside = static_cast<float>(ext_ior.n());
     return front ? inside / outside : outside / inside;
+}
+
+SpecularSplit Dielectric::split(const SpecularArrival& light) const {
+    const auto& [front, ng, n, w, nm] = light;
+    SpecularSplit split;
+    split.eta = relative_ior(front, nm);
+    const float cos_i = std::min(n.dot(w), 1.0F);
+    split.reflected = reflect(w, n);
+    const float inverse_eta = 1 / split.eta;
+    const float sin2_t = (1 - cos_i * cos_i) * inverse_eta * inverse_eta;
+    const bool refracts = sin2_t < 1;
+    const float cos_t = refracts ? std::sqrt(1 - sin2_t) : 0;
+    const float reflectance = refracts ? fresnel_reflectance(cos_i, cos_t, split.eta) : 1;
+    const Spectrum reflected = specular_reflectance * reflectance;
+    ((ng.dot(split.reflected) > 0) == front ? split.reflected_weight : split.lost_weight) =
+        reflected;
+    if (refracts) {
+        const Vec3 t = (cos_i * inverse_eta - cos_t) * n - inverse_eta * w;
+        split.refracted = t * (1 / t.norm());
+        const Spectrum refracted = specular_transmittance * (1 - reflectance);
+        if ((ng.dot(t) > 0) != front)
+            split.refracted_weight = refracted;
+        else
+            split.lost_weight += refracted;
+    }
+    return split;
 }
 
 ObjectText Dielectric::text() {
@@ -57,6 +90,40 @@ void Dielectric::add_to(ValueHash& hash) const {
     for (const Spectrum& s :
          {absorption, ext_absorption, specular_reflectance, specular_transmittance})
         hash.add(s);
+}
+
+MitsubaBsdf Dielectric::to_mitsuba() const {
+    MitsubaBsdf bsdf{"dielectric",
+                     {{"int_ior", int_ior.n()},
+                      {"ext_ior", ext_ior.n()},
+                      {"specular_reflectance", specular_reflectance},
+                      {"specular_transmittance", specular_transmittance}}};
+    if (!is_black(absorption) || !is_black(ext_absorption))
+        bsdf.refused = {
+            "Mitsuba's dielectric does not absorb; set absorption and ext_absorption of the "
+            "dielectric to 0",
+            "/bsdf/absorption=0"};
+    else if (is_dispersive())
+        bsdf.refused = {
+            "Mitsuba's dielectric has no dispersion; write a scene for each of some "
+            "wavelengths (--wavelengths 16), or give it one index",
+            fmt::format("/bsdf/int_ior={:.6g}", int_ior.n())};
+    return bsdf;
+}
+
+PovraySurface Dielectric::to_povray() const {
+    const auto ratio = [&](float nm) { return int_ior.at(nm) / ext_ior.at(nm); };
+    PovrayInterior interior{ext_ior, ratio(0), {}, absorption};
+    if (is_dispersive()) interior.dispersion = ratio(400) / ratio(700);
+    PovraySurface surface{.interior = interior};
+    if (!(specular_reflectance == 1).all() || !(specular_transmittance == 1).all())
+        surface.refused.reason =
+            "specular_reflectance and specular_transmittance of a dielectric are not "
+            "exported to POV-Ray; leave them 1";
+    else if (!is_black(ext_absorption))
+        surface.refused.reason =
+            "POV-Ray knows no absorption outside of a dielectric (ext_absorption)";
+    return surface;
 }
 
 }  // namespace caustics

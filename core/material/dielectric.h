@@ -1,6 +1,8 @@
 #pragma once
 
+#include "core/material/bsdf_words.h"
 #include "core/material/ior.h"
+#include "core/material/specular_split.h"
 #include "core/math/spectrum.h"
 #include "core/math/value_hash.h"
 #include "core/scene_file/key_texts.h"
@@ -23,10 +25,16 @@ struct Dielectric {
     /// back, at a wavelength [nm]; 0: as Ior::at.
     float relative_ior(bool front, float nm) const;
 
+    SpecularSplit split(const SpecularArrival& light) const;
+    /// Absorption [1/m] outside or inside.
+    const Spectrum& medium(bool outside) const { return outside ? ext_absorption : absorption; }
+
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Dielectric read(const JsonNode& node, scene_file::Assets& assets);
     void add_to(ValueHash& hash) const;
+    MitsubaBsdf to_mitsuba() const;
+    PovraySurface to_povray() const;
 };
 
 }  // namespace caustics

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/material/bsdf_words.h"
 #include "core/material/texture.h"
 #include "core/math/vec.h"
 #include "core/scene_file/key_texts.h"
@@ -21,6 +22,8 @@ struct Diffuse {
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Diffuse read(const JsonNode& node, scene_file::Assets& assets);
+    MitsubaBsdf to_mitsuba() const { return {"diffuse", {{"reflectance", reflectance}}}; }
+    PovraySurface to_povray() const { return {.pigment = reflectance}; }
 };
 
 }  // namespace caustics

@@ -3,39 +3,18 @@
 #include <optional>
 
 #include "core/material/bsdf.h"
+#include "core/material/fresnel.h"
+#include "core/material/specular_split.h"
 #include "core/math/rng.h"
 #include "core/math/spectrum.h"
 #include "core/math/vec.h"
 
 namespace caustics {
 
-/// Mirror image of `w` (unit, away from the surface) about the unit normal n.
-inline Vec3 reflect(const Vec3& w, const Vec3& n) { return 2 * n.dot(w) * n - w; }
-
-/// Direction (unit, away from the surface, on the other side of n) into which light arriving
-/// from `w` is refracted; n on w's side; eta = (ior on the far side) / (ior on w's side).
-/// Empty at total internal reflection. [Snell's law in vector form]
-std::optional<Vec3> refract(const Vec3& w, const Vec3& n, float eta);
-
-/// Unpolarised Fresnel reflectance of a dielectric, the mean of R_s and R_p; `cos_i` >= 0 on the
-/// side of arrival; eta as for refract. 1 at total internal reflection.
-float fresnel_dielectric(float cos_i, float eta);
-
 /// Beer's law: the share of light left after `distance` [m] of a medium [1/m].
 Spectrum transmittance(const Spectrum& absorption, float distance);
 
-/// What a perfectly specular surface does with light along `w` (unit, away from the surface):
-/// up to two continuations. Directions are by the shading normal; one that would leave on the
-/// wrong side of the geometric surface is dropped, and so is all light that arrives on different
-/// sides by the two normals: its weight is lost (symmetrically for light and eye paths).
-struct SpecularSplit {
-    Vec3 reflected = Vec3::Zero();
-    Vec3 refracted = Vec3::Zero();
-    Spectrum reflected_weight = black();  ///< of flux; includes Fresnel and colour
-    Spectrum refracted_weight = black();
-    Spectrum lost_weight = black();  ///< of what was dropped
-    float eta = 1;                   ///< ior on the far side / ior on w's side
-};
+/// What a caster does with light along `w` (unit, away from the surface).
 /// `ng`, `ns`: the surface's geometric and shading normals as stored (not turned towards w). `nm` is
 /// the light's wavelength, for a dispersive dielectric; 0: as Ior::at.
 SpecularSplit split_specular(const Bsdf& bsdf, const Vec3& ng, const Vec3& ns, const Vec3& w,

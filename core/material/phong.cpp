@@ -1,5 +1,7 @@
 #include "core/material/phong.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -99,6 +101,21 @@ Phong Phong::read(const JsonNode& node, Assets& assets) {
     const float s = brightest(phong.specular_reflectance);
     if (d + s > 0) phong.lobe_share = s / (d + s);
     return phong;
+}
+
+PovraySurface Phong::to_povray() const {
+    const auto* specular = std::get_if<Spectrum>(&specular_reflectance);
+    PovraySurface surface{.pigment = diffuse_reflectance};
+    if (model != Model::classic)
+        surface.refused.reason =
+            "POV-Ray's highlight is that of the model \"classic\"; the normalised one is not "
+            "exported";
+    else if (specular == nullptr || (*specular != (*specular)[0]).any())
+        surface.refused.reason =
+            "POV-Ray's highlight has one strength: give specular_reflectance a number";
+    else
+        surface.highlight = fmt::format(" phong {} phong_size {}", pi * (*specular)[0], exponent);
+    return surface;
 }
 
 }  // namespace caustics

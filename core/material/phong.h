@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/material/bsdf_words.h"
 #include "core/material/texture.h"
 #include "core/math/vec.h"
 #include "core/scene_file/key_texts.h"
@@ -31,6 +32,9 @@ struct Phong {
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Phong read(const JsonNode& node, scene_file::Assets& assets);
+    /// Of the model "classic": POV-Ray's highlight is the lamp's colour times cos^e a. With lamps of pi times
+    /// our irradiance beneath a pigment of 1, its `phong` is pi k_s for the same light.
+    PovraySurface to_povray() const;
 };
 
 }  // namespace caustics

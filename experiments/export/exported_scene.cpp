@@ -14,6 +14,13 @@ void refuse_export(const ExportSettings& settings, const std::string& object,
     throw UnsupportedScene(fmt::format("{}: {}: {}", settings.scene_file, object, reason));
 }
 
+std::string with_setting(const ExportRefusal& refusal, const std::string& place) {
+    if (refusal.setting.empty()) return refusal.reason;
+    const bool quoted = refusal.setting.find('{') != std::string::npos;
+    return fmt::format("{}, such as --set {}{}{}{}", refusal.reason, quoted ? "'" : "", place,
+                       refusal.setting, quoted ? "'" : "");
+}
+
 TriangleMesh baked_mesh(const Shape& shape, const ExportSettings& settings,
                         std::vector<std::string>& notes) {
     if (shape.primitive != Primitive::mesh)

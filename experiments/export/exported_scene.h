@@ -27,6 +27,8 @@ struct ExportSettings {
 /// JSON pointer of the object and the reason.
 [[noreturn]] void refuse_export(const ExportSettings& settings, const std::string& object,
                                 const std::string& reason);
+/// Why a shape at a JSON pointer is not taken, and what would be.
+std::string with_setting(const ExportRefusal& refusal, const std::string& place);
 
 /// A shape's mesh: its own, or an exact shape's at settings.mesh_resolution, with a note.
 TriangleMesh baked_mesh(const Shape& shape, const ExportSettings& settings,

@@ -174,73 +174,47 @@ private:
             xml_.open("bsdf", {{"type", "blendbsdf"}});
             number("weight", static_cast<double>(bsdf.mirror->weight));
         }
-        if (const auto* diffuse = std::get_if<Diffuse>(&bsdf.model)) {
-            xml_.open("bsdf", {{"type", "diffuse"}});
-            write_texture(diffuse->reflectance, name);
-            xml_.close();
-        } else if (const auto* glass = std::get_if<Dielectric>(&bsdf.model)) {
-            write_glass(i, *glass);
-        } else if (const auto* mirror = std::get_if<Conductor>(&bsdf.model)) {
-            write_conductor(mirror->specular_reflectance);
-        } else {
-            const std::string kind =
-                std::holds_alternative<Phong>(bsdf.model) ? "phong" : "schlick";
-            refuse(i, "Mitsuba has no " + kind +
-                          " bsdf; give the shape one that it has, such as --set '" + place(i) +
-                          "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}'");
-        }
+        write_model(i, caustics::to_mitsuba(bsdf), name);
         if (bsdf.mirror) {
-            write_conductor(bsdf.mirror->reflectance);
+            write_model(i, Conductor{bsdf.mirror->reflectance}.to_mitsuba(), name);
             xml_.close();
         }
         if (bsdf.twosided) xml_.close();
     }
 
-    void write_conductor(const Spectrum& reflectance) {
-        xml_.open("bsdf", {{"type", "conductor"}});
-        value("string", "material", "none");
-        value("rgb", "specular_reflectance", three(reflectance));
+    void write_model(std::size_t i, const MitsubaBsdf& bsdf, const std::string& shape) {
+        if (!bsdf.refused.reason.empty()) refuse(i, with_setting(bsdf.refused, place(i)));
+        xml_.open("bsdf", {{"type", bsdf.type}});
+        for (const auto& [name, given] : bsdf.values) {
+            if (const auto* word = std::get_if<std::string>(&given))
+                value("string", name, *word);
+            else if (const auto* texture = std::get_if<Texture>(&given))
+                write_texture(name, *texture, shape);
+            else
+                number(name, std::get<double>(given));
+        }
         xml_.close();
     }
 
-    void write_glass(std::size_t i, const Dielectric& glass) {
-        if (!is_black(glass.absorption) || !is_black(glass.ext_absorption))
-            refuse(i,
-                   "Mitsuba's dielectric does not absorb; set absorption and ext_absorption of the "
-                   "dielectric to 0, such as --set " +
-                       place(i) + "/bsdf/absorption=0");
-        if (glass.is_dispersive())
-            refuse(i,
-                   "Mitsuba's dielectric has no dispersion; write a scene for each of some "
-                   "wavelengths (--wavelengths 16), or give it one index, such as --set " +
-                       place(i) + fmt::format("/bsdf/int_ior={:.6g}", glass.int_ior.n()));
-        xml_.open("bsdf", {{"type", "dielectric"}});
-        number("int_ior", glass.int_ior.n());
-        number("ext_ior", glass.ext_ior.n());
-        value("rgb", "specular_reflectance", three(glass.specular_reflectance));
-        value("rgb", "specular_transmittance", three(glass.specular_transmittance));
-        xml_.close();
-    }
-
-    void write_texture(const Texture& texture, const std::string& shape) {
+    void write_texture(const std::string& name, const Texture& texture, const std::string& shape) {
         if (const auto* colour = std::get_if<Spectrum>(&texture)) {
-            value("rgb", "reflectance", three(*colour));
+            value("rgb", name, three(*colour));
         } else if (const auto* board = std::get_if<Checkerboard>(&texture)) {
-            xml_.open("texture", {{"name", "reflectance"}, {"type", "checkerboard"}});
+            xml_.open("texture", {{"name", name}, {"type", "checkerboard"}});
             value("rgb", "color0", three(board->color0));
             value("rgb", "color1", three(board->color1));
             transform("to_uv", board->to_uv.matrix().cast<double>());
             xml_.close();
         } else {
-            write_bitmap(std::get<Bitmap>(texture), shape);
+            write_bitmap(name, std::get<Bitmap>(texture), shape);
         }
     }
 
-    void write_bitmap(const Bitmap& bitmap, const std::string& shape) {
+    void write_bitmap(const std::string& name, const Bitmap& bitmap, const std::string& shape) {
         static const char* const filters[] = {"bilinear", "nearest"};
         static const char* const wraps[] = {"repeat", "mirror", "clamp"};
         out_.files.push_back({shape + ".pfm", pfm_bytes(bitmap)});
-        xml_.open("texture", {{"name", "reflectance"}, {"type", "bitmap"}});
+        xml_.open("texture", {{"name", name}, {"type", "bitmap"}});
         value("string", "filename", shape + ".pfm");
         value("boolean", "raw", "true");
         value("string", "filter_type", filters[static_cast<int>(bitmap.filter)]);

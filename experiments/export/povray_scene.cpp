@@ -22,12 +22,11 @@ std::string matrix(const Transform& to_world) {
     return "matrix <" + text + ">";
 }
 
-const Checkerboard* checkerboard(const Shape& shape) {
-    const auto* diffuse = std::get_if<Diffuse>(&shape.bsdf.model);
-    return diffuse == nullptr ? nullptr : std::get_if<Checkerboard>(&diffuse->reflectance);
+const Checkerboard* checkerboard(const PovraySurface& surface) {
+    return surface.pigment ? std::get_if<Checkerboard>(&*surface.pigment) : nullptr;
 }
 
-const Dielectric* glass(const Shape& shape) { return std::get_if<Dielectric>(&shape.bsdf.model); }
+bool is_glass(const Shape& shape) { return to_povray(shape.bsdf).interior.has_value(); }
 
 // A list of a mesh2 object, one item a line.
 template <class Items, class Text>
@@ -59,9 +58,6 @@ const char* words_of(const Shape& shape) {
     return ask_exact(shape, [](const auto& kind) { return kind.povray; });
 }
 
-constexpr const char* mirror_photons =
-    "photons { target reflection on refraction off collect off }";
-
 class PovrayWriter {
 public:
     PovrayWriter(const SceneDesc& scene, const ExportSettings& settings)
@@ -90,7 +86,7 @@ private:
         const auto hit = world_.intersect(ray);
         if (!hit || hit->geometric_normal.dot(ray.direction) <= 0) return;
         const Shape& shape = world_.shape_at(*hit);
-        if (glass(shape) != nullptr && shape.primitive != Primitive::sphere)
+        if (is_glass(shape) && shape.primitive != Primitive::sphere)
             refuse(shape, "POV-Ray takes the first meeting with a dielectric for the way in, but " +
                               who + " looks at this one from inside");
     }
@@ -160,40 +156,21 @@ private:
             refuse(shape,
                    "POV-Ray's area lights are points on a grid without Lambert's cosine; export "
                    "scenes with point or directional lights");
+        const PovraySurface surface = caustics::to_povray(shape.bsdf);
+        if (!surface.refused.reason.empty())
+            refuse(shape, with_setting(surface.refused, "/" + shape.name));
+        if (shape.bsdf.mirror && !surface.highlight.empty())
+            refuse(shape, "a blend of phong and a conductor is not exported to POV-Ray");
         text_ += fmt::format("// {}\n", plain_name(shape.name, 0));
-        write_geometry(shape);
-        if (glass(shape) != nullptr)
-            write_glass(shape, *glass(shape));
-        else if (const auto* mirror = std::get_if<Conductor>(&shape.bsdf.model))
-            write_opaque(shape,
-                         fmt::format("pigment {{ rgb 0 }} finish {{ ambient 0 diffuse 0 reflection "
-                                     "{{ rgb {} }} }}",
-                                     three(mirror->specular_reflectance)),
-                         mirror_photons);
-        else if (const auto* diffuse = std::get_if<Diffuse>(&shape.bsdf.model))
-            write_opaque(
-                shape, pigment(shape, diffuse->reflectance) + finish(shape.bsdf),
-                shape.bsdf.mirror ? "photons { target reflection on refraction off }" : "");
-        else if (const auto* phong = std::get_if<Phong>(&shape.bsdf.model))
-            write_phong(shape, *phong);
+        write_geometry(shape, checkerboard(surface));
+        if (surface.interior)
+            write_glass(shape, *surface.interior);
         else
-            refuse(shape,
-                   "POV-Ray has no schlick bsdf; give the shape one that it has, such as "
-                   "--set '/" +
-                       shape.name + "/bsdf={\"type\":\"diffuse\",\"reflectance\":0.5}'");
+            write_opaque(shape, surface);
         text_ += "}\n";
     }
 
-    // Of a diffuse surface, perhaps with a mirror part.
-    static std::string finish(const Bsdf& bsdf) {
-        if (!bsdf.mirror) return " finish { ambient 1 diffuse 1 }";
-        const float rest = 1 - bsdf.mirror->weight;
-        return fmt::format(" finish {{ ambient {} diffuse {} reflection {{ rgb {} }} }}", rest,
-                           rest, three(Spectrum(bsdf.mirror->weight * bsdf.mirror->reflectance)));
-    }
-
-    void write_geometry(const Shape& shape) {
-        const Checkerboard* board = checkerboard(shape);
+    void write_geometry(const Shape& shape, const Checkerboard* board) {
         const char* const exact = words_of(shape);
         if (exact != nullptr && board == nullptr) {
             text_ += fmt::format("{}\n  {}\n", exact, matrix(shape.to_world));
@@ -212,91 +189,73 @@ private:
                        board);
     }
 
-    std::string pigment(const Shape& shape, const Texture& texture) const {
-        if (const auto* colour = std::get_if<Spectrum>(&texture))
+    std::string pigment(const Shape& shape, const PovraySurface& surface) const {
+        if (!surface.pigment) return "pigment { rgb 0 }";
+        if (const auto* colour = std::get_if<Spectrum>(&*surface.pigment))
             return fmt::format("pigment {{ rgb {} }}", three(*colour));
-        const auto* board = std::get_if<Checkerboard>(&texture);
+        const Checkerboard* board = checkerboard(surface);
         if (board == nullptr)
             refuse(shape, "bitmap textures are not exported to POV-Ray; give the shape one colour");
         return fmt::format("uv_mapping pigment {{ checker color rgb {}, color rgb {} scale 0.5 }}",
                            three(board->color0), three(board->color1));
     }
 
+    // With the mirror of a blend.
+    static std::string finish(const PovraySurface& surface,
+                              const std::optional<MirrorPart>& mirror) {
+        const float diffuse = mirror ? 1 - mirror->weight : surface.diffuse;
+        const std::optional<Spectrum> reflection =
+            mirror ? Spectrum(mirror->weight * mirror->reflectance) : surface.reflection;
+        return fmt::format(
+            "finish {{ ambient {} diffuse {}{}{} }}", diffuse, diffuse, surface.highlight,
+            reflection ? fmt::format(" reflection {{ rgb {} }}", three(*reflection)) : "");
+    }
+
     // One-sided surfaces are black from behind.
-    void write_opaque(const Shape& shape, const std::string& texture, const std::string& photons) {
+    void write_opaque(const Shape& shape, const PovraySurface& surface) {
         const std::string black = "pigment { rgb 0 } finish { ambient 0 diffuse 0 }";
+        const std::string seen = pigment(shape, surface) + " " + finish(surface, shape.bsdf.mirror);
         const bool inverted = shape.flip_normals && words_of(shape) != nullptr;
         const bool both = shape.bsdf.twosided;
-        text_ += fmt::format("  texture {{ {} }}\n", inverted && !both ? black : texture);
-        if (!both)
-            text_ += fmt::format("  interior_texture {{ {} }}\n", inverted ? texture : black);
-        if (!photons.empty()) text_ += "  " + photons + "\n";
+        text_ += fmt::format("  texture {{ {} }}\n", inverted && !both ? black : seen);
+        if (!both) text_ += fmt::format("  interior_texture {{ {} }}\n", inverted ? seen : black);
+        if (is_caster(shape.bsdf))
+            text_ += fmt::format("  photons {{ target reflection on refraction off{} }}\n",
+                                 is_receiver(shape.bsdf) ? "" : " collect off");
     }
 
-    // POV-Ray's highlight is the lamp's colour times cos^e a. With lamps of pi times our irradiance
-    // beneath a pigment of 1, `phong` is pi k_s for the same light.
-    void write_phong(const Shape& shape, const Phong& phong) {
-        if (shape.bsdf.mirror)
-            refuse(shape, "a blend of phong and a conductor is not exported to POV-Ray");
-        const auto* specular = std::get_if<Spectrum>(&phong.specular_reflectance);
-        if (phong.model != Phong::Model::classic)
-            refuse(
-                shape,
-                "POV-Ray's highlight is that of the model \"classic\"; the normalised one is not "
-                "exported");
-        if (specular == nullptr || (*specular != (*specular)[0]).any())
-            refuse(shape,
-                   "POV-Ray's highlight has one strength: give specular_reflectance a number");
-        write_opaque(shape,
-                     pigment(shape, phong.diffuse_reflectance) +
-                         fmt::format(" finish {{ ambient 1 diffuse 1 phong {} phong_size {} }}",
-                                     pi * (*specular)[0], phong.exponent),
-                     "");
-    }
-
-    void check_glass(const Shape& shape, const Dielectric& dielectric) {
-        if (!(dielectric.specular_reflectance == 1).all() ||
-            !(dielectric.specular_transmittance == 1).all())
-            refuse(shape,
-                   "specular_reflectance and specular_transmittance of a dielectric are not "
-                   "exported to POV-Ray; leave them 1");
-        if (!is_black(dielectric.ext_absorption))
-            refuse(shape, "POV-Ray knows no absorption outside of a dielectric (ext_absorption)");
-        if (!is_black(dielectric.absorption) && shape.primitive != Primitive::sphere)
+    void check_glass(const Shape& shape, const PovrayInterior& glass) {
+        if (!is_black(glass.absorption) && shape.primitive != Primitive::sphere)
             refuse(shape,
                    "POV-Ray absorbs light only between two surfaces of one object, not "
                    "from water to its floor; set absorption 0, such as --set /" +
                        shape.name + "/bsdf/absorption=0");
         if (shape.flip_normals && shape.primitive == Primitive::sphere)
             refuse(shape, "POV-Ray's spheres have their medium inside; leave flip_normals away");
-        if (ext_ior_ && *ext_ior_ != dielectric.ext_ior)
+        if (ext_ior_ && *ext_ior_ != glass.outside)
             refuse(shape,
                    "POV-Ray has one medium outside of all dielectrics; give all the same "
                    "ext_ior");
-        ext_ior_ = dielectric.ext_ior;
+        ext_ior_ = glass.outside;
     }
 
-    void write_glass(const Shape& shape, const Dielectric& dielectric) {
-        check_glass(shape, dielectric);
+    void write_glass(const Shape& shape, const PovrayInterior& glass) {
+        check_glass(shape, glass);
         text_ +=
             "  texture { pigment { rgbt 1 } finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel "
             "on } conserve_energy } }\n";
-        const auto ior = [&](double nm) {
-            const auto at = static_cast<float>(nm);
-            return dielectric.int_ior.at(at) / dielectric.ext_ior.at(at);
-        };
-        text_ += fmt::format("  interior {{ ior {}", ior(0));
-        if (dielectric.is_dispersive()) {
-            text_ += fmt::format(" dispersion {} dispersion_samples 16", ior(400) / ior(700));
+        text_ += fmt::format("  interior {{ ior {}", glass.ior);
+        if (glass.dispersion) {
+            text_ += fmt::format(" dispersion {} dispersion_samples 16", *glass.dispersion);
             out_.notes.push_back(
                 "/" + shape.name +
                 ": POV-Ray spreads colours evenly between violet and red: where light "
                 "falls compares, its colours do not");
         }
         // Fading of power 1000 and above is exp(-(1 - fade_color) d / fade_distance).
-        if (const float most = dielectric.absorption.maxCoeff(); most > 0)
+        if (const float most = glass.absorption.maxCoeff(); most > 0)
             text_ += fmt::format(" fade_distance {} fade_power 1001 fade_color rgb {}", 1 / most,
-                                 three(Spectrum(1 - dielectric.absorption / most)));
+                                 three(Spectrum(1 - glass.absorption / most)));
         text_ += " }\n  photons { target reflection on refraction on collect off }\n";
     }
 

@@ -9,7 +9,7 @@ namespace caustics::beamtree {
 
 /// The rows of BeamParams in a method's table.
 template <class Params>
-std::vector<Parameter<Params>> beam_parameters() {
+std::vector<Parameter<Params>> beam_param_table() {
     return {
         parameter::choice<Params>(
             &BeamParams::polygons,
