@@ -336,7 +336,8 @@ void expect_nothing_lost(const Vec3& place, double tilt) {
     for (std::size_t i = 0; i < points.size(); ++i)
         different += ((tree[i].value - polygons[i].value).abs() > 0.1F * tree[i].value).any();
     EXPECT_LE(different, 5) << place.transpose() << ", " << tilt;
-    EXPECT_NEAR(mean(polygons) / mean(tree), 1, 1e-3) << place.transpose() << ", " << tilt;
+    // One of the points alone, held here and not there, is 1/600.
+    EXPECT_NEAR(mean(polygons) / mean(tree), 1, 2e-3) << place.transpose() << ", " << tilt;
 }
 
 TEST(CausticPolygons, LoseNothingFarFromTheOrigin) {

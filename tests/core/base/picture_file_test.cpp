@@ -8,16 +8,12 @@
 #include "core/base/error.h"
 #include "core/material/texture.h"
 #include "core/render/film.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/temporary_folder.h"
 
 // libpng leaves OpenImageIO's reader of broken files by longjmp, and what that had allocated is lost. The
 // whole stack is needed to tell such a leak from ours.
-#if defined(__SANITIZE_ADDRESS__)
-#define ADDRESS_SANITIZER 1
-#elif defined(__has_feature)
-#define ADDRESS_SANITIZER __has_feature(address_sanitizer)
-#endif
-#if ADDRESS_SANITIZER
+#if CAUSTICS_ADDRESS_SANITIZER
 extern "C" const char* __asan_default_options() { return "fast_unwind_on_malloc=0"; }
 extern "C" const char* __lsan_default_suppressions() { return "leak:libpng\n"; }
 #endif
