@@ -97,9 +97,10 @@ Parameter<Params> number(Member member, double low, double high, KeyText text) {
 template <class Params, class Member>
 Parameter<Params> optional_length(Member member, std::string otherwise, KeyText text) {
     using Value = MemberOf<Params, Member>;
-    text.type = "number";
-    text.choices = "above 0";
-    text.unit = "m";
+    // Moved: g++ 12 warns of a copy that it takes for endless.
+    text.type = std::string("number");
+    text.choices = std::string("above 0");
+    text.unit = std::string("m");
     return {std::move(text),
             [member, otherwise = std::move(otherwise)](const JsonNode& node, Params& p) {
                 std::invoke(member, p) = static_cast<Value>(read_length(node, otherwise));
