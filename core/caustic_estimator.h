@@ -1,29 +1,8 @@
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <span>
-#include <vector>
-
-#include "core/counters.h"
-#include "core/receiver_point.h"
-#include "core/run_options.h"
-#include "core/scene/scene.h"
+#include "core/point_estimator.h"
 
 namespace caustics {
-
-/// A value with its standard error (0 where the method has none to tell).
-struct Estimate {
-    Spectrum value = black();
-    Spectrum standard_error = black();
-};
-
-/// A thread's scratch and counters. Made by the estimator; never shared between threads.
-class QueryContext {
-public:
-    virtual ~QueryContext() = default;
-    virtual void add_to(Counters&) const {}
-};
 
 /// What stops light on its straight way from a light to a receiver.
 enum class Shadows {
@@ -31,36 +10,9 @@ enum class Shadows {
     transparent  ///< all but dielectrics, which weaken it: ray tracing without caustics [C11], [CC95]
 };
 
-/// The caustic layer of the camera's picture, for methods that connect light paths to the camera
-/// instead of answering at points. Row by row from the top.
-struct CameraLayer {
-    std::vector<Spectrum> radiance;
-    std::vector<Spectrum> standard_error;
-    Counters counters;
-};
-
-/// A built caustic method: radiance from light paths L S+ D only. Immutable: constructing it *is*
-/// the precompute pass, so no half-built state exists. Thread-safe; depends on nothing but the
-/// arguments and the built data.
-class CausticEstimator {
+/// A built caustic method: light paths L S+ D only.
+class CausticEstimator : public PointEstimator {
 public:
-    virtual ~CausticEstimator() = default;
-
-    virtual std::unique_ptr<QueryContext> make_context() const {
-        return std::make_unique<QueryContext>();
-    }
-    /// Radiance [W m^-2 sr^-1] leaving each receiver point along its `wo`. The points of a batch
-    /// are near each other, so that a method can share work.
-    virtual void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                          QueryContext& context) const = 0;
-    /// Irradiance [W m^-2] at the points, on the side of their geometric normals.
-    virtual void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                            QueryContext& context) const = 0;
-    /// The caustic layer of the scene's camera, or empty for a method that answers at points.
-    virtual std::optional<CameraLayer> camera_layer(const RunOptions&) const { return {}; }
-    /// Whether its values are unbiased samples, so that their scatter gives a standard error.
-    virtual bool is_statistical() const { return false; }
-    virtual BuildReport build_report() const { return {}; }
     /// Of the direct light in its pictures.
     virtual Shadows shadows() const { return Shadows::opaque; }
 };

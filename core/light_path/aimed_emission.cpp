@@ -9,12 +9,19 @@
 namespace caustics {
 namespace {
 
-// Of all lights, those that send any power towards the casters.
-std::vector<AimedSource> aimed_sources(const Scene& scene) {
+Surroundings aimed_at(const Scene& scene, Aim where) {
+    Surroundings all = scene.surroundings();
+    all.everywhere = where == Aim::everywhere;
+    return all;
+}
+
+// Of all lights, those that send any power there.
+std::vector<AimedSource> aimed_sources(const std::vector<Light>& lights,
+                                       const Surroundings& scene) {
     std::vector<AimedSource> sources;
-    if (scene.casters().empty()) return sources;
-    for (std::uint32_t i = 0; i < scene.lights().size(); ++i)
-        for (AimedSource& source : aim(scene.lights()[i], scene.surroundings())) {
+    if (scene.casters.empty() && !scene.everywhere) return sources;
+    for (std::uint32_t i = 0; i < lights.size(); ++i)
+        for (AimedSource& source : aim(lights[i], scene)) {
             if (is_black(source.power)) continue;
             source.light = i;
             sources.push_back(std::move(source));
@@ -32,8 +39,11 @@ EmissionCone plain(const AimedCone& aim) {
 
 }  // namespace
 
-AimedEmission::AimedEmission(const Scene& scene, Isa isa)
-    : scene_(scene), kernels_(emission_kernels(isa)), sources_(aimed_sources(scene)) {
+AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where)
+    : scene_(scene),
+      surroundings_(aimed_at(scene, where)),
+      kernels_(emission_kernels(isa)),
+      sources_(aimed_sources(scene.lights(), surroundings_)) {
     const auto total = static_cast<double>(total_power().mean());
     double sum = 0;
     for (const AimedSource& source : sources_) {
@@ -99,8 +109,7 @@ std::optional<LightParticle> AimedEmission::send(std::uint32_t source, std::uint
                                                  AimedSample sample, Rng& rng) const {
     const AimedSource& from = sources_[source];
     sample.region = cone - first_cone_[source];
-    const auto ray =
-        caustics::send(scene_.lights()[from.light], scene_.surroundings(), from, sample, rng);
+    const auto ray = caustics::send(scene_.lights()[from.light], surroundings_, from, sample, rng);
     if (!ray) return {};
     return LightParticle{*ray, flux_[source]};
 }

@@ -10,6 +10,12 @@
 
 namespace caustics {
 
+/// What particles are sent towards.
+enum class Aim {
+    casters,
+    everywhere  ///< all surfaces, through one sphere round the scene
+};
+
 /// Emission aimed at the casters, with equal-power particles over all lights: lights (and the
 /// pieces of large ones) are chosen in proportion to their aimed power; within one, directions (or
 /// points of a directional light's front) are uniform over the union of the casters' bounds as
@@ -18,7 +24,7 @@ namespace caustics {
 class AimedEmission {
 public:
     /// Paths side by side are emitted by the kernels of `isa`; all of them give the same particles.
-    explicit AimedEmission(const Scene& scene, Isa isa = Isa::plain);
+    explicit AimedEmission(const Scene& scene, Isa isa = Isa::plain, Aim where = Aim::casters);
 
     /// The particle for a random point of the unit square, or empty when thinning dropped it (it still
     /// counts as emitted).
@@ -41,6 +47,7 @@ private:
                                       Rng& rng) const;
 
     const Scene& scene_;
+    Surroundings surroundings_;
     const EmissionKernels& kernels_;
     std::vector<AimedSource> sources_;       ///< those that send any power towards the casters
     std::vector<double> cumulative_;         ///< of the sources' shares

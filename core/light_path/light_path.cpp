@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/light_path/flight.h"
 #include "core/material/optics.h"
 #include "core/math/sampling.h"
 
@@ -61,35 +62,6 @@ LightPathCounts light_path_counts(const Counters& counters) {
 
 namespace {
 
-// A particle on its way: one ray of a path or of a branch.
-struct Flight {
-    Ray ray;
-    Spectrum flux;
-    const Spectrum* start_medium = nullptr;  // absorption where the ray starts, if in a medium
-    int bounces = 0;
-    PathWavelength wavelength = {};
-};
-
-// What a flight leaves where it has come to; nothing on a black side.
-std::optional<Deposit> deposit_of(const Scene& scene, const SurfacePoint& hit,
-                                  const Flight& flight) {
-    const Vec3 wi = -flight.ray.direction;
-    const bool front = hit.geometric_normal.dot(wi) > 0;
-    if (!scatters_from(scene.shape_at(hit).bsdf, front)) return {};
-    Deposit deposit;
-    deposit.position = hit.position;
-    deposit.geometric_normal = front ? hit.geometric_normal : Vec3(-hit.geometric_normal);
-    deposit.shading_normal = front ? hit.shading_normal : Vec3(-hit.shading_normal);
-    deposit.wi = wi;
-    deposit.uv = hit.uv;
-    deposit.offset = hit.offset;
-    deposit.flux = flight.flux;
-    deposit.shape = hit.shape;
-    deposit.bounces = flight.bounces;
-    deposit.front = front;
-    return deposit;
-}
-
 // What a flight finds at the end of a segment.
 struct Stop {
     std::optional<Deposit> deposit;
@@ -131,46 +103,6 @@ Stop stop_at(const Scene& scene, const LightPathSettings& settings,
 
 void record(const LightPathSettings& settings, const Ray& ray) {
     if (settings.traced != nullptr) settings.traced->push_back(ray);
-}
-
-// Turns a flight to where it leaves a caster.
-void leave(const Scene& scene, const SurfacePoint& hit, const Vec3& direction, Flight& flight) {
-    flight.start_medium =
-        medium_absorption(scene.shape_at(hit).bsdf, hit.geometric_normal, direction);
-    flight.ray = spawn_ray({hit.position, hit.geometric_normal, hit.offset}, direction);
-    ++flight.bounces;
-}
-
-// What a caster does with a flight, which gets a wavelength at its first dispersive one.
-SpecularSplit split_at(const Scene& scene, const SurfacePoint& hit, Flight& flight, Rng& rng) {
-    const Bsdf& bsdf = scene.shape_at(hit).bsdf;
-    flight.wavelength.arrive_at(bsdf, rng, flight.flux);
-    return split_specular(bsdf, hit.geometric_normal, hit.shading_normal, -flight.ray.direction,
-                          flight.wavelength.nm);
-}
-
-enum class Fate { reflected, refracted, absorbed, misdirected };
-
-// One decision for reflection, refraction or an end; the survivor's channels are rescaled so that the
-// mean over many particles is the split's weights [C11, after Jensen 2004].
-Fate roulette(const SpecularSplit& split, Rng& rng, Spectrum& flux) {
-    const float before = flux.sum();
-    if (!(before > 0)) return Fate::absorbed;
-    const Spectrum reflected = split.reflected_weight * flux;
-    const Spectrum refracted = split.refracted_weight * flux;
-    const float reflected_share = reflected.sum() / before;
-    const float refracted_share = refracted.sum() / before;
-    const float u = rng.next();
-    if (u < reflected_share) {
-        flux = reflected / reflected_share;
-        return Fate::reflected;
-    }
-    if (u < reflected_share + refracted_share) {
-        flux = refracted / refracted_share;
-        return Fate::refracted;
-    }
-    const float lost_share = Spectrum(split.lost_weight * flux).sum() / before;
-    return u < reflected_share + refracted_share + lost_share ? Fate::misdirected : Fate::absorbed;
 }
 
 // The event at a caster; false when it ends the flight, whose end a deposit there has counted already.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
+#include "core/light_path/deposit.h"
 #include "core/math/rng.h"
 #include "core/math/spectrum.h"
 #include "core/scene/scene.h"
@@ -16,20 +17,6 @@ namespace caustics {
 struct LightParticle {
     Ray ray;
     Spectrum flux = black();
-};
-
-/// A particle's arrival on a receiver after at least one specular event.
-struct Deposit {
-    Vec3 position = Vec3::Zero();
-    Vec3 geometric_normal = Vec3::Zero();  ///< unit, on the side of arrival
-    Vec3 shading_normal = Vec3::Zero();    ///< unit, on the side of arrival
-    Vec3 wi = Vec3::Zero();  ///< unit, away from the surface, where the particle came from
-    Vec2 uv = Vec2::Zero();
-    float offset = 0;  ///< as SurfacePoint::offset
-    Spectrum flux = black();
-    std::uint32_t shape = 0;
-    int bounces = 0;
-    bool front = true;  ///< whether it arrived on the front side of the surface
 };
 
 /// What became of emitted particles. Each branch of a split path has its own end: the ends (missed

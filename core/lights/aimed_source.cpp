@@ -87,6 +87,13 @@ std::vector<DirectionCone> cones_towards(const BoundingSphere& from, const Shape
     return !cones.empty() && measure_of(cones) < measure_of(one) ? cones : one;
 }
 
+BoundingSphere sphere_round(const Box& box) { return {box.center(), 0.5F * box.diagonal().norm()}; }
+
+// The shapes that are aimed at one by one.
+std::span<const std::uint32_t> targets(const Surroundings& scene) {
+    return scene.everywhere ? std::span<const std::uint32_t>{} : scene.casters;
+}
+
 void normalise(std::vector<double>& measures) {
     double sum = 0;
     for (double& measure : measures) measure = sum += measure;
@@ -102,7 +109,8 @@ DirectionCone cone_of_half_angle(const Vec3d& axis, double half_angle) {
 
 double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSource& source) {
     std::vector<DirectionCone> cones;
-    for (const std::uint32_t caster : scene.casters)
+    if (scene.everywhere) cones.push_back(cone_towards(from, {sphere_round(scene.bounds), {}}));
+    for (const std::uint32_t caster : targets(scene))
         for (const DirectionCone& cone : cones_towards(from, scene.shapes[caster]))
             cones.push_back(cone);
     // All directions hold every other cone: they alone are the union.
@@ -121,8 +129,11 @@ double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSou
 
 double aim_discs(const Surroundings& scene, AimedSource& source) {
     double total = 0;
-    for (const std::uint32_t caster : scene.casters) {
-        const BoundingSphere sphere = bounding_sphere(scene.shapes[caster]);
+    std::vector<BoundingSphere> spheres;
+    if (scene.everywhere) spheres.push_back(sphere_round(scene.bounds));
+    for (const std::uint32_t caster : targets(scene))
+        spheres.push_back(bounding_sphere(scene.shapes[caster]));
+    for (const BoundingSphere& sphere : spheres) {
         const float radius = sphere.radius * (1 + 1e-5F);
         source.discs.push_back({sphere.centre, radius});
         source.cumulative.push_back(pi_d * static_cast<double>(radius) *

@@ -28,6 +28,11 @@ enum class Stage : std::uint32_t {
     illumination_map = 9,
     survey = 10,
     wavelength = 11,
+    global_photons = 12,
+    global_pilot = 13,
+    final_gather = 14,
+    indirect_light_trace = 15,
+    indirect_path_trace = 16,
     test = 100,
 };
 

@@ -5,7 +5,7 @@
 namespace caustics {
 
 /// A method described by a params struct with its defaults in place and a table of its members.
-template <class Params>
+template <class Params, class Estimator = CausticEstimator>
 struct MethodTable {
     MethodFacts facts;
     std::vector<Parameter<Params>> parameters = {};
@@ -13,8 +13,8 @@ struct MethodTable {
     /// puts defaults in place that depend on others.
     void (*settle)(const JsonNode& node, Params& params) = [](const JsonNode&, Params&) {};
     void (*take_least_work)(Params& params) = [](Params&) {};
-    std::unique_ptr<const CausticEstimator> (*make)(const Scene&, const Params&, const RunOptions&,
-                                                    int pass) =
+    std::unique_ptr<const Estimator> (*make)(const Scene&, const Params&, const RunOptions&,
+                                             int pass) =
         [](const Scene& scene, const Params& params, const RunOptions& options, int) {
             return build(scene, params, options);
         };
@@ -23,10 +23,10 @@ struct MethodTable {
 };
 
 /// A method of such a table. Lives as long as what it configures.
-template <class Params>
-class DescribedMethod final : public MethodDescription {
+template <class Params, class Estimator = CausticEstimator>
+class DescribedMethod final : public MethodDescriptionOf<Estimator> {
 public:
-    explicit DescribedMethod(MethodTable<Params> table) : table_(std::move(table)) {}
+    explicit DescribedMethod(MethodTable<Params, Estimator> table) : table_(std::move(table)) {}
 
     const MethodFacts& facts() const override { return table_.facts; }
 
@@ -36,7 +36,8 @@ public:
         return all;
     }
 
-    std::shared_ptr<const ConfiguredMethod> configure(const JsonNode& node) const override {
+    std::shared_ptr<const ConfiguredMethodOf<Estimator>> configure(
+        const JsonNode& node) const override {
         return std::make_shared<Configured>(table_, read(node));
     }
 
@@ -50,9 +51,9 @@ public:
     }
 
 private:
-    class Configured final : public ConfiguredMethod {
+    class Configured final : public ConfiguredMethodOf<Estimator> {
     public:
-        Configured(const MethodTable<Params>& table, Params params)
+        Configured(const MethodTable<Params, Estimator>& table, Params params)
             : table_(table), params_(std::move(params)) {}
 
         std::vector<std::pair<std::string, ParameterValue>> values() const override {
@@ -83,22 +84,22 @@ private:
         double disc_radius() const override {
             return table_.disc_radius == nullptr ? 0 : params_.*table_.disc_radius;
         }
-        std::shared_ptr<const ConfiguredMethod> with_least_work() const override {
+        std::shared_ptr<const ConfiguredMethodOf<Estimator>> with_least_work() const override {
             Params least = params_;
             table_.take_least_work(least);
             return std::make_shared<Configured>(table_, std::move(least));
         }
-        std::unique_ptr<const CausticEstimator> build(const Scene& scene, const RunOptions& options,
-                                                      int pass) const override {
+        std::unique_ptr<const Estimator> build(const Scene& scene, const RunOptions& options,
+                                               int pass) const override {
             return table_.make(scene, params_, options, pass);
         }
 
     private:
-        const MethodTable<Params>& table_;
+        const MethodTable<Params, Estimator>& table_;
         Params params_;
     };
 
-    MethodTable<Params> table_;
+    MethodTable<Params, Estimator> table_;
 };
 
 }  // namespace caustics

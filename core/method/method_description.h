@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
+#include "core/indirect_estimator.h"
 #include "core/method/parameter.h"
 
 namespace caustics {
@@ -33,10 +34,10 @@ struct MethodFacts {
     std::vector<std::string> more_effort = {};  ///< empty: there is no second try
 };
 
-/// A method with its parameters in place. Immutable.
-class ConfiguredMethod {
+/// A method with its parameters in place, whatever it estimates. Immutable.
+class ConfiguredParameters {
 public:
-    virtual ~ConfiguredMethod() = default;
+    virtual ~ConfiguredParameters() = default;
 
     /// Every parameter with the value in force, defaults included.
     virtual std::vector<std::pair<std::string, ParameterValue>> values() const = 0;
@@ -49,24 +50,36 @@ public:
     virtual int pass_count() const = 0;
     /// Of points in `probe` that have none of their own [m]; 0 = none.
     virtual double disc_radius() const = 0;
+};
+
+/// The same, ready to be built.
+template <class Estimator>
+class ConfiguredMethodOf : public ConfiguredParameters {
+public:
     /// The same where building costs next to nothing: what a method can serve does not depend on how
     /// much work it is given.
-    virtual std::shared_ptr<const ConfiguredMethod> with_least_work() const = 0;
+    virtual std::shared_ptr<const ConfiguredMethodOf> with_least_work() const = 0;
     /// Runs the precompute pass of that number.
-    virtual std::unique_ptr<const CausticEstimator> build(const Scene& scene,
-                                                          const RunOptions& options,
-                                                          int pass) const = 0;
+    virtual std::unique_ptr<const Estimator> build(const Scene& scene, const RunOptions& options,
+                                                   int pass) const = 0;
 };
 
 /// A method as its own folder describes it: all that a program asks of methods it knows only by name.
-class MethodDescription {
+template <class Estimator>
+class MethodDescriptionOf {
 public:
-    virtual ~MethodDescription() = default;
+    virtual ~MethodDescriptionOf() = default;
 
     virtual const MethodFacts& facts() const = 0;
     virtual std::vector<KeyText> parameters() const = 0;
     /// Reads parameters strictly. Throws InputError naming the key and what is known.
-    virtual std::shared_ptr<const ConfiguredMethod> configure(const JsonNode& node) const = 0;
+    virtual std::shared_ptr<const ConfiguredMethodOf<Estimator>> configure(
+        const JsonNode& node) const = 0;
 };
+
+using ConfiguredMethod = ConfiguredMethodOf<CausticEstimator>;
+using MethodDescription = MethodDescriptionOf<CausticEstimator>;
+using ConfiguredIndirect = ConfiguredMethodOf<IndirectEstimator>;
+using IndirectDescription = MethodDescriptionOf<IndirectEstimator>;
 
 }  // namespace caustics

@@ -190,6 +190,17 @@ Parameter<Params> max_bounces() {
         {.key = "max_bounces", .meaning = "Most specular events between light and receiver."});
 }
 
+/// The receiver at which a light path of an indirect method ends.
+template <class Params>
+Parameter<Params> diffuse_bounces() {
+    return whole_number<Params>(
+        &Params::diffuse_bounces, 0, 100'000,
+        {.key = "diffuse_bounces",
+         .meaning =
+             "The receiver at which light paths end, counted from the light; 0: by roulette.",
+         .source = "[C11]"});
+}
+
 }  // namespace parameter
 
 }  // namespace caustics

@@ -26,7 +26,7 @@ struct Tally {
         squares[cell] += v * v;
         ++added;
     }
-    // Mean over n paths, each of which brought at most one value to a cell.
+    // Mean over n paths, each of which brought at most one value to a cell (or, of whole paths, seldom two).
     Estimate estimate(std::size_t cell, double n) const {
         const SpectrumSum mean = sum[cell] / n;
         const SpectrumSum variance = (squares[cell] / n - mean.square()).max(0) / n;
@@ -44,13 +44,22 @@ struct Arrival {
     Spectrum value;
 };
 
-class LightTrace : public CausticEstimator {
+/// Which paths are traced: caustics, or, where `whole`, all, of which indirect light counts.
+struct Paths {
+    Stage stage = Stage::light_trace;
+    std::optional<WholePathSettings> whole = {};
+};
+
+template <class Estimator>
+class LightTrace : public Estimator {
 public:
-    LightTrace(const Scene& scene, const LightTraceParams& params, const RunOptions& options)
+    LightTrace(const Scene& scene, const LightTraceParams& params, const Paths& paths,
+               const RunOptions& options)
         : scene_(scene),
           params_(params),
+          paths_(paths),
           options_(options),
-          emission_(scene),
+          emission_(scene, Isa::plain, paths.whole ? Aim::everywhere : Aim::casters),
           film_(scene.camera()),
           eye_absorption_(eye_medium(scene).absorption) {}
 
@@ -96,9 +105,8 @@ private:
     Tally trace(std::size_t cells, const RunOptions& options, const Collect& collect,
                 LightPathCounts& total) const {
         Tally tally(cells);
-        const OrderedPaths paths{scene_,        emission_,
-                                 params_.paths, params_.max_bounces,
-                                 options_.seed, Stage::light_trace};
+        const OrderedPaths paths{scene_,        emission_,    params_.paths, params_.max_bounces,
+                                 options_.seed, paths_.stage, paths_.whole};
         total.add(trace_in_order<Arrival>(
             paths, options, collect,
             [&tally](const Arrival& arrival) { tally.add(arrival.cell, arrival.value); }));
@@ -156,51 +164,83 @@ private:
 
     const Scene& scene_;
     LightTraceParams params_;
+    Paths paths_;
     RunOptions options_;
     AimedEmission emission_;
     FilmProjection film_;
     Spectrum eye_absorption_;
 };
 
+template <class P>
+std::vector<Parameter<P>> path_parameters() {
+    return {
+        parameter::whole_number<P>(&P::paths, 1, 1'000'000'000'000,
+                                   {.key = "paths",
+                                    .meaning = "Light paths emitted, thinned ones included.",
+                                    .unit = "paths"}),
+        parameter::max_bounces<P>(),
+        parameter::optional_length<P>(
+            &P::radius, "leave it out where each point has its own",
+            {.key = "radius",
+             .meaning = "In probe: radius of the disc round points that have none of their own."})
+            .usually("none")};
+}
+
+MethodFacts facts(const std::string& summary) {
+    return {.name = "lighttrace",
+            .summary = summary,
+            .serves =
+                "every light; not pixels that see the receiver through glass (layer "
+                "`unreached`)",
+            .is_unbiased = true,
+            .samples = {.parameter = "paths"},
+            .gathers_over_discs = true,
+            .effort = {"paths=400000"}};
+}
+
+template <class P>
+void check_radius(const JsonNode& node, P&) {
+    if (const auto radius = node.find("radius")) radius->as_number_in(0, 1e12);
+}
+
 }  // namespace
 
 const DescribedMethod<LightTraceParams>& lighttrace_method() {
     using P = LightTraceParams;
     static const DescribedMethod<P> method(
-        {.facts =
-             {.name = "lighttrace",
-              .summary =
-                  "particle tracing connected to the camera; `probe` gathers its particles over a "
-                  "disc at each point",
-              .serves = "every light; not pixels that see the receiver through glass (layer "
-                        "`unreached`)",
-              .is_unbiased = true,
-              .samples = {.parameter = "paths"},
-              .gathers_over_discs = true,
-              .effort = {"paths=400000"}},
-         .parameters =
-             {parameter::whole_number<P>(&P::paths, 1, 1'000'000'000'000,
-                                         {.key = "paths",
-                                          .meaning = "Light paths emitted, thinned ones included.",
-                                          .unit = "paths"}),
-              parameter::max_bounces<P>(),
-              parameter::optional_length<P>(
-                  &P::radius, "leave it out where each point has its own",
-                  {.key = "radius",
-                   .meaning =
-                       "In probe: radius of the disc round points that have none of their own."})
-                  .usually("none")},
-         .settle =
-             [](const JsonNode& node, P&) {
-                 if (const auto radius = node.find("radius")) radius->as_number_in(0, 1e12);
-             },
+        {.facts = facts("particle tracing connected to the camera; `probe` gathers its particles "
+                        "over a disc at each point"),
+         .parameters = path_parameters<P>(),
+         .settle = check_radius<P>,
          .disc_radius = &P::radius});
+    return method;
+}
+
+const DescribedMethod<IndirectLightTraceParams, IndirectEstimator>& indirect_lighttrace_method() {
+    using P = IndirectLightTraceParams;
+    static const DescribedMethod<P, IndirectEstimator> method([] {
+        std::vector<Parameter<P>> parameters = path_parameters<P>();
+        parameters.push_back(parameter::diffuse_bounces<P>());
+        return MethodTable<P, IndirectEstimator>{
+            .facts = facts("particle tracing through all surfaces, connected to the camera"),
+            .parameters = std::move(parameters),
+            .settle = check_radius<P>,
+            .disc_radius = static_cast<double P::*>(&P::radius)};
+    }());
     return method;
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const LightTraceParams& params,
                                               const RunOptions& options) {
-    return std::make_unique<LightTrace>(scene, params, options);
+    return std::make_unique<LightTrace<CausticEstimator>>(scene, params, Paths{}, options);
+}
+
+std::unique_ptr<const IndirectEstimator> build(const Scene& scene,
+                                               const IndirectLightTraceParams& params,
+                                               const RunOptions& options) {
+    const Paths paths{Stage::indirect_light_trace,
+                      WholePathSettings{params.max_bounces, params.diffuse_bounces}};
+    return std::make_unique<LightTrace<IndirectEstimator>>(scene, params, paths, options);
 }
 
 }  // namespace caustics

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
+#include "core/indirect_estimator.h"
 #include "core/method/described_method.h"
 
 namespace caustics {
@@ -17,8 +18,15 @@ struct LightTraceParams {
     int max_bounces = 16;             ///< specular events between light and receiver
     double radius = 0;                ///< [m] of the disc in `probe` for points without their own
 };
+/// The same of indirect light: whole paths, from the second receiver on.
+struct IndirectLightTraceParams : LightTraceParams {
+    int diffuse_bounces = 0;  ///< the last receiver, counted from the light [C11]; 0: none
+};
 const DescribedMethod<LightTraceParams>& lighttrace_method();
+const DescribedMethod<IndirectLightTraceParams, IndirectEstimator>& indirect_lighttrace_method();
 std::unique_ptr<const CausticEstimator> build(const Scene&, const LightTraceParams&,
                                               const RunOptions&);
+std::unique_ptr<const IndirectEstimator> build(const Scene&, const IndirectLightTraceParams&,
+                                               const RunOptions&);
 
 }  // namespace caustics

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/interrupt.h"
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/light_path/light_path.h"
+#include "core/light_path/whole_path.h"
 
 namespace caustics {
 
@@ -19,6 +21,8 @@ struct OrderedPaths {
     int max_bounces;
     std::uint64_t seed;
     Stage stage;  ///< of their random numbers
+    /// Where given: of all events; what is left after a diffuse reflection counts.
+    std::optional<WholePathSettings> whole = {};
 
     static constexpr std::uint64_t chunk = 4096;
     static constexpr std::uint64_t chunks_per_round = 256;
@@ -36,8 +40,12 @@ struct OrderedPaths {
             if (!particle) continue;
             ++counts.aimed;
             deposits.clear();
-            trace_light_path(scene, *particle, {max_bounces}, rng, counts, deposits);
-            for (const Deposit& deposit : deposits) sink(deposit);
+            if (whole)
+                trace_whole_path(scene, *particle, *whole, rng, counts, deposits);
+            else
+                trace_light_path(scene, *particle, {max_bounces}, rng, counts, deposits);
+            for (const Deposit& deposit : deposits)
+                if (!whole || deposit.diffuse_bounces > 0) sink(deposit);
         }
     }
 };

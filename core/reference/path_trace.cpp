@@ -1,73 +1,14 @@
 #include "core/reference/path_trace.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/interrupt.h"
-#include "core/material/optics.h"
 #include "core/math/rng.h"
-#include "core/reference/direction_mixture.h"
+#include "core/reference/caustic_sample.h"
+#include "core/reference/sample_mean.h"
 
 namespace caustics {
 namespace {
-
-// Factor on radiance for one specular vertex of a path traced against the light, so that it
-// carries what flux-conserving particles carry: with normals interpolated over a mesh the two
-// differ by the cosines about the shading and the geometric normal (Veach 1997, sec. 5.3).
-float flux_correction(const SurfacePoint& p, const Vec3& towards_receiver,
-                      const Vec3& towards_light) {
-    const float numerator =
-        p.shading_normal.dot(towards_receiver) * p.geometric_normal.dot(towards_light);
-    const float denominator =
-        p.shading_normal.dot(towards_light) * p.geometric_normal.dot(towards_receiver);
-    return denominator == 0 ? 0 : std::abs(numerator / denominator);
-}
-
-// Radiance arriving along a ray from L S+ by one random chain; 0 when its first surface is no
-// caster.
-Spectrum chain_radiance(const Scene& scene, Ray ray, int max_bounces, PathWavelength wavelength,
-                        Rng& rng) {
-    Spectrum weight = Spectrum::Ones();
-    Spectrum result = black();
-    const Spectrum* start_absorption = nullptr;
-    for (int bounces = 0;; ++bounces) {
-        const std::optional<SurfacePoint> hit = scene.intersect(ray);
-        if (!hit) {
-            // An absorbing medium without end leaves nothing.
-            if (bounces > 0 && is_clear(start_absorption)) result += weight * scene.background();
-            return result;
-        }
-        const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
-        const Vec3 w = -ray.direction;
-        weight *= segment_transmittance(
-            start_absorption, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
-        const AreaLight* light = scene.area_light(hit->shape);
-        if (light != nullptr && bounces > 0 && hit->geometric_normal.dot(w) > 0)
-            result += weight * light->radiance;
-        if (!is_caster(bsdf) || bounces == max_bounces) return result;
-        wavelength.arrive_at(bsdf, rng, weight);
-        const SpecularSplit split =
-            split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w, wavelength.nm);
-        const float reflect_share = (split.reflected_weight * weight).mean() / weight.mean();
-        const float refract_share = (split.refracted_weight * weight).mean() / weight.mean();
-        const float u = rng.next();
-        Vec3 next;
-        if (u < reflect_share) {
-            next = split.reflected;
-            weight *= split.reflected_weight / reflect_share;
-        } else if (u < reflect_share + refract_share) {
-            next = split.refracted;
-            weight *= split.refracted_weight / (refract_share * split.eta * split.eta);
-        } else {
-            return result;
-        }
-        weight *= flux_correction(*hit, w, next);
-        if (weight.maxCoeff() <= 0) return result;
-        start_absorption = medium_absorption(bsdf, hit->geometric_normal, next);
-        ray = spawn_ray({hit->position, hit->geometric_normal, hit->offset}, next);
-    }
-}
 
 class PathTrace : public CausticEstimator {
 public:
@@ -102,36 +43,9 @@ private:
         }
         const DirectionMixture mixture(caster_bounds_, receiver);
         Rng rng(seed_, Stage::path_trace, point.id);
-        SpectrumSum sum = SpectrumSum::Zero();
-        SpectrumSum squares = SpectrumSum::Zero();
-        for (int path = 0; path < paths_per_point_; ++path) {
-            throw_if_interrupted();
-            const SpectrumSum value = sample(receiver, mixture, with_bsdf, rng).cast<double>();
-            sum += value;
-            squares += value * value;
-        }
-        const double n = paths_per_point_;
-        Estimate result{(sum / n).cast<float>(), black()};
-        if (paths_per_point_ > 1)
-            result.standard_error =
-                ((squares / n - (sum / n).square()).max(0) / (n - 1)).sqrt().cast<float>();
-        return result;
-    }
-
-    Spectrum sample(const ReceiverPoint& point, const DirectionMixture& mixture, bool with_bsdf,
-                    Rng& rng) const {
-        const std::optional<Vec3> wi = mixture.sample(rng);
-        if (!wi) return black();
-        const float cosine = point.geometric_normal.dot(*wi);
-        if (cosine <= 0) return black();
-        const Spectrum scattering =
-            with_bsdf ? evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo, *wi)
-                      : Spectrum(Spectrum::Ones());
-        if (is_black(scattering)) return black();
-        const Ray ray = spawn_ray({point.position, point.geometric_normal, point.offset}, *wi);
-        const float weight = cosine / mixture.pdf_w(*wi);
-        return scattering * chain_radiance(scene_, ray, max_bounces_, {.nm = point.nm}, rng) *
-               weight;
+        return mean_of(paths_per_point_, [&] {
+            return caustic_sample(scene_, receiver, mixture, with_bsdf, max_bounces_, rng);
+        });
     }
 
     const Scene& scene_;

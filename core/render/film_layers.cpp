@@ -23,6 +23,7 @@ FilmLayers::FilmLayers(Film& film, const Extra& extra)
     if (extra.unreached) unreached_ = film.plane("unreached.Y").data();
     if (extra.standard_error) standard_error_ = rgb("stderr");
     if (extra.ambient) ambient_ = rgb("ambient");
+    if (extra.indirect) indirect_ = rgb("indirect");
     if (extra.samples) samples_ = film.plane("samples.Y").data();
 }
 
@@ -51,6 +52,7 @@ void FilmLayers::write(std::size_t pixel, const PixelSums& sums) {
     put(specular_, pixel, sums.emitted / n);
     put(caustic_, pixel, sums.caustic / n);
     if (!ambient_.name.empty()) put(ambient_, pixel, sums.ambient / n);
+    if (!indirect_.name.empty()) put(indirect_, pixel, sums.indirect / n);
     put(albedo_, pixel, sums.albedo / n);
     const Vec3d normal = sums.normal / n;
     for (int axis = 0; axis < 3; ++axis)
@@ -72,16 +74,22 @@ void FilmLayers::write_caustic(std::size_t pixel, const Spectrum& radiance,
     put(standard_error_, pixel, standard_error.cast<double>());
 }
 
+void FilmLayers::write_indirect(std::size_t pixel, const Spectrum& radiance) {
+    put(indirect_, pixel, radiance.cast<double>());
+}
+
 void FilmLayers::sum_beauty() {
     for (std::size_t channel = 0; channel < 3; ++channel)
         for (std::size_t pixel = 0; pixel < film_.pixel_count(); ++pixel)
             beauty_.planes[channel][pixel] = direct_.planes[channel][pixel] +
                                              caustic_.planes[channel][pixel] +
                                              specular_.planes[channel][pixel];
-    if (ambient_.name.empty()) return;
-    for (std::size_t channel = 0; channel < 3; ++channel)
-        for (std::size_t pixel = 0; pixel < film_.pixel_count(); ++pixel)
-            beauty_.planes[channel][pixel] += ambient_.planes[channel][pixel];
+    for (const Layer* const layer : {&ambient_, &indirect_}) {
+        if (layer->name.empty()) continue;
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            for (std::size_t pixel = 0; pixel < film_.pixel_count(); ++pixel)
+                beauty_.planes[channel][pixel] += layer->planes[channel][pixel];
+    }
 }
 
 }  // namespace caustics

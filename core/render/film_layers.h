@@ -15,6 +15,7 @@ struct PixelSums {
     SpectrumSum ambient = SpectrumSum::Zero();
     SpectrumSum caustic = SpectrumSum::Zero();
     SpectrumSum caustic_squares = SpectrumSum::Zero();
+    SpectrumSum indirect = SpectrumSum::Zero();
     SpectrumSum own_variance = SpectrumSum::Zero();  ///< as the method reports it of each sample
     SpectrumSum beauty_squares = SpectrumSum::Zero();
     SpectrumSum albedo = SpectrumSum::Zero();
@@ -24,7 +25,7 @@ struct PixelSums {
     int through_caster = 0;
     int samples = 0;
 
-    SpectrumSum beauty() const { return direct + emitted + caustic + ambient; }
+    SpectrumSum beauty() const { return direct + emitted + caustic + ambient + indirect; }
     /// Variance of a pixel's mean from its samples' scatter; 0 for a single sample.
     SpectrumSum variance_of_mean(const SpectrumSum& sum, const SpectrumSum& squares) const;
 };
@@ -37,6 +38,7 @@ public:
         bool standard_error = false;  ///< of the caustic layer
         bool samples = false;         ///< number of samples
         bool ambient = false;         ///< of a scene with ambient light
+        bool indirect = false;        ///< light between diffuse surfaces
     };
 
     /// Makes the planes, black. `film` outlives this.
@@ -46,6 +48,8 @@ public:
     void write(std::size_t pixel, const PixelSums& sums);
     /// A caustic that was not sampled pixel by pixel. Throws as write().
     void write_caustic(std::size_t pixel, const Spectrum& radiance, const Spectrum& standard_error);
+    /// The same of indirect light.
+    void write_indirect(std::size_t pixel, const Spectrum& radiance);
     /// Beauty: the sum of the layers.
     void sum_beauty();
 
@@ -58,7 +62,7 @@ private:
     void put(const Layer& layer, std::size_t pixel, const SpectrumSum& value) const;
 
     Film& film_;
-    Layer beauty_, direct_, specular_, caustic_, albedo_, standard_error_, ambient_;
+    Layer beauty_, direct_, specular_, caustic_, albedo_, standard_error_, ambient_, indirect_;
     std::array<float*, 3> normal_;
     float* depth_;
     float* unreached_ = nullptr;

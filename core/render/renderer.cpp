@@ -14,7 +14,7 @@ namespace {
 /// The three ways to take a picture's samples: a fixed number a pixel, adaptively, or pass by pass.
 class EyePass {
 public:
-    EyePass(const Scene& scene, const RunOptions& options)
+    EyePass(const Scene& scene, const RunOptions& options, const IndirectEstimator* indirect)
         : scene_(scene),
           options_(options),
           adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
@@ -22,17 +22,23 @@ public:
                    adaptive_ ? scene.sampling().max_sample_count : options.samples_per_pixel),
           sampler_(scene, samples_, options),
           tiles_(tiles_of(scene.camera())),
-          workers_(static_cast<std::size_t>(std::max(1, options.threads))) {}
+          workers_(static_cast<std::size_t>(std::max(1, options.threads))) {
+        if (indirect == nullptr) return;
+        has_indirect_ = true;
+        indirect_layer_ = indirect->camera_layer(options_);
+        if (!indirect_layer_) sampler_.ask_indirect(indirect);
+    }
 
     Rendering run(const CausticEstimator& estimator) {
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
         const auto layer = estimator.camera_layer(options_);
         sampler_.ask(estimator, {.caustic = !layer});
-        FilmLayers layers(rendering.film, {.unreached = layer.has_value(),
+        FilmLayers layers(rendering.film, {.unreached = layer || indirect_layer_,
                                            .standard_error = layer || estimator.is_statistical(),
                                            .samples = adaptive_,
-                                           .ambient = !is_black(scene_.ambient())});
+                                           .ambient = !is_black(scene_.ambient()),
+                                           .indirect = has_indirect_});
         if (adaptive_)
             sample_adaptively(layers);
         else
@@ -44,7 +50,7 @@ public:
         if (layer)
             for (std::size_t pixel = 0; pixel < rendering.film.pixel_count(); ++pixel)
                 layers.write_caustic(pixel, layer->radiance[pixel], layer->standard_error[pixel]);
-        layers.sum_beauty();
+        finish(rendering, layers);
         take_counters(rendering.report.counters);
         if (layer)
             for (const auto& [name, count] : layer->counters)
@@ -59,7 +65,9 @@ public:
                 "how the picture scatters: choose the sampler independent or stratified");
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
-        FilmLayers layers(rendering.film, {.ambient = !is_black(scene_.ambient())});
+        FilmLayers layers(rendering.film, {.unreached = indirect_layer_.has_value(),
+                                           .ambient = !is_black(scene_.ambient()),
+                                           .indirect = has_indirect_});
         std::vector<std::vector<PixelSums>> sums(tiles_.size());
         const double share = 1.0 / passes.count;
         for (int pass = 0; pass < passes.count; ++pass) {
@@ -77,11 +85,24 @@ public:
             for (PixelSums& pixel : sums[i]) pixel.caustic *= share;
             write(tiles_[i], sums[i], layers);
         }
-        layers.sum_beauty();
+        finish(rendering, layers);
         return rendering;
     }
 
 private:
+    // What connects to the camera is there at once; then the sum.
+    void finish(Rendering& rendering, FilmLayers& layers) const {
+        if (indirect_layer_) {
+            for (std::size_t pixel = 0; pixel < rendering.film.pixel_count(); ++pixel)
+                layers.write_indirect(pixel, indirect_layer_->radiance[pixel]);
+            add_indirect(indirect_layer_->counters, rendering.report.counters);
+        }
+        layers.sum_beauty();
+    }
+    static void add_indirect(const Counters& counted, Counters& counters) {
+        for (const auto& [name, count] : counted) counters["indirect_" + name] += count;
+    }
+
     // Calls body(tile, index, worker) for every tile; the progress goes from `from` to `to`.
     template <typename Body>
     void for_each_tile(double from, double to, const Body& body) {
@@ -89,6 +110,8 @@ private:
         parallel_for(options_.threads, tiles_.size(), [&](std::size_t i, std::size_t w) {
             TileWorker& worker = workers_[w];
             if (!worker.context) worker.context = sampler_.estimator().make_context();
+            if (sampler_.indirect() != nullptr && !worker.indirect_context)
+                worker.indirect_context = sampler_.indirect()->make_context();
             body(tiles_[i], i, worker);
             const double share = static_cast<double>(++done) / static_cast<double>(tiles_.size());
             options_.report(from + share * (to - from));
@@ -103,6 +126,12 @@ private:
             counters["receiver_points"] += worker.receiver_points;
             if (sampler_.has_caustic()) counters["lit_points"] += worker.lit_points;
             worker.context.reset();
+            if (worker.indirect_context) {
+                Counters own;
+                worker.indirect_context->add_to(own);
+                add_indirect(own, counters);
+                worker.indirect_context.reset();
+            }
             worker.camera_rays = worker.receiver_points = worker.lit_points = 0;
         }
     }
@@ -165,6 +194,8 @@ private:
     const Scene& scene_;
     RunOptions options_;
     bool adaptive_;
+    bool has_indirect_ = false;
+    std::optional<CameraLayer> indirect_layer_;
     CameraSamples samples_;
     TileSampler sampler_;
     std::vector<Tile> tiles_;
@@ -173,13 +204,15 @@ private:
 
 }  // namespace
 
-Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options) {
-    return EyePass(scene, options).run(estimator);
+Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options,
+                 const IndirectEstimator* indirect) {
+    return EyePass(scene, options, indirect).run(estimator);
 }
 
-Rendering render(const Scene& scene, const Passes& passes, const RunOptions& options) {
-    if (passes.count == 1) return render(scene, *passes.build(0), options);
-    return EyePass(scene, options).run(passes);
+Rendering render(const Scene& scene, const Passes& passes, const RunOptions& options,
+                 const IndirectEstimator* indirect) {
+    if (passes.count == 1) return render(scene, *passes.build(0), options, indirect);
+    return EyePass(scene, options, indirect).run(passes);
 }
 
 }  // namespace caustics

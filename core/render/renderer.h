@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
+#include "core/indirect_estimator.h"
 #include "core/render/film.h"
 #include "core/scene/scene.h"
 
@@ -31,13 +32,16 @@ struct Passes {
 
 /// The eye pass, the same code and the same camera samples for every method: direct light, the
 /// specular chains S* E with Fresnel, Beer's law and n^2 scaling, and at each receiver point the
-/// method's caustic radiance. Layers as film.h. Adaptive sampling, where the scene's sampler asks
+/// method's caustic radiance, and, where a method for it is given, the indirect one (its counters have
+/// names that begin with indirect_). Layers as film.h. Adaptive sampling, where the scene's sampler asks
 /// for it, takes its first samples everywhere and more where they scatter. Bit-identical for any
 /// number of threads.
-Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options);
+Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options,
+                 const IndirectEstimator* indirect = nullptr);
 
 /// The same with the caustic of a method's passes: their mean, at the same camera samples. Only one
 /// pass is in memory at a time. Throws InputError for several passes where sampling is adaptive.
-Rendering render(const Scene& scene, const Passes& passes, const RunOptions& options);
+Rendering render(const Scene& scene, const Passes& passes, const RunOptions& options,
+                 const IndirectEstimator* indirect = nullptr);
 
 }  // namespace caustics

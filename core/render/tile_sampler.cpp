@@ -43,6 +43,7 @@ void TileSampler::sample(const Tile& tile, int first, int count, std::vector<Pix
     worker.receiver_points += worker.points.size();
     if (parts_.caustic) add_caustic(worker, sums);
     if (!parts_.others) return;
+    if (indirect_ != nullptr) add_indirect(worker, sums);
     for (std::size_t i = 0; i < worker.values.size(); ++i) {
         PixelSums& pixel = sums[worker.pixels[i / static_cast<std::size_t>(count)]];
         pixel.beauty_squares += worker.values[i].square();
@@ -113,6 +114,17 @@ void TileSampler::add_caustic(TileWorker& worker, std::vector<PixelSums>& sums) 
         sums[owner.pixel].caustic += value;
         sums[owner.pixel].caustic_squares += value.square();
         sums[owner.pixel].own_variance += variance;
+    }
+}
+
+void TileSampler::add_indirect(TileWorker& worker, std::vector<PixelSums>& sums) const {
+    worker.estimates.assign(worker.points.size(), Estimate{});
+    indirect_->radiance(worker.points, worker.estimates, *worker.indirect_context);
+    for (std::size_t i = 0; i < worker.points.size(); ++i) {
+        const TileWorker::PointOwner& owner = worker.owners[i];
+        const SpectrumSum value = (owner.weight * worker.estimates[i].value).cast<double>();
+        worker.values[owner.value] += value;
+        sums[owner.pixel].indirect += value;
     }
 }
 

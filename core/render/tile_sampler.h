@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
+#include "core/indirect_estimator.h"
 #include "core/render/camera_samples.h"
 #include "core/render/eye_path.h"
 #include "core/render/film_layers.h"
@@ -35,6 +36,7 @@ struct TileWorker {
     };
 
     std::unique_ptr<QueryContext> context;
+    std::unique_ptr<QueryContext> indirect_context;
     std::vector<std::size_t> pixels;  ///< that are sampled next, numbered in their tile
     std::vector<WeightedPoint> found;
     std::vector<ReceiverPoint> points;
@@ -61,7 +63,10 @@ public:
         estimator_ = &estimator;
         parts_ = parts;
     }
+    /// For the indirect layer, with the others; nullptr: none.
+    void ask_indirect(const IndirectEstimator* estimator) { indirect_ = estimator; }
     const CausticEstimator& estimator() const { return *estimator_; }
+    const IndirectEstimator* indirect() const { return indirect_; }
     bool has_caustic() const { return parts_.caustic; }
 
     /// Takes samples first .. first + count of the worker's pixels. One batch for the method; a
@@ -75,12 +80,14 @@ private:
     SpectrumSum add_eye_path(const EyePath& path, Rng& rng, PixelSums& sums,
                              const TileWorker& worker) const;
     void add_caustic(TileWorker& worker, std::vector<PixelSums>& sums) const;
+    void add_indirect(TileWorker& worker, std::vector<PixelSums>& sums) const;
 
     const Scene& scene_;
     const CameraSamples& samples_;
     std::uint64_t seed_;
     Spectrum eye_absorption_;  ///< of the medium that camera rays start in
     const CausticEstimator* estimator_ = nullptr;
+    const IndirectEstimator* indirect_ = nullptr;
     Parts parts_;
 };
 
