@@ -21,6 +21,8 @@ struct Photon {
 static_assert(sizeof(Photon) == 20);
 
 constexpr std::uint16_t axis_mask = 3U;
+/// While a global map is traced, the highest bit of the flags: the photon came from a diffuse surface.
+constexpr std::uint16_t from_diffuse_mark = 0x8000U;
 
 inline void set_axis(Photon& photon, unsigned axis) {
     photon.flags = static_cast<std::uint16_t>((photon.flags & ~unsigned{axis_mask}) | axis);

@@ -232,6 +232,7 @@ void PhotonChunk::add(std::uint64_t path, const Deposit& deposit) {
                         wi.theta,
                         wi.phi,
                         facing_flags({n.x(), n.y(), n.z()})});
+    if (deposit.diffuse_bounces > 0) photons_.back().flags |= from_diffuse_mark;
 }
 
 void give_up(const LightPathCounts& counts, std::uint64_t wanted) {
