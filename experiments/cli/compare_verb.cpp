@@ -21,6 +21,7 @@ namespace {
 struct CompareOptions {
     std::string picture;
     std::string reference;
+    std::string layer;  ///< empty: not named
     std::string mask;
     std::string strip;
     bool json = false;
@@ -80,12 +81,24 @@ void tell(const std::vector<std::string>& differences) {
                              fmt::join(first, ", "), more)});
 }
 
+/// The layer that is judged; empty: RGB.
+std::string judged_layer(const CompareOptions& options, const Film& picture,
+                         const Film& reference) {
+    if (options.layer == "beauty") return "";
+    if (options.layer.empty())
+        return picture.has_layer("caustic") && reference.has_layer("caustic") ? "caustic" : "";
+    for (const auto& [film, file] :
+         {std::pair{&picture, &options.picture}, std::pair{&reference, &options.reference}})
+        if (!film->has_layer(options.layer))
+            throw InputError(fmt::format("{}: has no layer \"{}\"", *file, options.layer));
+    return options.layer;
+}
+
 int compare(const CompareOptions& options) {
     if (!options.strip.empty()) require_writable_place(options.strip);
     const Film picture = read_exr(options.picture);
     const Film reference = read_exr(options.reference);
-    const std::string layer =
-        picture.has_layer("caustic") && reference.has_layer("caustic") ? "caustic" : "";
+    const std::string layer = judged_layer(options, picture, reference);
     const PixelMask reached = reached_pixels(picture, reference);
     const nlohmann::json whole = to_json(measure(picture, reference, layer, reached));
     const PixelMask mask = options.mask.empty()
@@ -113,10 +126,11 @@ int compare(const CompareOptions& options) {
         write_stdout(all.dump(2) + "\n");
         return 0;
     }
-    std::string text =
-        fmt::format("layer {}{}\nunreached pixels left out: {:.4g} % of all\n", name,
-                    layer.empty() ? " (RGB, because not both files have a layer \"caustic\")" : "",
-                    100 * unreached);
+    std::string text = fmt::format("layer {}{}\nunreached pixels left out: {:.4g} % of all\n", name,
+                                   layer.empty() && options.layer.empty()
+                                       ? " (RGB, because not both files have a layer \"caustic\")"
+                                       : "",
+                                   100 * unreached);
     append_text(text, "all pixels", whole);
     append_text(
         text,
@@ -136,6 +150,10 @@ Verb add_compare(CLI::App& app) {
     verb->add_option("PICTURE", options->picture, "EXR to judge")->required();
     verb->add_option("REFERENCE", options->reference, "EXR to judge it by")->required();
     verb->add_flag("--json", options->json, "Print JSON");
+    verb->add_option("--layer", options->layer,
+                     "Layer to judge: caustic, indirect, direct, specular or beauty (default: "
+                     "caustic, or beauty when not both files have it)")
+        ->type_name("NAME");
     verb->add_option("--mask", options->mask,
                      "EXR whose pixels other than 0 are judged apart (default: pixels whose "
                      "reference is at least its mean)")
@@ -143,8 +161,7 @@ Verb add_compare(CLI::App& app) {
     verb->add_option("--strip", options->strip, "PNG to write: reference | picture | signed error")
         ->type_name("FILE");
     verb->footer(
-        "Judges the layer \"caustic\", or RGB when not both files have it, leaving out "
-        "unreached pixels.\n"
+        "Unreached pixels are left out.\n"
         "A note says where the two ask for different light. --json prints every digit.\n" +
         std::string(metric_formulas) +
         "Example:\n  causticbench compare photonmap.exr lighttrace.exr --strip strip.png");

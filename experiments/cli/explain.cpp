@@ -107,6 +107,10 @@ RunRequest request_of(const json& record, const PlanFile& plan) {
                                   JsonNode::parse_text(method.at("parameters").dump(), "/method"));
     if (!request.method.configured->files_written().empty())
         throw InputError("/method/parameters: names a file to write, which no trial does");
+    if (record.contains("indirect"))
+        request.indirect = parse_indirect(
+            record.at("indirect").at("name").get<std::string>(),
+            JsonNode::parse_text(record.at("indirect").at("parameters").dump(), "/indirect"));
     request.seed = record.at("seed").get<std::uint64_t>();
     request.samples_per_pixel = small_count(record, "spp");
     return request;

@@ -54,13 +54,32 @@ std::string key_lines(const std::vector<KeyText>& keys) {
     return text;
 }
 
-std::string method_help(const MethodDescription& method) {
+template <class Estimator>
+std::string method_help(const MethodDescriptionOf<Estimator>& method, const std::string& option) {
     const MethodFacts& facts = method.facts();
     const std::vector<KeyText> keys = method.parameters();
     return wrapped(facts.name + ": ", facts.summary) + wrapped("serves: ", facts.serves) +
            (keys.empty() ? "no parameters\n"
-                         : "parameters (--param key=value, or \"param\" in a sweep file):\n") +
+                         : fmt::format("parameters ({} key=value, or \"param\" in a sweep file):\n",
+                                       option)) +
            key_lines(keys);
+}
+
+/// Of the methods of the indirect layer with that name; all, where it is empty.
+std::string indirect_help(const std::string& name) {
+    std::string text;
+    for (const IndirectDescription* method : all_indirect_methods())
+        if (name.empty() || method->facts().name == name)
+            text +=
+                "\nof the indirect layer (--indirect), " + method_help(*method, "--indirect-param");
+    return text;
+}
+
+std::string all_indirect_help() {
+    return "Light between diffuse surfaces: the layer `indirect`, by a method of its own beside "
+           "the "
+           "caustic's.\n" +
+           indirect_help({});
 }
 
 std::string object_help(const std::string& title, const std::vector<ObjectText>& objects) {
@@ -96,9 +115,11 @@ struct FileTopic {
     const char* meaning;
     std::string (*text)();
 };
-constexpr FileTopic file_topics[] = {{"scene", "the keys of scene files", scene_help},
-                                     {"sweep", "the keys of sweep files", sweep_help},
-                                     {"records", "the columns of a sweep's table", record_help}};
+constexpr FileTopic file_topics[] = {
+    {"scene", "the keys of scene files", scene_help},
+    {"sweep", "the keys of sweep files", sweep_help},
+    {"records", "the columns of a sweep's table", record_help},
+    {"indirect", "the methods of the indirect layer", all_indirect_help}};
 
 std::string topic_list() {
     std::string text = "help TOPIC prints every key with its type, range, unit and default.\n";
@@ -120,7 +141,9 @@ std::vector<std::string> help_topics() {
 
 std::string help_text(const std::string& topic) {
     if (topic.empty()) return topic_list();
-    if (const MethodDescription* const method = find_method(topic)) return method_help(*method);
+    if (const MethodDescription* const method = find_method(topic))
+        return method_help(*method, "--param") + indirect_help(topic);
+    if (const std::string text = indirect_help(topic); !text.empty()) return text.substr(1);
     for (const FileTopic& each : file_topics)
         if (topic == each.name) return each.text();
     throw InputError(

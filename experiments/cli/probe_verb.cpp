@@ -1,8 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <memory>
+#include <ranges>
 
+#include "core/base/error.h"
 #include "experiments/base/file_io.h"
 #include "experiments/cli/verbs.h"
 #include "experiments/run/cli_options.h"
@@ -17,28 +20,49 @@ namespace {
 struct ProbeOptions {
     SceneOptions scene;
     MethodOptions method;
+    IndirectOptions indirect;
+    std::string layer = "caustic";
     RunFlags run;
     std::string points;
     std::string output = "-";
 };
 
-ProbeAnswers probe_shown(const Scene& scene, const Method& method, const ProbeList& list,
+/// The request that the command line makes, but for the method of a layer that is not asked for.
+RunRequest request_of(const ProbeOptions& options) {
+    RunRequest request{options.scene.file, options.scene.overrides(), {}, options.run.seed, 1};
+    if (options.layer == "indirect") {
+        request.indirect = options.indirect.parse();
+        if (!request.indirect)
+            throw InputError(
+                fmt::format("--layer indirect: name its method by --indirect (known: {})",
+                            fmt::join(indirect_names() | std::views::drop(1), ", ")));
+    } else {
+        if (options.method.name.empty())
+            throw InputError("--method is required (or --layer indirect with --indirect METHOD)");
+        if (options.indirect.parse())
+            throw InputError("--indirect: probe answers one layer; give --layer indirect as well");
+        request.method = options.method.parse();
+    }
+    return request;
+}
+
+ProbeAnswers probe_shown(const Scene& scene, const RunRequest& request, const ProbeList& list,
                          RunOptions options) {
     const RunProgress progress(options);
-    return probe(scene, method, list, options);
+    return request.indirect ? probe(scene, *request.indirect, list, options)
+                            : probe(scene, request.method, list, options);
 }
 
 int probe_points(const ProbeOptions& options) {
     const bool to_file = options.output != "-";
     if (to_file) require_writable_place(options.output);
     const SceneFile file = options.scene.load();
-    const Method method = options.method.parse();
+    const RunRequest request = request_of(options);
     const ProbeList list = read_probe_list(options.points);
     const Scene scene(file.desc);
     RunOptions run = options.run.options(1);
-    run.origin = command("probe", {options.scene.file, options.scene.overrides(), method,
-                                   options.run.seed, run.samples_per_pixel});
-    const ProbeAnswers answers = probe_shown(scene, method, list, run);
+    run.origin = command("probe", request);
+    const ProbeAnswers answers = probe_shown(scene, request, list, run);
     print_notes(answers.notes);
     const std::string table = probe_table(list, answers);
     if (to_file)
@@ -55,7 +79,13 @@ Verb add_probe(CLI::App& app) {
     CLI::App* const verb =
         app.add_subcommand("probe", "Caustic irradiance and radiance at a list of points");
     options->scene.add_to(*verb);
-    options->method.add_to(*verb);
+    options->method.add_to(*verb, false);
+    options->indirect.add_to(*verb);
+    verb->add_option("--layer", options->layer,
+                     "Light that is asked for: caustic, by --method, or indirect, by --indirect "
+                     "(default: caustic)")
+        ->check(CLI::IsMember({"caustic", "indirect"}))
+        ->type_name("NAME");
     options->run.add_to(*verb);
     verb->add_option("--points", options->points,
                      "CSV with columns x,y,z,nx,ny,nz and optionally wx,wy,wz (towards the viewer) "

@@ -24,6 +24,7 @@ constexpr double most_stops = 150;
 struct RenderOptions {
     SceneOptions scene;
     MethodOptions method;
+    IndirectOptions indirect;
     RunFlags run;
     int spp = 0;
     std::optional<double> exposure;
@@ -74,13 +75,18 @@ RunResult run_shown(const Scene& scene, const RunRequest& request, const RunFlag
 int render_picture(const RenderOptions& options) {
     check_outputs(options.outputs);
     const SceneFile file = options.scene.load();
-    const RunRequest request{options.scene.file, options.scene.overrides(), options.method.parse(),
-                             options.run.seed, samples_per_pixel(file.desc.sampling, options.spp)};
+    const RunRequest request{options.scene.file,
+                             options.scene.overrides(),
+                             options.method.parse(),
+                             options.run.seed,
+                             samples_per_pixel(file.desc.sampling, options.spp),
+                             options.indirect.parse()};
     const Scene scene(file.desc);
     Stopwatch stopwatch;
     RunResult result = run_shown(scene, request, options.run, stopwatch);
 
-    for (const auto& layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
+    for (const auto& layer : {"", "caustic", "indirect"})
+        if (result.film.has_layer(layer)) require_finite(result.film, layer, "the picture");
     write_stderr(told_counts(result.counters) + "\n");
     if (result.why_empty)
         write_stderr(fmt::format("the caustic is empty: {}\n", *result.why_empty));
@@ -110,6 +116,7 @@ Verb add_render(CLI::App& app) {
     CLI::App* const verb = app.add_subcommand("render", "Render one picture of a scene");
     options->scene.add_to(*verb);
     options->method.add_to(*verb);
+    options->indirect.add_to(*verb);
     options->run.add_to(*verb);
     add_number(*verb, "--spp", options->spp, 1, 1'000'000,
                "Samples a pixel (default: the scene's)");

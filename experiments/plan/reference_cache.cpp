@@ -22,6 +22,8 @@ Film reference_film(const Film& rendered) {
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         film.set_rgb("", i, rendered.rgb("", i));
         film.set_rgb("caustic", i, rendered.rgb("caustic", i));
+        if (rendered.has_layer("indirect"))
+            film.set_rgb("indirect", i, rendered.rgb("indirect", i));
     }
     if (const std::vector<float>* const unreached = rendered.find("unreached.Y"))
         film.plane("unreached.Y") = *unreached;
@@ -39,11 +41,15 @@ Film reference_film(const Film& rendered) {
 int reference_version(const Scene& scene) { return is_black(eye_medium(scene).absorption) ? 1 : 2; }
 
 std::string reference_key(const RunRequest& request, const SceneFile& scene, int version) {
-    const nlohmann::json configuration = {
+    nlohmann::json configuration = {
         {"reference_version", version},     {"scene", scene.hash},
         {"method", request.method.name},    {"parameters", identity(request.method)},
         {"spp", request.samples_per_pixel}, {"seed", request.seed},
         {"width", scene.desc.camera.width}, {"height", scene.desc.camera.height}};
+    if (request.indirect) {
+        configuration["indirect"] = request.indirect->name;
+        configuration["indirect_parameters"] = identity(*request.indirect);
+    }
     return hex(fnv1a(configuration.dump()));
 }
 
@@ -69,12 +75,13 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
         throw InputError(
             fmt::format("{}: changed while the sweep runs", request.request.scene_file.string()));
     std::optional<SmallerReference> begun;
-    if (policy_ == ReferencePolicy::extend)
+    if (policy_ == ReferencePolicy::extend && !request.request.indirect)
         begun = find_smaller({request.kept_folder, own_folder_}, request.request, file, version);
     Stopwatch stopwatch;
     const RunResult result = run(
         scene, begun ? remainder(request.request, *begun) : request.request, options, stopwatch);
-    for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the reference");
+    for (const char* layer : {"", "caustic", "indirect"})
+        if (result.film.has_layer(layer)) require_finite(result.film, layer, "the reference");
     Film film = reference_film(result.film);
     if (begun) film = joined(request.request, *begun, film);
     film.metadata = picture_metadata(request.request, file, result.report);

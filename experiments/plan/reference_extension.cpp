@@ -46,7 +46,8 @@ std::string said(const Film& film, const char* name) {
 
 bool belongs_to(const Film& film, const RunRequest& wanted, const SceneFile& scene, int version) {
     const json theirs = json::parse(said(film, "parameters"), nullptr, false);
-    return theirs.is_object() && theirs.contains(samples_name(wanted.method)) &&
+    return theirs.is_object() && said(film, "indirect").empty() &&
+           theirs.contains(samples_name(wanted.method)) &&
            said(film, "reference_version") == (version > 1 ? fmt::format("{}", version) : "") &&
            said(film, "scene_hash") == scene.hash && said(film, "method") == wanted.method.name &&
            said(film, "seed") == fmt::format("{}", wanted.seed) &&

@@ -92,32 +92,55 @@ Method method_of_trials(const std::string& name, const JsonNode& params) {
     return method;
 }
 
+using Params = std::vector<std::pair<std::string, std::string>>;
+
 /// All combinations of a method's parameter lists, the last key varying fastest.
-std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
-    const JsonNode name_node = node.at("method");
-    const std::string name = method_names()[name_node.as_choice(method_names())];
-    std::vector<SweepFile::MethodCase> cases(1);
-    std::string place = node.place();
-    if (const std::optional<JsonNode> params = node.find("param")) {
-        place = params->place();
-        for (const auto& [key, value] : params->others()) {
-            const std::vector<JsonNode> choices =
-                value.is_array() ? list(value) : std::vector<JsonNode>{value};
-            require_few(static_cast<double>(cases.size()) * static_cast<double>(choices.size()),
-                        *params);
-            std::vector<SweepFile::MethodCase> product;
-            for (const SweepFile::MethodCase& so_far : cases)
-                for (const JsonNode& choice : choices) {
-                    product.push_back(so_far);
-                    product.back().params.emplace_back(key, choice.canonical());
-                }
-            cases = std::move(product);
-        }
+std::vector<Params> combinations(const std::optional<JsonNode>& params) {
+    std::vector<Params> cases(1);
+    if (!params) return cases;
+    for (const auto& [key, value] : params->others()) {
+        const std::vector<JsonNode> choices =
+            value.is_array() ? list(value) : std::vector<JsonNode>{value};
+        require_few(static_cast<double>(cases.size()) * static_cast<double>(choices.size()),
+                    *params);
+        std::vector<Params> product;
+        for (const Params& so_far : cases)
+            for (const JsonNode& choice : choices) {
+                product.push_back(so_far);
+                product.back().emplace_back(key, choice.canonical());
+            }
+        cases = std::move(product);
     }
+    return cases;
+}
+
+/// Parameters as the node that they came from.
+JsonNode node_of(const std::string& object, const std::optional<JsonNode>& params,
+                 const JsonNode& method) {
+    return JsonNode::parse_text(object, params ? params->place() : method.place(), method.file());
+}
+
+std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
+    const std::string name = method_names()[node.at("method").as_choice(method_names())];
+    const std::optional<JsonNode> params = node.find("param");
+    std::vector<SweepFile::MethodCase> cases;
+    for (const Params& each : combinations(params))
+        cases.push_back({method_of_trials(name, node_of(object_text(each), params, node)), each});
     node.finish();
-    for (SweepFile::MethodCase& each : cases)
-        each.method = method_of_trials(
-            name, JsonNode::parse_text(object_text(each.params), place, node.file()));
+    return cases;
+}
+
+std::string read_indirect_name(const JsonNode& node) {
+    return indirect_names()[node.at("method").as_choice(indirect_names())];
+}
+
+std::vector<SweepFile::IndirectCase> read_indirect(const JsonNode& node) {
+    const std::string name = read_indirect_name(node);
+    const std::optional<JsonNode> params = node.find("param");
+    std::vector<SweepFile::IndirectCase> cases;
+    for (const Params& each : combinations(params))
+        cases.push_back({parse_indirect(name, node_of(object_text(each), params, node)), each});
+    node.finish();
     return cases;
 }
 
@@ -129,6 +152,14 @@ SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
         name, JsonNode::parse_text(params ? params->canonical() : "{}",
                                    params ? params->place() : node.place(), node.file()));
     if (params) params->others();
+    if (const std::optional<JsonNode> indirect = node.find("indirect")) {
+        const std::optional<JsonNode> given = indirect->find("param");
+        reference.indirect =
+            parse_indirect(read_indirect_name(*indirect),
+                           node_of(given ? given->canonical() : "{}", given, *indirect));
+        if (given) given->others();
+        indirect->finish();
+    }
     reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp));
     reference.seed = static_cast<std::uint64_t>(integer(node, "seed", 0, 1));
     node.finish();
@@ -139,9 +170,19 @@ double count_trials(const SweepFile& sweep) {
     double trials = sweep.repeats;
     for (const SweepFile::Axis& axis : sweep.axes)
         trials *= static_cast<double>(axis.values.size());
-    for (const std::size_t factor : {sweep.scenes.size(), sweep.methods.size(), sweep.seeds.size()})
+    for (const std::size_t factor :
+         {sweep.scenes.size(), sweep.methods.size(), sweep.indirect.size(), sweep.seeds.size()})
         trials *= static_cast<double>(factor);
     return trials;
+}
+
+/// Pictures with light between surfaces are scored against one that has it.
+void require_same_layers(const SweepFile& sweep, const JsonNode& node) {
+    const bool has_indirect = std::ranges::any_of(
+        sweep.indirect, [](const auto& each) { return each.method.has_value(); });
+    if (has_indirect && sweep.reference && !sweep.reference->indirect)
+        node.at("reference")
+            .fail("has no indirect light, which the trials have: give it \"indirect\", too");
 }
 
 }  // namespace
@@ -161,6 +202,12 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     for (const JsonNode& method : list(node.at("methods")))
         for (SweepFile::MethodCase& each : read_method(method))
             sweep.methods.push_back(std::move(each));
+    if (const std::optional<JsonNode> indirect = node.find("indirect")) {
+        sweep.indirect.clear();
+        for (const JsonNode& method : list(*indirect))
+            for (SweepFile::IndirectCase& each : read_indirect(method))
+                sweep.indirect.push_back(std::move(each));
+    }
     if (const std::optional<JsonNode> seeds = node.find("seeds")) {
         for (const JsonNode& seed : list(*seeds))
             sweep.seeds.push_back(
@@ -173,6 +220,7 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     sweep.threads = integer(node, "threads", 1, 1, most_threads);
     if (const std::optional<JsonNode> reference = node.find("reference"))
         sweep.reference = read_reference(*reference, sweep.spp);
+    require_same_layers(sweep, node);
     node.finish();
     require_few(count_trials(sweep), node);
     return sweep;

@@ -23,8 +23,14 @@ struct SweepFile {
         Method method;
         std::vector<std::pair<std::string, std::string>> params;  ///< key, JSON text
     };
+    /// The same of a method of the indirect layer.
+    struct IndirectCase {
+        std::optional<IndirectMethod> method = {};  ///< none: without that layer
+        std::vector<std::pair<std::string, std::string>> params = {};
+    };
     struct Reference {
         Method method;
+        std::optional<IndirectMethod> indirect = {};
         int spp = 0;
         std::uint64_t seed = 1;
     };
@@ -33,6 +39,7 @@ struct SweepFile {
     std::vector<std::filesystem::path> scenes;
     std::vector<Axis> axes;  ///< no two with the same pointer
     std::vector<MethodCase> methods;
+    std::vector<IndirectCase> indirect = {{}};
     std::vector<std::uint64_t> seeds;
     int repeats = 1;
     int spp = 16;

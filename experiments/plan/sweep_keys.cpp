@@ -29,6 +29,7 @@ ObjectText sweep() {
               .type = "object",
               .usual = "{}"},
              list("methods", "What makes the pictures.", "methods"),
+             list("indirect", "What makes the light between diffuse surfaces.", "methods", "none"),
              list("seeds", "Of all random numbers, each from 0 to 1e15.", "whole numbers", "[1]"),
              whole("repeats", "The same picture again, for its times.", "1", "1 to 1000000000"),
              whole("spp", "Camera samples a pixel.", "16", "1 to 1000000000"),
@@ -55,7 +56,7 @@ ObjectText axis() {
 ObjectText method() {
     return {
         "method",
-        "An element of methods.",
+        "An element of methods, or of indirect: there one of its layer, or none.",
         {method_key(),
          {.key = "param",
           .meaning = "Its parameters, each a value or a list of values; help METHOD lists them.",
@@ -71,6 +72,10 @@ ObjectText reference() {
               .meaning = "Its parameters, each one value.",
               .type = "object",
               .usual = "{}"},
+             {.key = "indirect",
+              .meaning = "The method of its indirect light, with param as above.",
+              .type = "object",
+              .usual = "none"},
              whole("spp", "Camera samples a pixel.", "64, or the sweep's where that is more",
                    "1 to 1000000000"),
              whole("seed", "Of its random numbers.", "1", "0 to 1000000000")}};

@@ -87,9 +87,13 @@ json examine(const SweepFile& sweep, const SceneVariant& variant) {
     fixed_rate.max_sample_count = 0;
     samples_per_pixel(fixed_rate, request.samples_per_pixel);
     const Scene scene(file.desc);
-    if (const auto reason = why_unsupported(scene, request.method))
-        throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),
-                                           variant.file.string(), *reason));
+    const auto require = [&](const std::optional<std::string>& reason) {
+        if (reason)
+            throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),
+                                               variant.file.string(), *reason));
+    };
+    require(why_unsupported(scene, request.method));
+    if (request.indirect) require(why_unsupported(scene, *request.indirect));
     facts["reference_key"] = reference_key(request, file, reference_version(scene));
     return facts;
 }
@@ -97,8 +101,8 @@ json examine(const SweepFile& sweep, const SceneVariant& variant) {
 void ask_for_reference(const SweepFile& sweep, SceneVariant& variant) {
     if (!sweep.reference) return;
     ReferenceRequest reference;
-    reference.request = {variant.file, variant.overrides, sweep.reference->method,
-                         sweep.reference->seed, sweep.reference->spp};
+    reference.request = {variant.file,          variant.overrides,    sweep.reference->method,
+                         sweep.reference->seed, sweep.reference->spp, sweep.reference->indirect};
     reference.kept_folder = kept_references(sweep.file);
     variant.reference = reference;
 }
@@ -130,6 +134,7 @@ std::string slug(const Trial& trial) {
     std::string words = slug_word(trial.scene_name) + "-" + trial.request.method.name;
     for (const auto& [key, value] : trial.swept)
         words += fmt::format("-{}{}", slug_word(key), slug_word(value));
+    if (trial.request.indirect) words += "-" + trial.request.indirect->name;
     words.resize(std::min(words.size(), longest));
     words += fmt::format("-s{}", trial.request.seed);
     if (trial.repeat > 1) words += fmt::format("-r{}", trial.repeat);
@@ -138,12 +143,17 @@ std::string slug(const Trial& trial) {
 
 /// What the trials of a cell share.
 json configuration_of(const Trial& trial) {
-    return {{"record_version", record_version},
-            {"scene", trial.scene_hash},
-            {"method", trial.request.method.name},
-            {"parameters", identity(trial.request.method)},
-            {"spp", trial.request.samples_per_pixel},
-            {"reference", trial.reference ? trial.reference->key : ""}};
+    json all = {{"record_version", record_version},
+                {"scene", trial.scene_hash},
+                {"method", trial.request.method.name},
+                {"parameters", identity(trial.request.method)},
+                {"spp", trial.request.samples_per_pixel},
+                {"reference", trial.reference ? trial.reference->key : ""}};
+    if (const auto& indirect = trial.request.indirect) {
+        all["indirect"] = indirect->name;
+        all["indirect_parameters"] = identity(*indirect);
+    }
+    return all;
 }
 
 /// Names a trial of the cell of that configuration.
@@ -155,18 +165,37 @@ void identify(Trial& trial, json& configuration) {
 }
 
 Trial make_trial(const SweepFile& sweep, const SceneVariant& variant,
-                 const SweepFile::MethodCase& method) {
+                 const SweepFile::MethodCase& method, const SweepFile::IndirectCase& indirect) {
     Trial trial;
-    trial.request = {variant.file, variant.overrides, method.method, 1, sweep.spp};
+    trial.request = {variant.file, variant.overrides, method.method, 1, sweep.spp, indirect.method};
     trial.threads = sweep.threads;
     trial.scene_name = variant.file.stem().string();
     trial.scene_hash = variant.hash;
     trial.method_files = files_read(method.method);
     trial.swept = variant.swept;
     trial.swept.insert(trial.swept.end(), method.params.begin(), method.params.end());
+    for (const auto& [key, value] : indirect.params)
+        trial.swept.emplace_back("indirect_" + key, value);
     trial.reference = variant.reference;
     trial.cell = hex(fnv1a(configuration_of(trial).dump()));
     return trial;
+}
+
+// The trial with every seed, repeated.
+void add_cell(const SweepFile& sweep, const Trial& first, SweepPlan& plan,
+              std::set<std::string>& known) {
+    json configuration = configuration_of(first);
+    for (const std::uint64_t seed : sweep.seeds)
+        for (int repeat = 1; repeat <= sweep.repeats; ++repeat) {
+            Trial trial = first;
+            trial.request.seed = seed;
+            trial.repeat = repeat;
+            identify(trial, configuration);
+            if (known.insert(trial.config_hash).second)
+                plan.trials.push_back(std::move(trial));
+            else
+                ++plan.duplicates;
+        }
 }
 
 void add_trials(const SweepFile& sweep, SweepPlan& plan, std::set<std::string>& known,
@@ -174,21 +203,9 @@ void add_trials(const SweepFile& sweep, SweepPlan& plan, std::set<std::string>& 
     std::vector<SceneVariant> scenes = variants(sweep);
     resolve(sweep, scenes, isolation);
     for (const SceneVariant& variant : scenes)
-        for (const SweepFile::MethodCase& method : sweep.methods) {
-            const Trial first = make_trial(sweep, variant, method);
-            json configuration = configuration_of(first);
-            for (const std::uint64_t seed : sweep.seeds)
-                for (int repeat = 1; repeat <= sweep.repeats; ++repeat) {
-                    Trial trial = first;
-                    trial.request.seed = seed;
-                    trial.repeat = repeat;
-                    identify(trial, configuration);
-                    if (known.insert(trial.config_hash).second)
-                        plan.trials.push_back(std::move(trial));
-                    else
-                        ++plan.duplicates;
-                }
-        }
+        for (const SweepFile::MethodCase& method : sweep.methods)
+            for (const SweepFile::IndirectCase& indirect : sweep.indirect)
+                add_cell(sweep, make_trial(sweep, variant, method, indirect), plan, known);
 }
 
 void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {

@@ -25,6 +25,7 @@ bool starts_with(const std::string& text, const std::string& start) {
 /// balance, render; beside them every phase as the method named it.
 void record_seconds(json& record, const Stopwatch& stopwatch) {
     Seconds precompute;
+    Seconds indirect;
     Seconds render;
     Seconds total;
     json phases = json::object();
@@ -33,12 +34,14 @@ void record_seconds(json& record, const Stopwatch& stopwatch) {
         phases[name] = seconds_json(seconds);
         if (name == "precompute/balance") continue;
         if (starts_with(name, "precompute")) precompute += seconds;
+        if (starts_with(name, "indirect")) indirect += seconds;
         if (starts_with(name, "render")) render += seconds;
     }
     json stages = {{"parse", seconds_json(stopwatch.of("parse"))},
                    {"precompute", seconds_json(precompute)},
                    {"render", seconds_json(render)},
                    {"total", seconds_json(total)}};
+    if (stopwatch.phases().contains("indirect")) stages["indirect"] = seconds_json(indirect);
     if (stopwatch.phases().contains("precompute/balance"))
         stages["balance"] = seconds_json(stopwatch.of("precompute/balance"));
     record["seconds"] = std::move(stages);
@@ -70,6 +73,8 @@ void record_errors(json& record, const Film& film, const Reference& reference) {
     record["mask_metrics"] = to_json(measure(film, reference.film, "caustic", bright));
     record["mask_fraction"] = fraction(bright);
     record["beauty_rmse"] = to_json(measure(film, reference.film, "", reached))["rmse"];
+    if (film.has_layer("indirect") && reference.film.has_layer("indirect"))
+        record["indirect_metrics"] = to_json(measure(film, reference.film, "indirect", reached));
     record["unreached_fraction"] = 1 - fraction(reached);
     record["reference"]["mean"] = reference.mean;
     if (reference.standard_error) record["reference"]["stderr"] = *reference.standard_error;
@@ -122,7 +127,8 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     for (const std::string& note : result.notes) log("note: " + note);
 
     log("measure");
-    for (const char* layer : {"", "caustic"}) require_finite(result.film, layer, "the picture");
+    for (const char* layer : {"", "caustic", "indirect"})
+        if (result.film.has_layer(layer)) require_finite(result.film, layer, "the picture");
     if (reference != nullptr) record_errors(record, result.film, *reference);
     result.film.metadata = picture_metadata(trial.request, file, result.report);
     record["picture_hash"] = picture_hash(result.film);
@@ -153,6 +159,8 @@ json trial_record(const Trial& trial, const std::string& status, const RunOption
     record["method"] = {{"name", trial.request.method.name},
                         {"parameters", describe(trial.request.method)}};
     if (!trial.method_files.empty()) record["method"]["files"] = trial.method_files;
+    if (const auto& indirect = trial.request.indirect)
+        record["indirect"] = {{"name", indirect->name}, {"parameters", describe(*indirect)}};
     record["swept"] = json::object();
     for (const auto& [key, value] : trial.swept) record["swept"][key] = json::parse(value);
     if (!trial.reference) return record;

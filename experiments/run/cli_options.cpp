@@ -1,6 +1,7 @@
 #include "experiments/run/cli_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
@@ -37,15 +38,31 @@ Overrides SceneOptions::overrides() const {
 
 SceneFile SceneOptions::load() const { return load_scene(file, overrides()); }
 
-void MethodOptions::add_to(CLI::App& verb) {
+void MethodOptions::add_to(CLI::App& verb, bool required) {
     std::string known;
     for (const std::string& each : method_names()) known += (known.empty() ? "" : ", ") + each;
-    verb.add_option("--method", name, "Caustic method: " + known)->required()->type_name("NAME");
+    verb.add_option("--method", name, "Caustic method: " + known)
+        ->required(required)
+        ->type_name("NAME");
     add_repeatable(verb, "--param", params, "Parameter of the method: key=value. Repeatable")
         ->type_name("KEY=VALUE");
 }
 
 Method MethodOptions::parse() const { return parse_method(name, parameters_node(params)); }
+
+void IndirectOptions::add_to(CLI::App& verb) {
+    verb.add_option("--indirect", name,
+                    fmt::format("Method of the light between diffuse surfaces: {} (default: none)",
+                                fmt::join(indirect_names(), ", ")))
+        ->type_name("NAME");
+    add_repeatable(verb, "--indirect-param", params,
+                   "Parameter of the indirect method: key=value. Repeatable")
+        ->type_name("KEY=VALUE");
+}
+
+std::optional<IndirectMethod> IndirectOptions::parse() const {
+    return parse_indirect(name, parameters_node(params, "--indirect-param"));
+}
 
 void MachineFlags::add_to(CLI::App& verb, const std::string& default_threads) {
     add_number(verb, "--threads", threads, 1, most_threads,

@@ -27,8 +27,17 @@ struct MethodOptions {
     std::string name;
     std::vector<std::string> params;
 
-    void add_to(CLI::App& verb);
+    void add_to(CLI::App& verb, bool required = true);
     Method parse() const;
+};
+
+/// The method of the indirect layer, `none` where it is not named.
+struct IndirectOptions {
+    std::string name = "none";
+    std::vector<std::string> params;
+
+    void add_to(CLI::App& verb);
+    std::optional<IndirectMethod> parse() const;
 };
 
 /// What of the machine a run may use.

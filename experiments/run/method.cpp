@@ -35,40 +35,76 @@ Method parse_method(const std::string& name, const JsonNode& params) {
         fmt::format("unknown method \"{}\" (known: {})", name, fmt::join(method_names(), ", ")));
 }
 
-JsonNode parameters_node(const std::vector<std::string>& assignments) {
+const std::vector<std::string>& indirect_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all = {"none"};
+        for (const IndirectDescription* each : all_indirect_methods())
+            all.push_back(each->facts().name);
+        return all;
+    }();
+    return names;
+}
+
+std::optional<IndirectMethod> parse_indirect(const std::string& name, const JsonNode& params) {
+    if (name == "none") {
+        params.finish();
+        return {};
+    }
+    for (const IndirectDescription* each : all_indirect_methods())
+        if (each->facts().name == name) return IndirectMethod{name, each, each->configure(params)};
+    throw InputError(fmt::format("unknown indirect method \"{}\" (known: {})", name,
+                                 fmt::join(indirect_names(), ", ")));
+}
+
+JsonNode parameters_node(const std::vector<std::string>& assignments, const std::string& option) {
     json object = json::object();
     for (const std::string& assignment : assignments) {
         const std::size_t equals = assignment.find('=');
         if (equals == std::string::npos || equals == 0)
-            throw InputError(fmt::format("--param \"{}\": expected key=value", assignment));
+            throw InputError(fmt::format("{} \"{}\": expected key=value", option, assignment));
         const std::string key = assignment.substr(0, equals);
         const std::string text = assignment.substr(equals + 1);
-        if (object.contains(key)) throw InputError(fmt::format("--param \"{}\": given twice", key));
+        if (object.contains(key))
+            throw InputError(fmt::format("{} \"{}\": given twice", option, key));
         json value = json::parse(text, nullptr, false);
         object[key] = value.is_discarded() ? json(text) : std::move(value);
     }
-    return JsonNode::parse_text(object.dump(), "--param");
+    return JsonNode::parse_text(object.dump(), option);
 }
 
-json describe(const Method& method) {
+namespace {
+
+json values_of(const ConfiguredParameters& parameters) {
     json all = json::object();
-    for (const auto& [key, value] : method.configured->values())
+    for (const auto& [key, value] : parameters.values())
         all[key] = std::visit([](const auto& typed) { return json(typed); }, value);
     return all;
 }
 
-std::map<std::string, std::string> files_read(const Method& method) {
+std::map<std::string, std::string> hashes_of(const ConfiguredParameters& parameters) {
     std::map<std::string, std::string> all;
-    for (const auto& [parameter, checksum] : method.configured->files_read())
+    for (const auto& [parameter, checksum] : parameters.files_read())
         all[parameter] = hex(checksum);
     return all;
 }
 
-json identity(const Method& method) {
-    json all = describe(method);
-    for (const auto& [parameter, hash] : files_read(method)) all[parameter] = hash;
+json identity_of(const ConfiguredParameters& parameters) {
+    json all = values_of(parameters);
+    for (const auto& [parameter, hash] : hashes_of(parameters)) all[parameter] = hash;
     return all;
 }
+
+}  // namespace
+
+json describe(const Method& method) { return values_of(*method.configured); }
+json describe(const IndirectMethod& method) { return values_of(*method.configured); }
+
+std::map<std::string, std::string> files_read(const Method& method) {
+    return hashes_of(*method.configured);
+}
+
+json identity(const Method& method) { return identity_of(*method.configured); }
+json identity(const IndirectMethod& method) { return identity_of(*method.configured); }
 
 int pass_count(const Method& method) { return method.configured->pass_count(); }
 
@@ -76,19 +112,5 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& 
                                               const RunOptions& options, int pass) {
     return method.configured->build(scene, options, pass);
 }
-
-std::optional<std::string> why_unsupported(const Scene& scene, const Method& method) {
-    RunOptions options;
-    try {
-        method.configured->with_least_work()->build(scene, options, 0);
-        return {};
-    } catch (const UnsupportedScene& unsupported) {
-        return unsupported.what();
-    }
-}
-
-bool gathers_over_discs(const Method& method) { return method.facts().gathers_over_discs; }
-
-double disc_radius(const Method& method) { return method.configured->disc_radius(); }
 
 }  // namespace caustics::experiments

@@ -7,20 +7,25 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/caustic_estimator.h"
 #include "core/method/method_description.h"
 #include "core/scene_file/json_reader.h"
 
 namespace caustics::experiments {
 
-/// A method with its parameters, as the harness passes it on; parse_method makes it.
-struct Method {
+/// A method with its parameters, as the harness passes it on; parse_method and parse_indirect make it.
+template <class Estimator>
+struct MethodOf {
     std::string name;
-    const MethodDescription* description = nullptr;
-    std::shared_ptr<const ConfiguredMethod> configured = {};
+    const MethodDescriptionOf<Estimator>* description = nullptr;
+    std::shared_ptr<const ConfiguredMethodOf<Estimator>> configured = {};
 
     const MethodFacts& facts() const { return description->facts(); }
 };
+using Method = MethodOf<CausticEstimator>;
+/// Of the indirect layer.
+using IndirectMethod = MethodOf<IndirectEstimator>;
 
 /// The names of all_methods(), in its order.
 const std::vector<std::string>& method_names();
@@ -32,13 +37,20 @@ const MethodDescription* find_method(const std::string& name);
 /// the method's own table.
 Method parse_method(const std::string& name, const JsonNode& params);
 
+/// "none", then the names of all_indirect_methods().
+const std::vector<std::string>& indirect_names();
+/// The same of the indirect layer; nothing for "none", which has no parameters.
+std::optional<IndirectMethod> parse_indirect(const std::string& name, const JsonNode& params);
+
 /// `--param k=v` as a JSON object for parse_method; a value is JSON, or else a string. Throws
-/// InputError for an assignment without '=' or a key given twice.
-JsonNode parameters_node(const std::vector<std::string>& assignments);
+/// InputError naming the option for an assignment without '=' or a key given twice.
+JsonNode parameters_node(const std::vector<std::string>& assignments,
+                         const std::string& option = "--param");
 
 /// Every parameter with the value in force, defaults included: parse_method reads it back to the
 /// same method.
 nlohmann::json describe(const Method& method);
+nlohmann::json describe(const IndirectMethod& method);
 
 /// The files that the method's parameters read, by parameter, as hashes of their contents. Throws
 /// InputError for a file that is not what the parameter asks for.
@@ -46,6 +58,7 @@ std::map<std::string, std::string> files_read(const Method& method);
 
 /// What distinguishes two runs: describe() with the hashes of files in place of their names.
 nlohmann::json identity(const Method& method);
+nlohmann::json identity(const IndirectMethod& method);
 
 /// How often the method goes through its precompute pass (`passes`); 1 for most.
 int pass_count(const Method& method);
@@ -55,12 +68,14 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& 
                                               const RunOptions& options, int pass = 0);
 
 /// Why the method cannot serve the scene; empty when it can.
-std::optional<std::string> why_unsupported(const Scene& scene, const Method& method);
-
-/// Whether the method answers a probe by gathering over a disc round each point, all points at
-/// once on its own threads; such points need a radius.
-bool gathers_over_discs(const Method& method);
-/// The disc's radius [m] for points that have none of their own; 0 = none.
-double disc_radius(const Method& method);
+template <class Estimator>
+std::optional<std::string> why_unsupported(const Scene& scene, const MethodOf<Estimator>& method) {
+    try {
+        method.configured->with_least_work()->build(scene, RunOptions{}, 0);
+        return {};
+    } catch (const UnsupportedScene& unsupported) {
+        return unsupported.what();
+    }
+}
 
 }  // namespace caustics::experiments

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -82,11 +83,15 @@ struct Questions {
     std::vector<std::size_t> rows;
 };
 
-Questions questions(const Scene& scene, const Method& method, const ProbeList& list) {
+template <class Estimator>
+Questions questions(const Scene& scene, const MethodOf<Estimator>& method, const ProbeList& list) {
+    // Methods that gather over a disc round each point need its radius.
+    const bool needs_radius =
+        method.facts().gathers_over_discs && method.configured->disc_radius() == 0;
     Questions asked;
     for (std::size_t row = 0; row < list.points.size(); ++row) {
         const ProbePoint& point = list.points[row];
-        if (gathers_over_discs(method) && point.radius == 0 && disc_radius(method) == 0)
+        if (needs_radius && point.radius == 0)
             fail(list, row,
                  fmt::format("{} gathers over a disc round the point: give a column radius or "
                              "--param radius=metres",
@@ -109,12 +114,12 @@ Questions questions(const Scene& scene, const Method& method, const ProbeList& l
     return asked;
 }
 
-using Query = void (CausticEstimator::*)(std::span<const ReceiverPoint>, std::span<Estimate>,
-                                         QueryContext&) const;
+using Query = void (PointEstimator::*)(std::span<const ReceiverPoint>, std::span<Estimate>,
+                                       QueryContext&) const;
 
 /// A built method and the points it is asked at.
 struct Ask {
-    const CausticEstimator& method;
+    const PointEstimator& method;
     const Questions& asked;
     bool at_once;  ///< all points in one batch, on the method's own threads
     int threads;
@@ -190,26 +195,42 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
     return list;
 }
 
-ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& list,
-                   const RunOptions& options) {
+namespace {
+
+template <class Estimator>
+ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, const ProbeList& list,
+                      const RunOptions& options) {
     const Questions asked = questions(scene, method, list);
     ProbeAnswers answers;
     answers.irradiance.resize(list.points.size());
     if (list.has_viewer) answers.radiance.resize(list.points.size());
-    const int passes = pass_count(method);
+    const int passes = method.configured->pass_count();
     for (int pass = 0; pass < passes; ++pass) {
-        const std::unique_ptr<const CausticEstimator> built = build(scene, method, options, pass);
+        const auto built = method.configured->build(scene, options, pass);
         answers.has_standard_errors = built->is_statistical();
-        if (pass == 0) answers.notes = notes(scene, method, built->build_report());
-        const Ask ask{*built, asked, gathers_over_discs(method), options.threads};
-        ask.add(&CausticEstimator::irradiance, answers.irradiance);
-        if (list.has_viewer) ask.add(&CausticEstimator::radiance, answers.radiance);
+        if constexpr (std::is_same_v<Estimator, CausticEstimator>)
+            if (pass == 0) answers.notes = notes(scene, method, built->build_report());
+        const Ask ask{*built, asked, method.facts().gathers_over_discs, options.threads};
+        ask.add(&PointEstimator::irradiance, answers.irradiance);
+        if (list.has_viewer) ask.add(&PointEstimator::radiance, answers.radiance);
     }
     for (std::vector<Estimate>* const all : {&answers.irradiance, &answers.radiance}) {
         for (Estimate& mean : *all) mean.value /= static_cast<float>(passes);
         require_finite(list, *all);
     }
     return answers;
+}
+
+}  // namespace
+
+ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& list,
+                   const RunOptions& options) {
+    return probe_by(scene, method, list, options);
+}
+
+ProbeAnswers probe(const Scene& scene, const IndirectMethod& method, const ProbeList& list,
+                   const RunOptions& options) {
+    return probe_by(scene, method, list, options);
 }
 
 std::string probe_table(const ProbeList& list, const ProbeAnswers& answers) {

@@ -38,10 +38,12 @@ struct ProbeAnswers {
     std::vector<std::string> notes;  ///< as RunResult::notes
 };
 
-/// Builds the method and asks it at the points. A point on a black side (the back of a one-sided
+/// Builds the method, of the caustic or of the indirect layer, and asks it at the points. A point on a black side (the back of a one-sided
 /// material) answers black. Throws InputError naming the row of a point that is farther than 1e-4
 /// of the scene's diameter from every receiver, or that lacks a radius the method needs.
 ProbeAnswers probe(const Scene& scene, const Method& method, const ProbeList& list,
+                   const RunOptions& options);
+ProbeAnswers probe(const Scene& scene, const IndirectMethod& method, const ProbeList& list,
                    const RunOptions& options);
 
 /// The rows as they were, with the answers beside them.

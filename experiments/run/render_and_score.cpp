@@ -23,18 +23,38 @@ void add(BuildReport& report, const BuildReport& pass) {
         report.resolved[name] = std::max(report.resolved[name], value);
 }
 
+std::string parameter_words(const std::string& option, const nlohmann::json& parameters) {
+    std::string words;
+    for (const auto& [key, value] : parameters.items())
+        words += fmt::format(
+            " {} {}", option,
+            shell_word(key + "=" + (value.is_string() ? value.get<std::string>() : value.dump())));
+    return words;
+}
+
+// Counters and values under names of their own.
+BuildReport of_indirect(const BuildReport& own) {
+    BuildReport report;
+    report.bytes = own.bytes;
+    for (const auto& [name, count] : own.counters) report.counters["indirect_" + name] = count;
+    for (const auto& [name, value] : own.resolved) report.resolved["indirect_" + name] = value;
+    return report;
+}
+
 }  // namespace
 
 std::string command(const std::string& verb, const RunRequest& request) {
-    std::string line = fmt::format("causticbench {} {} --method {}", verb,
-                                   shell_path(request.scene_file), request.method.name);
+    std::string line = fmt::format("causticbench {} {}", verb, shell_path(request.scene_file));
+    if (request.method.configured) line += " --method " + request.method.name;
     for (const auto& [pointer, value] : request.overrides)
         line += " --set " + shell_word(pointer + "=" + value);
-    const nlohmann::json parameters = describe(request.method);
-    for (const auto& [key, value] : parameters.items())
-        line +=
-            " --param " +
-            shell_word(key + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
+    if (request.method.configured)
+        line += parameter_words("--param", describe(request.method));
+    else
+        line += " --layer indirect";
+    if (request.indirect)
+        line += " --indirect " + request.indirect->name +
+                parameter_words("--indirect-param", describe(*request.indirect));
     if (verb == "render") line += fmt::format(" --spp {}", request.samples_per_pixel);
     return line + fmt::format(" --seed {}", request.seed);
 }
@@ -56,6 +76,10 @@ std::map<std::string, std::string> picture_metadata(const RunRequest& request,
         {"command", command("render", request)}};
     for (const auto& [parameter, hash] : files_read(request.method))
         metadata[parameter + "_hash"] = hash;
+    if (request.indirect) {
+        metadata["indirect"] = request.indirect->name;
+        metadata["indirect_parameters"] = describe(*request.indirect).dump();
+    }
     if (!report.resolved.empty()) metadata["resolved"] = nlohmann::json(report.resolved).dump();
     return metadata;
 }
@@ -85,7 +109,15 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
         begin_stage("render");
         return built;
     };
-    Rendering rendering = render(scene, {pass_count(request.method), build_pass}, options);
+    std::unique_ptr<const IndirectEstimator> indirect;
+    if (request.indirect) {
+        begin_stage("indirect");
+        indirect = request.indirect->configured->build(scene, options, 0);
+        const BuildReport own = of_indirect(indirect->build_report());
+        add(report, own);
+    }
+    Rendering rendering =
+        render(scene, {pass_count(request.method), build_pass}, options, indirect.get());
     stopwatch.stop();
 
     RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}};

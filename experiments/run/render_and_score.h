@@ -21,6 +21,7 @@ struct RunRequest {
     Method method;
     std::uint64_t seed = 1;
     int samples_per_pixel = 1;
+    std::optional<IndirectMethod> indirect = {};  ///< none: a picture without that layer
 };
 
 /// The command line of a verb that makes it, with every parameter in force.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -62,6 +63,52 @@ TEST(Render, GivesTheSameBytesOnAnyNumberOfThreads) {
     const std::string one = render("one.exr", "1", "1");
     EXPECT_EQ(one, render("two.exr", "2", "1"));
     EXPECT_NE(one, render("other.exr", "2", "7"));
+}
+
+TEST(Render, AddsTheIndirectLayerWhereAMethodIsNamed) {
+    const support::TemporaryFolder folder;
+    const auto render = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> words = {"render",  scene,         "--method", "photonmap",
+                                          "--param", "photons=500", "--spp",    "1",
+                                          "-o",      folder / name};
+        words.insert(words.end(), more.begin(), more.end());
+        return causticbench(words);
+    };
+    ASSERT_EQ(render("without.exr", {}).exit_code, 0);
+    ASSERT_EQ(render("none.exr", {"--indirect", "none"}).exit_code, 0);
+    EXPECT_EQ(read_whole_file(folder / "without.exr"), read_whole_file(folder / "none.exr"));
+    const ProgramResult global =
+        render("global.exr", {"--indirect", "globalphotonmap", "--indirect-param", "photons=1000",
+                              "--indirect-param", "gather=2"});
+    ASSERT_EQ(global.exit_code, 0) << global.err;
+    const Film film = read_exr(folder / "global.exr");
+    EXPECT_TRUE(film.has_layer("indirect"));
+    EXPECT_EQ(film.metadata.at("indirect"), "globalphotonmap");
+    EXPECT_NE(film.metadata.at("command").find("--indirect globalphotonmap"), std::string::npos);
+    for (const std::vector<std::string>& bad :
+         {std::vector<std::string>{"--indirect", "globalphotonmap", "--indirect-param",
+                                   "gather=-1"},
+          {"--indirect", "beamtree"},
+          {"--indirect-param", "gather=1"}})
+        EXPECT_EQ(render("bad.exr", bad).exit_code, 2) << bad.back();
+}
+
+TEST(Probe, AnswersTheIndirectLayer) {
+    const support::TemporaryFolder folder;
+    std::ofstream(folder / "points.csv") << "x,y,z,nx,ny,nz\n0.3,0.2,0,0,0,1\n";
+    const std::string points = folder / "points.csv";
+    const ProgramResult answer =
+        causticbench({"probe", scene, "--layer", "indirect", "--indirect", "globalphotonmap",
+                      "--indirect-param", "photons=1000", "--points", points});
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    EXPECT_NE(answer.out.find("irradiance_r"), std::string::npos);
+    EXPECT_EQ(causticbench({"probe", scene, "--layer", "indirect", "--points", points}).exit_code,
+              2);
+    EXPECT_EQ(causticbench({"probe", scene, "--points", points}).exit_code, 2);
+    EXPECT_EQ(causticbench({"probe", scene, "--method", "none", "--indirect", "globalphotonmap",
+                            "--points", points})
+                  .exit_code,
+              2);
 }
 
 TEST(Render, WritesTheWholeConfigurationIntoThePicture) {

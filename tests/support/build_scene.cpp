@@ -151,7 +151,7 @@ ReceiverPoint probe(const Scene& scene, std::size_t shape, const Vec3d& position
     return point;
 }
 
-std::vector<Estimate> irradiance(const CausticEstimator& estimator,
+std::vector<Estimate> irradiance(const PointEstimator& estimator,
                                  const std::vector<ReceiverPoint>& points) {
     std::vector<Estimate> out(points.size());
     const std::unique_ptr<QueryContext> context = estimator.make_context();

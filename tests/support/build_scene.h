@@ -52,7 +52,7 @@ ReceiverPoint probe(const Scene& scene, std::size_t shape, const Vec3d& position
                     const Vec3d& normal, std::uint64_t id, float radius = 0);
 
 /// What `irradiance` answers at the points, with a context of its own.
-std::vector<Estimate> irradiance(const CausticEstimator& estimator,
+std::vector<Estimate> irradiance(const PointEstimator& estimator,
                                  const std::vector<ReceiverPoint>& points);
 
 }  // namespace caustics::support

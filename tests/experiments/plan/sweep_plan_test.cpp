@@ -60,6 +60,28 @@ TEST_F(SweepPlans, AreTheProductOfAllLists) {
     EXPECT_EQ(cells.size(), 2U * 7) << "a cell is what differs in more than seed and repeat";
 }
 
+TEST_F(SweepPlans, MultiplyByMethodsOfTheIndirectLayer) {
+    const SweepPlan all = plan(none + R"(, "indirect": [{"method": "none"},
+                                 {"method": "globalphotonmap",
+                                  "param": {"photons": [1000, 2000], "gather": 4}}],
+                    "reference": {"method": "lighttrace", "param": {"paths": 100},
+                                  "indirect": {"method": "lighttrace", "param": {"paths": 200}}})");
+    ASSERT_EQ(all.trials.size(), 3U);
+    EXPECT_FALSE(all.trials[0].request.indirect);
+    EXPECT_EQ(all.trials[2].request.indirect->name, "globalphotonmap");
+    EXPECT_EQ(all.swept, (std::vector<std::string>{"indirect_gather", "indirect_photons"}));
+    EXPECT_EQ(ids(all).size(), 3U);
+    EXPECT_EQ(all.trials[1].reference->request.indirect->name, "lighttrace");
+    // Without that layer a trial is what it was.
+    EXPECT_TRUE(ids(plan(none + R"(, "indirect": [{"method": "none"}])")) == ids(plan(none)));
+    EXPECT_NE(error(none + R"(, "indirect": [{"method": "globalphotonmap"}],
+                                "reference": {"method": "lighttrace"})")
+                  .find("/reference: has no indirect light"),
+              std::string::npos);
+    EXPECT_NE(error(none + R"(, "indirect": [{"method": "photonmap"}])").find("/indirect/0/method"),
+              std::string::npos);
+}
+
 TEST_F(SweepPlans, NameTrialsByWordsAndHash) {
     const SweepPlan all = plan(R"("methods": [{"method": "photonmap", "param": {"photons": 10}}])");
     ASSERT_EQ(all.trials.size(), 1U);

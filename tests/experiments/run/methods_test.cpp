@@ -145,9 +145,9 @@ TEST(Methods, NameTheAlternatives) {
 }
 
 TEST(Methods, SayHowTheyAnswerProbes) {
-    EXPECT_TRUE(gathers_over_discs(method("lighttrace", {"radius=0.25"})));
-    EXPECT_EQ(disc_radius(method("lighttrace", {"radius=0.25"})), 0.25);
-    EXPECT_FALSE(gathers_over_discs(method("photonmap", {})));
+    EXPECT_TRUE(method("lighttrace", {"radius=0.25"}).facts().gathers_over_discs);
+    EXPECT_EQ(method("lighttrace", {"radius=0.25"}).configured->disc_radius(), 0.25);
+    EXPECT_FALSE(method("photonmap", {}).facts().gathers_over_discs);
 }
 
 }  // namespace

@@ -69,6 +69,11 @@ const std::vector<const MethodDescription*>& all_methods() {
     return methods;
 }
 
+const std::vector<const IndirectDescription*>& all_indirect_methods() {
+    static const std::vector<const IndirectDescription*> none;
+    return none;
+}
+
 namespace {
 
 const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
