@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <memory>
-#include <ranges>
 
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
@@ -32,10 +31,11 @@ RunRequest request_of(const ProbeOptions& options) {
     RunRequest request{options.scene.file, options.scene.overrides(), {}, options.run.seed, 1};
     if (options.layer == "indirect") {
         request.indirect = options.indirect.parse();
-        if (!request.indirect)
+        const std::vector<std::string>& all = indirect_names();
+        if (!request.indirect)  // "none" comes first
             throw InputError(
                 fmt::format("--layer indirect: name its method by --indirect (known: {})",
-                            fmt::join(indirect_names() | std::views::drop(1), ", ")));
+                            fmt::join(all.begin() + 1, all.end(), ", ")));
     } else {
         if (options.method.name.empty())
             throw InputError("--method is required (or --layer indirect with --indirect METHOD)");
