@@ -184,8 +184,8 @@ TEST(IndirectLight, IsTheSameByAllMethodsBesideGlass) {
         points);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double path = static_cast<double>(paths[i].value.mean());
-        const double error =
-            std::hypot(paths[i].standard_error.mean(), particles[i].standard_error.mean());
+        const double error = std::hypot(static_cast<double>(paths[i].standard_error.mean()),
+                                        static_cast<double>(particles[i].standard_error.mean()));
         EXPECT_NEAR(static_cast<double>(particles[i].value.mean()), path, 4 * error + 0.01 * path);
         EXPECT_NEAR(static_cast<double>(gathered[i].value.mean()) / path, 1, 0.04) << i;
     }
