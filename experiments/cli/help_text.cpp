@@ -70,15 +70,13 @@ std::string indirect_help(const std::string& name) {
     std::string text;
     for (const IndirectDescription* method : all_indirect_methods())
         if (name.empty() || method->facts().name == name)
-            text +=
-                "\nof the indirect layer (--indirect), " + method_help(*method, "--indirect-param");
+            text += "\nIn the indirect layer (--indirect):\n" +
+                    method_help(*method, "--indirect-param");
     return text;
 }
 
 std::string all_indirect_help() {
-    return "Light between diffuse surfaces: the layer `indirect`, by a method of its own beside "
-           "the "
-           "caustic's.\n" +
+    return "Light between diffuse surfaces: the layer `indirect`, by a method of its own.\n" +
            indirect_help({});
 }
 

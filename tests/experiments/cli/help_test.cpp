@@ -40,7 +40,7 @@ TEST(Help, NamesTheTopicsForAnUnknownOne) {
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()),
                   "unknown topic \"scenes\" (known: none, pathtrace, lighttrace, photonmap, "
-                  "beamtree, illuminationmap, causticpolygons, scene, sweep, records)");
+                  "beamtree, illuminationmap, causticpolygons, scene, sweep, records, indirect)");
     }
 }
 
