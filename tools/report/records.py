@@ -11,7 +11,7 @@ import statistics
 
 STATUSES = ("done", "failed", "timeout", "interrupted", "unsupported")
 FIXED_PARAMETERS = ("nearest", "alpha", "mesh_resolution", "threads", "isa", "code_version")
-OPTIONAL_PARAMETERS = ("spp",)
+OPTIONAL_PARAMETERS = ("spp", "indirect")
 # The first of these that a row has says how many photons were asked for.
 PHOTON_PARAMETERS = ("photons", "emitted", "photons_stored")
 REQUIRED = ("trial", "status", "scene", "method", "seed", "repeat", "photons_stored", "total_s",
@@ -22,7 +22,8 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "mask_fraction", "flip", "parse_cpu_s", "precompute_cpu_s", "balance_cpu_s", "render_cpu_s", "gathers",
             "gathered_photons", "used_photons", "camera_rays", "trees", "trees_binned", "nodes", "tree_height",
             "casters_with_face_normals", "flux_share_captured", "photons_aimed", "photons_reflected",
-            "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points")
+            "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points", "indirect_rmse",
+            "indirect_relmse", "indirect_mean_ratio", "indirect_s")
 RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "other_cores", "jobs", "timeout_s",
        "memory_limit_bytes", "message", "why_empty")  # of one run of a trial
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN
