@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "beamtree/beams/quadtree.h"
 #include "beamtree/cones/cone_tree.h"
 #include "beamtree/light/find_in_beam.h"
 #include "beamtree/slices/slice_tree.h"
