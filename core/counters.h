@@ -9,6 +9,11 @@ namespace caustics {
 /// Counts by name, summed over threads in any order (they are whole numbers).
 using Counters = std::map<std::string, std::uint64_t>;
 
+/// Adds counters under names of their own, which begin with the prefix.
+inline void add_under(const std::string& prefix, const Counters& counted, Counters& to) {
+    for (const auto& [name, count] : counted) to[prefix + name] += count;
+}
+
 /// What a built method holds.
 struct BuildReport {
     std::uint64_t bytes = 0;  ///< of the built data

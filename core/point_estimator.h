@@ -12,7 +12,7 @@
 
 namespace caustics {
 
-/// A value with its standard error (0 where the method has none to tell).
+/// A value with its standard error (0 where the method has none).
 struct Estimate {
     Spectrum value = black();
     Spectrum standard_error = black();

@@ -20,4 +20,11 @@ std::optional<ReceiverPoint> receiver_point(const Scene& scene, const SurfacePoi
     return receiver;
 }
 
+ReceiverPoint white_point(ReceiverPoint point) {
+    static const Bsdf white{Diffuse{Spectrum(Spectrum::Ones())}};
+    point.bsdf = &white;
+    point.shading_normal = point.wo = point.geometric_normal;
+    return point;
+}
+
 }  // namespace caustics

@@ -29,4 +29,8 @@ struct ReceiverPoint {
 std::optional<ReceiverPoint> receiver_point(const Scene& scene, const SurfacePoint& point,
                                             const Vec3& wo);
 
+/// The point with a white Lambertian surface, seen along its geometric normal: pi times what it reflects is
+/// the point's irradiance.
+ReceiverPoint white_point(ReceiverPoint point);
+
 }  // namespace caustics

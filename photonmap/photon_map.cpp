@@ -171,7 +171,8 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     if (params.radius == 0)
         report.resolved["max_radius"] = static_cast<double>(settings.limits.max_radius);
     if (!params.load.empty()) report.resolved["max_bounces"] = kept.origin.max_bounces;
-    if (kept.version != photon_map_version) report.resolved["photon_map_version"] = kept.version;
+    if (kept.version < first_version_with_surfaces)
+        report.resolved["photon_map_version"] = kept.version;
     return std::make_unique<PhotonMap>(std::move(tree), std::move(report), settings, options.isa,
                                        params.tables);
 }

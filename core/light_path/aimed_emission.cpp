@@ -15,15 +15,15 @@ Surroundings aimed_at(const Scene& scene, Aim where) {
     return all;
 }
 
-// Of all lights, those that send any power there.
-std::vector<AimedSource> aimed_sources(const std::vector<Light>& lights,
+// Of some lights, the first of which has that number, those that send any power there.
+std::vector<AimedSource> aimed_sources(std::span<const Light> lights, std::uint32_t first,
                                        const Surroundings& scene) {
     std::vector<AimedSource> sources;
     if (scene.casters.empty() && !scene.everywhere) return sources;
     for (std::uint32_t i = 0; i < lights.size(); ++i)
         for (AimedSource& source : aim(lights[i], scene)) {
             if (is_black(source.power)) continue;
-            source.light = i;
+            source.light = first + i;
             sources.push_back(std::move(source));
         }
     return sources;
@@ -40,10 +40,17 @@ EmissionCone plain(const AimedCone& aim) {
 }  // namespace
 
 AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where)
+    : AimedEmission(scene, isa, where, scene.lights(), 0) {}
+
+AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where, std::uint32_t light)
+    : AimedEmission(scene, isa, where, std::span(scene.lights()).subspan(light, 1), light) {}
+
+AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where, std::span<const Light> lights,
+                             std::uint32_t first_light)
     : scene_(scene),
       surroundings_(aimed_at(scene, where)),
       kernels_(emission_kernels(isa)),
-      sources_(aimed_sources(scene.lights(), surroundings_)) {
+      sources_(aimed_sources(lights, first_light, surroundings_)) {
     const auto total = static_cast<double>(total_power().mean());
     double sum = 0;
     for (const AimedSource& source : sources_) {

@@ -25,6 +25,8 @@ class AimedEmission {
 public:
     /// Paths side by side are emitted by the kernels of `isa`; all of them give the same particles.
     explicit AimedEmission(const Scene& scene, Isa isa = Isa::plain, Aim where = Aim::casters);
+    /// Of one light of the scene alone.
+    AimedEmission(const Scene& scene, Isa isa, Aim where, std::uint32_t light);
 
     /// The particle for a random point of the unit square, or empty when thinning dropped it (it still
     /// counts as emitted).
@@ -41,6 +43,9 @@ public:
     bool empty() const { return sources_.empty(); }
 
 private:
+    AimedEmission(const Scene& scene, Isa isa, Aim where, std::span<const Light> lights,
+                  std::uint32_t first_light);
+
     std::uint32_t choose(double& x, std::uint32_t& cone) const;
     /// `cone` is a region's number among those of all sources.
     std::optional<LightParticle> send(std::uint32_t source, std::uint32_t cone, AimedSample sample,

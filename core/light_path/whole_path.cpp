@@ -132,9 +132,8 @@ void require_end(int diffuse_bounces) {
     constexpr int most = 100'000;
     if (diffuse_bounces >= most)
         throw InputError(
-            "light comes to no end: more than 100000 diffuse reflections of one path; give the "
-            "surfaces "
-            "of a closed scene a reflectance below 1");
+            "a light path does not end after 100000 diffuse reflections; give the surfaces of a "
+            "closed scene a reflectance below 1");
 }
 
 void trace_whole_path(const Scene& scene, const LightParticle& particle,

@@ -6,8 +6,8 @@ namespace caustics {
 
 struct WholePathSettings {
     int max_bounces = 16;  ///< specular events between two receivers
-    int diffuse_bounces =
-        0;  ///< the receiver at which a path ends, counted from the light; 0: none [C11]
+    /// The receiver at which a path ends, counted from the light [C11]; 0: none.
+    int diffuse_bounces = 0;
 };
 
 /// Follows a particle through all events, L (S* D)*, with one decision by Russian roulette for reflection,
@@ -18,7 +18,7 @@ void trace_whole_path(const Scene& scene, const LightParticle& particle,
                       const WholePathSettings& settings, Rng& rng, LightPathCounts& counts,
                       std::vector<Deposit>& deposits);
 
-/// Throws InputError when so many diffuse reflections are no path that ends.
+/// Throws InputError for so many diffuse reflections that the path does not seem to end.
 void require_end(int diffuse_bounces);
 
 }  // namespace caustics

@@ -89,11 +89,6 @@ std::vector<DirectionCone> cones_towards(const BoundingSphere& from, const Shape
 
 BoundingSphere sphere_round(const Box& box) { return {box.center(), 0.5F * box.diagonal().norm()}; }
 
-// The shapes that are aimed at one by one.
-std::span<const std::uint32_t> targets(const Surroundings& scene) {
-    return scene.everywhere ? std::span<const std::uint32_t>{} : scene.casters;
-}
-
 void normalise(std::vector<double>& measures) {
     double sum = 0;
     for (double& measure : measures) measure = sum += measure;
@@ -109,10 +104,13 @@ DirectionCone cone_of_half_angle(const Vec3d& axis, double half_angle) {
 
 double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSource& source) {
     std::vector<DirectionCone> cones;
-    if (scene.everywhere) cones.push_back(cone_towards(from, {sphere_round(scene.bounds), {}}));
-    for (const std::uint32_t caster : targets(scene))
-        for (const DirectionCone& cone : cones_towards(from, scene.shapes[caster]))
-            cones.push_back(cone);
+    if (scene.everywhere) {
+        cones.push_back(cone_towards(from, {sphere_round(scene.bounds), {}}));
+    } else {
+        for (const std::uint32_t caster : scene.casters)
+            for (const DirectionCone& cone : cones_towards(from, scene.shapes[caster]))
+                cones.push_back(cone);
+    }
     // All directions hold every other cone: they alone are the union.
     for (const DirectionCone& cone : cones)
         if (cone.is_whole_sphere()) {
@@ -130,9 +128,12 @@ double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSou
 double aim_discs(const Surroundings& scene, AimedSource& source) {
     double total = 0;
     std::vector<BoundingSphere> spheres;
-    if (scene.everywhere) spheres.push_back(sphere_round(scene.bounds));
-    for (const std::uint32_t caster : targets(scene))
-        spheres.push_back(bounding_sphere(scene.shapes[caster]));
+    if (scene.everywhere) {
+        spheres.push_back(sphere_round(scene.bounds));
+    } else {
+        for (const std::uint32_t caster : scene.casters)
+            spheres.push_back(bounding_sphere(scene.shapes[caster]));
+    }
     for (const BoundingSphere& sphere : spheres) {
         const float radius = sphere.radius * (1 + 1e-5F);
         source.discs.push_back({sphere.centre, radius});

@@ -20,8 +20,9 @@ struct MirrorPart {
 /// A surface's scattering. One-sided models (all but Dielectric) are black from behind unless
 /// `twosided`, as in Mitsuba. A new model is a file of its own and a place in the list below. What is asked of
 /// it: `text` and `read`, its keys in a scene file and itself; `to_mitsuba` and `to_povray`, where those know it;
-/// of a receiver's, four functions that those below ask for: f_r, albedo, sample and pdf; of a caster's, `split`
-/// (specular_split.h) and `add_to`, what a photon map depends on; `medium` where it bounds two, and
+/// of a receiver's, four functions that those below ask for, f_r, albedo, sample and pdf, and
+/// `add_scattering_to`, what a map of all photons depends on; of a caster's, `split` (specular_split.h) and
+/// `add_to`, what every photon map depends on; `medium` where it bounds two, and
 /// `is_dispersive` where wavelengths part.
 struct Bsdf {
     std::variant<Diffuse, Schlick, Phong, Dielectric, Conductor> model = Diffuse{};

@@ -30,4 +30,6 @@ Diffuse Diffuse::read(const JsonNode& node, Assets& assets) {
     return {read_texture(node, "reflectance", 0.5, assets)};
 }
 
+void Diffuse::add_scattering_to(ValueHash& hash) const { caustics::add_to(hash, reflectance); }
+
 }  // namespace caustics

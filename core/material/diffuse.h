@@ -22,6 +22,7 @@ struct Diffuse {
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Diffuse read(const JsonNode& node, scene_file::Assets& assets);
+    void add_scattering_to(ValueHash& hash) const;
     MitsubaBsdf to_mitsuba() const { return {"diffuse", {{"reflectance", reflectance}}}; }
     PovraySurface to_povray() const { return {.pigment = reflectance}; }
 };

@@ -118,4 +118,11 @@ PovraySurface Phong::to_povray() const {
     return surface;
 }
 
+void Phong::add_scattering_to(ValueHash& hash) const {
+    caustics::add_to(hash, diffuse_reflectance);
+    caustics::add_to(hash, specular_reflectance);
+    hash.add(exponent);
+    hash.add(model);
+}
+
 }  // namespace caustics

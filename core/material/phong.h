@@ -32,6 +32,7 @@ struct Phong {
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Phong read(const JsonNode& node, scene_file::Assets& assets);
+    void add_scattering_to(ValueHash& hash) const;
     /// Of the model "classic": POV-Ray's highlight is the lamp's colour times cos^e a. With lamps of pi times
     /// our irradiance beneath a pigment of 1, its `phong` is pi k_s for the same light.
     PovraySurface to_povray() const;

@@ -89,4 +89,9 @@ Schlick Schlick::read(const JsonNode& node, Assets& assets) {
     return schlick;
 }
 
+void Schlick::add_scattering_to(ValueHash& hash) const {
+    caustics::add_to(hash, reflectance);
+    hash.add(alpha);
+}
+
 }  // namespace caustics

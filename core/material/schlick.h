@@ -26,6 +26,7 @@ struct Schlick {
     /// What is asked of every model of a surface; see bsdf.h.
     static ObjectText text();
     static Schlick read(const JsonNode& node, scene_file::Assets& assets);
+    void add_scattering_to(ValueHash& hash) const;
 };
 
 }  // namespace caustics

@@ -66,6 +66,25 @@ struct Evaluate {
     }
 };
 
+struct AddTo {
+    ValueHash& hash;
+
+    void operator()(const Spectrum& constant) const { hash.add(constant); }
+    void operator()(const Checkerboard& board) const {
+        hash.add(board.color0);
+        hash.add(board.color1);
+        hash.add(board.to_uv.matrix());
+    }
+    void operator()(const Bitmap& bitmap) const {
+        hash.add(bitmap.width);
+        hash.add(bitmap.height);
+        for (const Spectrum& texel : bitmap.texels) hash.add(texel);
+        hash.add(bitmap.filter);
+        hash.add(bitmap.wrap);
+        hash.add(bitmap.to_uv.matrix());
+    }
+};
+
 float srgb_to_linear(float v) {
     return v <= 0.04045F ? v / 12.92F : std::pow((v + 0.055F) / 1.055F, 2.4F);
 }
@@ -74,6 +93,11 @@ float srgb_to_linear(float v) {
 
 Spectrum evaluate(const Texture& texture, const Vec2& uv) {
     return std::visit(Evaluate{uv}, texture);
+}
+
+void add_to(ValueHash& hash, const Texture& texture) {
+    hash.add(texture.index());
+    std::visit(AddTo{hash}, texture);
 }
 
 Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {

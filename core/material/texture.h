@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/math/spectrum.h"
+#include "core/math/value_hash.h"
 #include "core/math/vec.h"
 
 namespace caustics {
@@ -34,6 +35,8 @@ using Texture = std::variant<Spectrum, Checkerboard, Bitmap>;
 
 /// Reflectance at texture coordinates (u, v).
 Spectrum evaluate(const Texture& texture, const Vec2& uv);
+/// Adds all that evaluate() depends on.
+void add_to(ValueHash& hash, const Texture& texture);
 
 /// Reads a picture file by OpenImageIO; 8- and 16-bit files are sRGB-decoded unless `raw`.
 /// One channel is grey; alpha is ignored. Throws InputError.

@@ -33,6 +33,7 @@ enum class Stage : std::uint32_t {
     final_gather = 14,
     indirect_light_trace = 15,
     indirect_path_trace = 16,
+    shadow_photons = 17,
     test = 100,
 };
 

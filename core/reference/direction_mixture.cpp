@@ -4,6 +4,13 @@
 
 namespace caustics {
 
+std::vector<BoundingSphere> caster_bounds(const Scene& scene) {
+    std::vector<BoundingSphere> bounds;
+    for (const std::uint32_t index : scene.casters())
+        bounds.push_back(bounding_sphere(scene.shapes()[index]));
+    return bounds;
+}
+
 DirectionMixture::DirectionMixture(std::span<const BoundingSphere> casters,
                                    const ReceiverPoint& point)
     : point_(point) {

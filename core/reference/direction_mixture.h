@@ -8,8 +8,12 @@
 #include "core/geometry/shape.h"
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
+#include "core/scene/scene.h"
 
 namespace caustics {
+
+/// Round each caster of the scene.
+std::vector<BoundingSphere> caster_bounds(const Scene& scene);
 
 /// Directions from a receiver point: half from its BSDF, half uniform in the cone of a caster's
 /// bounding sphere, combined by the balance heuristic of one sample (Veach & Guibas 1995).

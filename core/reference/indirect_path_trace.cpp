@@ -12,9 +12,6 @@
 namespace caustics {
 namespace {
 
-/// Of irradiance: pi times what it reflects.
-const Bsdf white{Diffuse{Spectrum(Spectrum::Ones())}};
-
 class IndirectPathTrace : public IndirectEstimator {
 public:
     IndirectPathTrace(const Scene& scene, const IndirectPathTraceParams& params,
@@ -22,11 +19,8 @@ public:
         : scene_(scene),
           params_(params),
           seed_(options.seed),
-          paths_per_point_(std::max(
-              1, (params.spp + options.samples_per_pixel - 1) / options.samples_per_pixel)) {
-        for (const std::uint32_t index : scene.casters())
-            caster_bounds_.push_back(bounding_sphere(scene.shapes()[index]));
-    }
+          paths_per_point_(paths_per_point(params.spp, options)),
+          caster_bounds_(caster_bounds(scene)) {}
 
     void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                   QueryContext&) const override {
@@ -34,12 +28,8 @@ public:
     }
     void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                     QueryContext&) const override {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            ReceiverPoint point = points[i];
-            point.bsdf = &white;
-            point.shading_normal = point.wo = point.geometric_normal;
-            out[i] = estimate(point, pi);
-        }
+        for (std::size_t i = 0; i < points.size(); ++i)
+            out[i] = estimate(white_point(points[i]), pi);
     }
     bool is_statistical() const override { return true; }
 

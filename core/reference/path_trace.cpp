@@ -1,7 +1,5 @@
 #include "core/reference/path_trace.h"
 
-#include <algorithm>
-
 #include "core/base/error.h"
 #include "core/math/rng.h"
 #include "core/reference/caustic_sample.h"
@@ -16,11 +14,8 @@ public:
         : scene_(scene),
           seed_(options.seed),
           max_bounces_(params.max_bounces),
-          paths_per_point_(std::max(
-              1, (params.spp + options.samples_per_pixel - 1) / options.samples_per_pixel)) {
-        for (const std::uint32_t index : scene.casters())
-            caster_bounds_.push_back(bounding_sphere(scene.shapes()[index]));
-    }
+          paths_per_point_(paths_per_point(params.spp, options)),
+          caster_bounds_(caster_bounds(scene)) {}
 
     void radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                   QueryContext&) const override {
@@ -34,13 +29,8 @@ public:
 
 private:
     Estimate estimate(const ReceiverPoint& point, bool with_bsdf) const {
-        static const Bsdf lambert{};
-        ReceiverPoint receiver = point;
-        if (!with_bsdf) {
-            // Irradiance needs no viewer and no material: cosine lobe about the true normal.
-            receiver.bsdf = &lambert;
-            receiver.shading_normal = receiver.wo = point.geometric_normal;
-        }
+        // Irradiance needs no viewer and no material: cosine lobe about the true normal.
+        const ReceiverPoint receiver = with_bsdf ? point : white_point(point);
         const DirectionMixture mixture(caster_bounds_, receiver);
         Rng rng(seed_, Stage::path_trace, point.id);
         return mean_of(paths_per_point_, [&] {

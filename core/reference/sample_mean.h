@@ -1,9 +1,16 @@
 #pragma once
 
+#include <algorithm>
+
 #include "core/base/interrupt.h"
 #include "core/point_estimator.h"
 
 namespace caustics {
+
+/// Of `spp` paths a pixel, at each of its camera samples; at least one.
+inline int paths_per_point(int spp, const RunOptions& options) {
+    return std::max(1, (spp + options.samples_per_pixel - 1) / options.samples_per_pixel);
+}
 
 /// The mean of so many independent samples, with its standard error from two on. `sample()` gives one.
 template <typename Sample>

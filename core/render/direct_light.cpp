@@ -63,16 +63,26 @@ StraightWay straight_way(const Scene& scene, Ray ray) {
 /// What reaches a receiver point straight from lights.
 class DirectLight {
 public:
-    DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows)
-        : scene_(scene), p_(point), opaque_(shadows == Shadows::opaque) {}
+    DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows, ShadowRays& rays)
+        : scene_(scene), p_(point), opaque_(shadows == Shadows::opaque), rays_(rays) {}
 
+    Spectrum from_all(Rng& rng) const {
+        const std::vector<Light>& lights = scene_.lights();
+        Spectrum sum = black();
+        for (std::size_t i = 0; i < lights.size(); ++i) sum += from(i, rng);
+        if (std::ranges::any_of(lights, has_extent)) sum += by_bsdf_sample(rng);
+        return sum;
+    }
+
+private:
     // Where directions chosen at random may meet the light too, both ways share its work.
-    Spectrum from(const Light& light, Rng& rng) const {
-        const auto arrival = arrival_from(light, scene_.surroundings(), p_.position, rng);
+    Spectrum from(std::size_t light, Rng& rng) const {
+        const auto arrival =
+            arrival_from(scene_.lights()[light], scene_.surroundings(), p_.position, rng);
         if (!arrival) return black();
         const Spectrum f = scattering(p_, arrival->wi);
         if (is_black(f) || is_black(arrival->strength)) return black();
-        const Spectrum seen = arrival->end ? seen_of(*arrival->end) : seen_along(arrival->wi);
+        const Spectrum seen = seen_from(light, *arrival);
         const float other_way = arrival->is_delta ? 0 : pdf(arrival->wi);
         return f * seen * arrival->strength / (arrival->divisor + other_way);
     }
@@ -98,10 +108,19 @@ public:
         return f * way.left * light->radiance / (light_pdf + pdf(*wi));
     }
 
-private:
     SegmentEnd start() const { return {p_.position, p_.geometric_normal, p_.offset}; }
     float pdf(const Vec3& wi) const {
         return direction_pdf(*p_.bsdf, p_.shading_normal, p_.wo, wi);
+    }
+
+    Spectrum seen_from(std::size_t light, const LightArrival& arrival) const {
+        using Seen = KnownShadows::Seen;
+        const Seen known =
+            rays_.known != nullptr ? rays_.known->sees(p_, light, *rays_.context) : Seen::unknown;
+        ++(known == Seen::unknown ? rays_.traced : rays_.spared);
+        if (known != Seen::unknown)
+            return known == Seen::yes ? Spectrum(Spectrum::Ones()) : black();
+        return arrival.end ? seen_of(*arrival.end) : seen_along(arrival.wi);
     }
 
     // Shares of light that come here.
@@ -129,17 +148,20 @@ private:
     const Scene& scene_;
     const ReceiverPoint& p_;
     bool opaque_;
+    ShadowRays& rays_;
 };
 
 }  // namespace
 
 Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
                          Shadows shadows) {
-    const DirectLight direct(scene, point, shadows);
-    Spectrum sum = black();
-    for (const Light& light : scene.lights()) sum += direct.from(light, rng);
-    if (std::ranges::any_of(scene.lights(), has_extent)) sum += direct.by_bsdf_sample(rng);
-    return sum;
+    ShadowRays rays;
+    return DirectLight(scene, point, shadows, rays).from_all(rng);
+}
+
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         ShadowRays& rays) {
+    return DirectLight(scene, point, Shadows::opaque, rays).from_all(rng);
 }
 
 }  // namespace caustics

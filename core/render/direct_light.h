@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/caustic_estimator.h"
+#include "core/known_shadows.h"
 #include "core/math/rng.h"
 #include "core/scene/scene.h"
 
@@ -13,5 +14,9 @@ namespace caustics {
 /// each (the angle taken on its thinner side) and Beer's law between.
 Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
                          Shadows shadows = Shadows::opaque);
+
+/// The same with opaque shadows, whose rays are spared where they are known. Counts them.
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         ShadowRays& rays);
 
 }  // namespace caustics

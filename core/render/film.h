@@ -17,9 +17,10 @@ struct Plane {
 };
 
 /// A picture of named planes. Layers of the contract: beauty (unnamed R, G, B), direct, caustic,
-/// specular, indirect (where it is asked for), albedo, normal (.X .Y .Z), depth (.Z), and where they apply unreached (.Y, share of
-/// the pixel's samples that `lighttrace` cannot reach), ambient (of a scene that has such light), stderr
-/// (.R .G .B, of the caustic layer) and samples (.Y, their number where sampling is adaptive).
+/// specular, indirect (where it is asked for), albedo, normal (.X .Y .Z), depth (.Z), and where they apply
+/// unreached (.Y, share of the pixel's samples that `lighttrace` cannot reach), ambient (of a scene that has such
+/// light), stderr (.R .G .B, of the caustic layer), indirect_stderr and samples (.Y, their number where sampling
+/// is adaptive).
 class Film {
 public:
     Film(int width, int height) : width_(width), height_(height) {}

@@ -24,6 +24,7 @@ FilmLayers::FilmLayers(Film& film, const Extra& extra)
     if (extra.standard_error) standard_error_ = rgb("stderr");
     if (extra.ambient) ambient_ = rgb("ambient");
     if (extra.indirect) indirect_ = rgb("indirect");
+    if (extra.indirect_error) indirect_error_ = rgb("indirect_stderr");
     if (extra.samples) samples_ = film.plane("samples.Y").data();
 }
 
@@ -60,12 +61,18 @@ void FilmLayers::write(std::size_t pixel, const PixelSums& sums) {
     if (sums.hits > 0) depth_[pixel] = static_cast<float>(sums.depth / sums.hits);
     if (unreached_ != nullptr) unreached_[pixel] = static_cast<float>(sums.through_caster / n);
     if (samples_ != nullptr) samples_[pixel] = static_cast<float>(sums.samples);
-    if (standard_error_.name.empty()) return;
     // Several samples tell the error by their scatter, a single one only by its own paths'.
-    const SpectrumSum variance = sums.samples > 1
-                                     ? sums.variance_of_mean(sums.caustic, sums.caustic_squares)
-                                     : sums.own_variance;
-    put(standard_error_, pixel, variance.sqrt());
+    const bool scatter = sums.samples > 1;
+    if (!standard_error_.name.empty())
+        put(standard_error_, pixel,
+            (scatter ? sums.variance_of_mean(sums.caustic, sums.caustic_squares)
+                     : sums.own_variance)
+                .sqrt());
+    if (!indirect_error_.name.empty())
+        put(indirect_error_, pixel,
+            (scatter ? sums.variance_of_mean(sums.indirect, sums.indirect_squares)
+                     : sums.indirect_own_variance)
+                .sqrt());
 }
 
 void FilmLayers::write_caustic(std::size_t pixel, const Spectrum& radiance,
@@ -74,8 +81,10 @@ void FilmLayers::write_caustic(std::size_t pixel, const Spectrum& radiance,
     put(standard_error_, pixel, standard_error.cast<double>());
 }
 
-void FilmLayers::write_indirect(std::size_t pixel, const Spectrum& radiance) {
+void FilmLayers::write_indirect(std::size_t pixel, const Spectrum& radiance,
+                                const Spectrum& standard_error) {
     put(indirect_, pixel, radiance.cast<double>());
+    put(indirect_error_, pixel, standard_error.cast<double>());
 }
 
 void FilmLayers::sum_beauty() {

@@ -15,8 +15,10 @@ struct PixelSums {
     SpectrumSum ambient = SpectrumSum::Zero();
     SpectrumSum caustic = SpectrumSum::Zero();
     SpectrumSum caustic_squares = SpectrumSum::Zero();
-    SpectrumSum indirect = SpectrumSum::Zero();
     SpectrumSum own_variance = SpectrumSum::Zero();  ///< as the method reports it of each sample
+    SpectrumSum indirect = SpectrumSum::Zero();
+    SpectrumSum indirect_squares = SpectrumSum::Zero();
+    SpectrumSum indirect_own_variance = SpectrumSum::Zero();
     SpectrumSum beauty_squares = SpectrumSum::Zero();
     SpectrumSum albedo = SpectrumSum::Zero();
     Vec3d normal = Vec3d::Zero();
@@ -39,6 +41,7 @@ public:
         bool samples = false;         ///< number of samples
         bool ambient = false;         ///< of a scene with ambient light
         bool indirect = false;        ///< light between diffuse surfaces
+        bool indirect_error = false;  ///< standard error of that layer
     };
 
     /// Makes the planes, black. `film` outlives this.
@@ -49,7 +52,8 @@ public:
     /// A caustic that was not sampled pixel by pixel. Throws as write().
     void write_caustic(std::size_t pixel, const Spectrum& radiance, const Spectrum& standard_error);
     /// The same of indirect light.
-    void write_indirect(std::size_t pixel, const Spectrum& radiance);
+    void write_indirect(std::size_t pixel, const Spectrum& radiance,
+                        const Spectrum& standard_error);
     /// Beauty: the sum of the layers.
     void sum_beauty();
 
@@ -62,7 +66,8 @@ private:
     void put(const Layer& layer, std::size_t pixel, const SpectrumSum& value) const;
 
     Film& film_;
-    Layer beauty_, direct_, specular_, caustic_, albedo_, standard_error_, ambient_, indirect_;
+    Layer beauty_, direct_, specular_, caustic_, albedo_, standard_error_, ambient_, indirect_,
+        indirect_error_;
     std::array<float*, 3> normal_;
     float* depth_;
     float* unreached_ = nullptr;

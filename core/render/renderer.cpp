@@ -24,12 +24,16 @@ public:
           tiles_(tiles_of(scene.camera())),
           workers_(static_cast<std::size_t>(std::max(1, options.threads))) {
         if (indirect == nullptr) return;
-        has_indirect_ = true;
         indirect_layer_ = indirect->camera_layer(options_);
         if (!indirect_layer_) sampler_.ask_indirect(indirect);
     }
 
     Rendering run(const CausticEstimator& estimator) {
+        if (sampler_.indirect() != nullptr && sampler_.indirect()->known_shadows() != nullptr &&
+            estimator.shadows() != Shadows::opaque)
+            throw InputError(
+                "shadow_photons know opaque shadows, and the caustic's method asks for "
+                "transparent ones: leave shadow_photons out, or make its shadows opaque");
         const Camera& camera = scene_.camera();
         Rendering rendering{Film(camera.width, camera.height), {}};
         const auto layer = estimator.camera_layer(options_);
@@ -38,7 +42,8 @@ public:
                                            .standard_error = layer || estimator.is_statistical(),
                                            .samples = adaptive_,
                                            .ambient = !is_black(scene_.ambient()),
-                                           .indirect = has_indirect_});
+                                           .indirect = has_indirect(),
+                                           .indirect_error = has_indirect_error()});
         if (adaptive_)
             sample_adaptively(layers);
         else
@@ -67,7 +72,8 @@ public:
         Rendering rendering{Film(camera.width, camera.height), {}};
         FilmLayers layers(rendering.film, {.unreached = indirect_layer_.has_value(),
                                            .ambient = !is_black(scene_.ambient()),
-                                           .indirect = has_indirect_});
+                                           .indirect = has_indirect(),
+                                           .indirect_error = has_indirect_error()});
         std::vector<std::vector<PixelSums>> sums(tiles_.size());
         const double share = 1.0 / passes.count;
         for (int pass = 0; pass < passes.count; ++pass) {
@@ -94,14 +100,17 @@ private:
     void finish(Rendering& rendering, FilmLayers& layers) const {
         if (indirect_layer_) {
             for (std::size_t pixel = 0; pixel < rendering.film.pixel_count(); ++pixel)
-                layers.write_indirect(pixel, indirect_layer_->radiance[pixel]);
-            add_indirect(indirect_layer_->counters, rendering.report.counters);
+                layers.write_indirect(pixel, indirect_layer_->radiance[pixel],
+                                      indirect_layer_->standard_error[pixel]);
+            add_under("indirect_", indirect_layer_->counters, rendering.report.counters);
         }
         layers.sum_beauty();
     }
-    static void add_indirect(const Counters& counted, Counters& counters) {
-        for (const auto& [name, count] : counted) counters["indirect_" + name] += count;
+    bool has_indirect_error() const {
+        return indirect_layer_ ||
+               (sampler_.indirect() != nullptr && sampler_.indirect()->is_statistical());
     }
+    bool has_indirect() const { return indirect_layer_ || sampler_.indirect() != nullptr; }
 
     // Calls body(tile, index, worker) for every tile; the progress goes from `from` to `to`.
     template <typename Body>
@@ -110,8 +119,11 @@ private:
         parallel_for(options_.threads, tiles_.size(), [&](std::size_t i, std::size_t w) {
             TileWorker& worker = workers_[w];
             if (!worker.context) worker.context = sampler_.estimator().make_context();
-            if (sampler_.indirect() != nullptr && !worker.indirect_context)
+            if (sampler_.indirect() != nullptr && !worker.indirect_context) {
                 worker.indirect_context = sampler_.indirect()->make_context();
+                worker.shadow_rays = {sampler_.indirect()->known_shadows(),
+                                      worker.indirect_context.get()};
+            }
             body(tiles_[i], i, worker);
             const double share = static_cast<double>(++done) / static_cast<double>(tiles_.size());
             options_.report(from + share * (to - from));
@@ -129,9 +141,14 @@ private:
             if (worker.indirect_context) {
                 Counters own;
                 worker.indirect_context->add_to(own);
-                add_indirect(own, counters);
+                add_under("indirect_", own, counters);
                 worker.indirect_context.reset();
             }
+            if (worker.shadow_rays.known != nullptr) {
+                counters["shadow_rays"] += worker.shadow_rays.traced;
+                counters["shadow_rays_saved"] += worker.shadow_rays.spared;
+            }
+            worker.shadow_rays = {};
             worker.camera_rays = worker.receiver_points = worker.lit_points = 0;
         }
     }
@@ -194,7 +211,6 @@ private:
     const Scene& scene_;
     RunOptions options_;
     bool adaptive_;
-    bool has_indirect_ = false;
     std::optional<CameraLayer> indirect_layer_;
     CameraSamples samples_;
     TileSampler sampler_;

@@ -74,7 +74,7 @@ SpectrumSum TileSampler::trace(int x, int y, int sample, std::size_t pixel, Pixe
 }
 
 SpectrumSum TileSampler::add_eye_path(const EyePath& path, Rng& rng, PixelSums& sums,
-                                      const TileWorker& worker) const {
+                                      TileWorker& worker) const {
     const SpectrumSum emitted = path.emitted.cast<double>();
     sums.emitted += emitted;
     sums.albedo += path.first.albedo.cast<double>();
@@ -84,16 +84,20 @@ SpectrumSum TileSampler::add_eye_path(const EyePath& path, Rng& rng, PixelSums& 
     sums.through_caster += path.first.caster ? 1 : 0;
     SpectrumSum direct = SpectrumSum::Zero();
     SpectrumSum ambient = SpectrumSum::Zero();
-    const Shadows shadows = estimator_->shadows();
     for (const WeightedPoint& found : worker.found) {
-        direct +=
-            (found.weight * direct_radiance(scene_, found.point, rng, shadows)).cast<double>();
+        direct += (found.weight * this->direct(found.point, rng, worker)).cast<double>();
         ambient += (found.weight * albedo(*found.point.bsdf, found.point.uv) * scene_.ambient())
                        .cast<double>();
     }
     sums.direct += direct;
     sums.ambient += ambient;
     return emitted + direct + ambient;
+}
+
+Spectrum TileSampler::direct(const ReceiverPoint& point, Rng& rng, TileWorker& worker) const {
+    if (worker.shadow_rays.known != nullptr)
+        return direct_radiance(scene_, point, rng, worker.shadow_rays);
+    return direct_radiance(scene_, point, rng, estimator_->shadows());
 }
 
 void TileSampler::add_caustic(TileWorker& worker, std::vector<PixelSums>& sums) const {
@@ -120,11 +124,19 @@ void TileSampler::add_caustic(TileWorker& worker, std::vector<PixelSums>& sums) 
 void TileSampler::add_indirect(TileWorker& worker, std::vector<PixelSums>& sums) const {
     worker.estimates.assign(worker.points.size(), Estimate{});
     indirect_->radiance(worker.points, worker.estimates, *worker.indirect_context);
-    for (std::size_t i = 0; i < worker.points.size(); ++i) {
+    for (std::size_t i = 0; i < worker.points.size();) {
         const TileWorker::PointOwner& owner = worker.owners[i];
-        const SpectrumSum value = (owner.weight * worker.estimates[i].value).cast<double>();
+        SpectrumSum value = SpectrumSum::Zero();
+        SpectrumSum variance = SpectrumSum::Zero();
+        for (; i < worker.points.size() && worker.owners[i].value == owner.value; ++i) {
+            const SpectrumSum weight = worker.owners[i].weight.cast<double>();
+            value += (worker.owners[i].weight * worker.estimates[i].value).cast<double>();
+            variance += (weight * worker.estimates[i].standard_error.cast<double>()).square();
+        }
         worker.values[owner.value] += value;
         sums[owner.pixel].indirect += value;
+        sums[owner.pixel].indirect_squares += value.square();
+        sums[owner.pixel].indirect_own_variance += variance;
     }
 }
 

@@ -43,6 +43,7 @@ struct TileWorker {
     std::vector<PointOwner> owners;
     std::vector<Estimate> estimates;
     std::vector<SpectrumSum> values;  ///< of the samples of a round
+    ShadowRays shadow_rays;
     std::uint64_t camera_rays = 0;
     std::uint64_t receiver_points = 0;
     std::uint64_t lit_points = 0;
@@ -78,7 +79,8 @@ private:
     SpectrumSum trace(int x, int y, int sample, std::size_t pixel, PixelSums& sums,
                       TileWorker& worker) const;
     SpectrumSum add_eye_path(const EyePath& path, Rng& rng, PixelSums& sums,
-                             const TileWorker& worker) const;
+                             TileWorker& worker) const;
+    Spectrum direct(const ReceiverPoint& point, Rng& rng, TileWorker& worker) const;
     void add_caustic(TileWorker& worker, std::vector<PixelSums>& sums) const;
     void add_indirect(TileWorker& worker, std::vector<PixelSums>& sums) const;
 

@@ -58,4 +58,17 @@ std::uint64_t transport_hash(const Scene& scene) {
     return hash.value();
 }
 
+std::uint64_t whole_transport_hash(const Scene& scene) {
+    ValueHash hash;
+    hash.add(transport_hash(scene));
+    for (const Shape& shape : scene.shapes())
+        std::visit(
+            [&](const auto& model) {
+                if constexpr (requires { model.add_scattering_to(hash); })
+                    model.add_scattering_to(hash);
+            },
+            shape.bsdf.model);
+    return hash.value();
+}
+
 }  // namespace caustics

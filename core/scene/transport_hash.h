@@ -11,4 +11,7 @@ namespace caustics {
 /// do not count: a photon map serves another view and another receiver BRDF [J96 sec. 5].
 std::uint64_t transport_hash(const Scene& scene);
 
+/// The same of light paths between all surfaces: what receivers reflect counts too.
+std::uint64_t whole_transport_hash(const Scene& scene);
+
 }  // namespace caustics

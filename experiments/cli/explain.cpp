@@ -111,6 +111,8 @@ RunRequest request_of(const json& record, const PlanFile& plan) {
         request.indirect = parse_indirect(
             record.at("indirect").at("name").get<std::string>(),
             JsonNode::parse_text(record.at("indirect").at("parameters").dump(), "/indirect"));
+    if (request.indirect && !request.indirect->configured->files_written().empty())
+        throw InputError("/indirect/parameters: names a file to write, which no trial does");
     request.seed = record.at("seed").get<std::uint64_t>();
     request.samples_per_pixel = small_count(record, "spp");
     return request;

@@ -33,7 +33,8 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
     for (const auto& [name, hash] : file.assets)
         text += fmt::format("asset    {} ({})\n", name, hash);
-    text += fmt::format("photons  of maps with transport {}\n", hex(transport_hash(scene)));
+    text += fmt::format("photons  of maps with transport {}, of global maps with {}\n",
+                        hex(transport_hash(scene)), hex(whole_transport_hash(scene)));
     text += fmt::format("diameter {:.6g} m\n", scene.diameter());
     if (const Vec3d& o = scene.origin(); !o.isZero(0))
         text +=

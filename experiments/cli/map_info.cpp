@@ -39,6 +39,15 @@ std::string extent(const photonmap::TracedPhotons& photons) {
     return text;
 }
 
+std::string whole_paths_line(const photonmap::PhotonOrigin& origin) {
+    return fmt::format(
+        "traced     between all surfaces (globalphotonmap), max_bounces {}, {}, seed {}\n",
+        origin.max_bounces,
+        origin.diffuse_bounces == 0 ? "ended by roulette alone"
+                                    : fmt::format("ended at receiver {}", origin.diffuse_bounces),
+        origin.seed);
+}
+
 }  // namespace
 
 std::string describe_map(const std::filesystem::path& file, const photonmap::SavedPhotons& saved) {
@@ -59,6 +68,8 @@ std::string describe_map(const std::filesystem::path& file, const photonmap::Sav
         counts.aimed, counts.branched, counts.reflected, counts.refracted, counts.missed,
         counts.escaped, counts.absorbed, counts.misdirected, counts.on_black_side,
         counts.depth_limited, counts.dropped);
+    if (origin.whole_paths)
+        return text + whole_paths_line(origin) + fmt::format("by         {}\n", origin.command);
     text += fmt::format("traced     emission {}, interaction {}, max_bounces {}, seed {}\n",
                         stratified ? "stratified" : "random",
                         origin.interaction == Interaction::split ? "split" : "roulette",

@@ -62,6 +62,8 @@ std::string told_counts(const Counters& counters) {
     tell("beams", "beams");
     tell("receiver points seen", "receiver_points");
     tell("lit", "lit_points");
+    tell("shadow rays", "shadow_rays");
+    tell("spared by shadow photons", "shadow_rays_saved");
     return text;
 }
 
@@ -85,8 +87,7 @@ int render_picture(const RenderOptions& options) {
     Stopwatch stopwatch;
     RunResult result = run_shown(scene, request, options.run, stopwatch);
 
-    for (const auto& layer : {"", "caustic", "indirect"})
-        if (result.film.has_layer(layer)) require_finite(result.film, layer, "the picture");
+    require_finite(result.film, "the picture");
     write_stderr(told_counts(result.counters) + "\n");
     if (result.why_empty)
         write_stderr(fmt::format("the caustic is empty: {}\n", *result.why_empty));

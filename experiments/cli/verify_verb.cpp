@@ -56,7 +56,9 @@ int verify_gallery(const VerifyOptions& options, const RunOptions& run) {
 }
 
 int verify(const VerifyOptions& options) {
-    for (const std::string& name : options.methods) parse_method(name, parameters_node({}));
+    for (const std::string& name : options.methods)
+        if (!options.gallery || std::ranges::find(indirect_names(), name) == indirect_names().end())
+            parse_method(name, parameters_node({}));
     if (options.gallery == !options.scene.file.empty())
         throw InputError("verify: give either a scene or --gallery");
     RunOptions run;

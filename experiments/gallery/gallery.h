@@ -8,7 +8,7 @@
 
 namespace caustics::experiments {
 
-/// A place of a receiver where the caustic is known.
+/// A place of a receiver where the light of a layer is known.
 struct KnownPoint {
     Vec3d position;
     Vec3d normal;              ///< unit, on the lit side
@@ -31,9 +31,10 @@ struct Series {
     double tolerance = 0.05;  ///< of the last step's error
     double radius = 0;        ///< of the discs of methods that gather over them [m]
     std::string variant;      ///< a parameter that the table names, beside the method
+    bool indirect = false;    ///< a method of the layer `indirect`
 };
 
-/// A scene whose caustic is a formula, or a quadrature good to 1e-6.
+/// A scene whose caustic, or indirect light, is a formula, or a quadrature good to 1e-6.
 struct GalleryScene {
     std::string name;
     std::string answer;  ///< in a few words
@@ -50,6 +51,7 @@ std::vector<GalleryScene> gallery();
 std::vector<GalleryScene> mirrors();
 std::vector<GalleryScene> lenses();
 std::vector<GalleryScene> laws();
+std::vector<GalleryScene> rooms();
 
 /// Still water that absorbs `sigma` [1/m], on a floor under a point light.
 GalleryScene still_water(const std::string& name, const std::string& answer, double sigma);

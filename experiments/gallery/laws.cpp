@@ -127,6 +127,7 @@ std::vector<GalleryScene> gallery() {
     std::vector<GalleryScene> all = mirrors();
     for (GalleryScene& scene : lenses()) all.push_back(std::move(scene));
     for (GalleryScene& scene : laws()) all.push_back(std::move(scene));
+    for (GalleryScene& scene : rooms()) all.push_back(std::move(scene));
     return all;
 }
 

@@ -118,6 +118,15 @@ Metrics measure(const Film& film, const Film& reference, const std::string& laye
     return metrics;
 }
 
+void require_finite(const Film& film, const std::string& name) {
+    for (const char* const layer : {"", "caustic", "indirect"}) {
+        const bool there = film.has_layer(layer);
+        if (!there && layer == std::string("indirect")) continue;
+        if (!there) throw InputError(fmt::format("{}: no layer \"{}\"", name, layer_name(layer)));
+        require_finite(film, layer, name);
+    }
+}
+
 void require_finite(const Film& film, const std::string& layer, const std::string& name) {
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         if (is_finite(film.rgb(layer, i))) continue;

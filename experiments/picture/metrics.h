@@ -43,8 +43,11 @@ PixelMask intersection(const PixelMask& a, const PixelMask& b);
 Metrics measure(const Film& film, const Film& reference, const std::string& layer,
                 const PixelMask& counted);
 
-/// Throws InputError naming the first pixel of the layer that is not finite; `name` stands for the
-/// picture.
+/// Throws InputError naming the first pixel that is not finite of the layers that errors are taken of: beauty,
+/// caustic and, where it is there, indirect; or the layer of the first two that is missing. `name` stands for
+/// the picture.
+void require_finite(const Film& film, const std::string& name);
+/// The same of one layer.
 void require_finite(const Film& film, const std::string& layer, const std::string& name);
 
 /// Standard error of a reference as a share of its mean: sqrt(mean s^2) / mean(r), s the standard

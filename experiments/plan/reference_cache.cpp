@@ -80,8 +80,7 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
     Stopwatch stopwatch;
     const RunResult result = run(
         scene, begun ? remainder(request.request, *begun) : request.request, options, stopwatch);
-    for (const char* layer : {"", "caustic", "indirect"})
-        if (result.film.has_layer(layer)) require_finite(result.film, layer, "the reference");
+    require_finite(result.film, "the reference");
     Film film = reference_film(result.film);
     if (begun) film = joined(request.request, *begun, film);
     film.metadata = picture_metadata(request.request, file, result.report);

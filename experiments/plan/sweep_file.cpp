@@ -83,12 +83,22 @@ std::string object_text(const std::vector<std::pair<std::string, std::string>>& 
 }
 
 /// A parameter that leaves a file behind is refused: the trials would overwrite each other's.
-Method method_of_trials(const std::string& name, const JsonNode& params) {
-    const Method method = parse_method(name, params);
-    for (const std::string& key : method.configured->files_written())
+void refuse_files(const ConfiguredParameters& configured, const JsonNode& params) {
+    for (const std::string& key : configured.files_written())
         params.at(key).fail(
             "not in a sweep, whose trials would overwrite each other's file (save it by the verb "
             "render, then load it here)");
+}
+
+Method method_of_trials(const std::string& name, const JsonNode& params) {
+    Method method = parse_method(name, params);
+    refuse_files(*method.configured, params);
+    return method;
+}
+
+std::optional<IndirectMethod> indirect_of_trials(const std::string& name, const JsonNode& params) {
+    std::optional<IndirectMethod> method = parse_indirect(name, params);
+    if (method) refuse_files(*method->configured, params);
     return method;
 }
 
@@ -120,44 +130,36 @@ JsonNode node_of(const std::string& object, const std::optional<JsonNode>& param
     return JsonNode::parse_text(object, params ? params->place() : method.place(), method.file());
 }
 
-std::vector<SweepFile::MethodCase> read_method(const JsonNode& node) {
-    const std::string name = method_names()[node.at("method").as_choice(method_names())];
+std::string read_name(const JsonNode& node, const std::vector<std::string>& known) {
+    return known[node.at("method").as_choice(known)];
+}
+
+/// The cases of a method's entry; `parse(name, params)` makes one.
+template <typename Case, typename Parse>
+std::vector<Case> read_cases(const JsonNode& node, const std::vector<std::string>& known,
+                             const Parse& parse) {
+    const std::string name = read_name(node, known);
     const std::optional<JsonNode> params = node.find("param");
-    std::vector<SweepFile::MethodCase> cases;
+    std::vector<Case> cases;
     for (const Params& each : combinations(params))
-        cases.push_back({method_of_trials(name, node_of(object_text(each), params, node)), each});
+        cases.push_back({parse(name, node_of(object_text(each), params, node)), each});
     node.finish();
     return cases;
 }
 
-std::string read_indirect_name(const JsonNode& node) {
-    return indirect_names()[node.at("method").as_choice(indirect_names())];
-}
-
-std::vector<SweepFile::IndirectCase> read_indirect(const JsonNode& node) {
-    const std::string name = read_indirect_name(node);
+/// Parameters that are no lists, of a method's entry.
+JsonNode single_params(const JsonNode& node) {
     const std::optional<JsonNode> params = node.find("param");
-    std::vector<SweepFile::IndirectCase> cases;
-    for (const Params& each : combinations(params))
-        cases.push_back({parse_indirect(name, node_of(object_text(each), params, node)), each});
-    node.finish();
-    return cases;
+    if (params) params->others();
+    return node_of(params ? params->canonical() : "{}", params, node);
 }
 
 SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
     SweepFile::Reference reference;
-    const std::string name = method_names()[node.at("method").as_choice(method_names())];
-    const std::optional<JsonNode> params = node.find("param");
-    reference.method = method_of_trials(
-        name, JsonNode::parse_text(params ? params->canonical() : "{}",
-                                   params ? params->place() : node.place(), node.file()));
-    if (params) params->others();
+    reference.method = method_of_trials(read_name(node, method_names()), single_params(node));
     if (const std::optional<JsonNode> indirect = node.find("indirect")) {
-        const std::optional<JsonNode> given = indirect->find("param");
         reference.indirect =
-            parse_indirect(read_indirect_name(*indirect),
-                           node_of(given ? given->canonical() : "{}", given, *indirect));
-        if (given) given->others();
+            indirect_of_trials(read_name(*indirect, indirect_names()), single_params(*indirect));
         indirect->finish();
     }
     reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp));
@@ -200,12 +202,14 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
             sweep.axes.push_back(std::move(axis));
         }
     for (const JsonNode& method : list(node.at("methods")))
-        for (SweepFile::MethodCase& each : read_method(method))
+        for (SweepFile::MethodCase& each :
+             read_cases<SweepFile::MethodCase>(method, method_names(), method_of_trials))
             sweep.methods.push_back(std::move(each));
     if (const std::optional<JsonNode> indirect = node.find("indirect")) {
         sweep.indirect.clear();
         for (const JsonNode& method : list(*indirect))
-            for (SweepFile::IndirectCase& each : read_indirect(method))
+            for (SweepFile::IndirectCase& each :
+                 read_cases<SweepFile::IndirectCase>(method, indirect_names(), indirect_of_trials))
                 sweep.indirect.push_back(std::move(each));
     }
     if (const std::optional<JsonNode> seeds = node.find("seeds")) {

@@ -171,7 +171,7 @@ Trial make_trial(const SweepFile& sweep, const SceneVariant& variant,
     trial.threads = sweep.threads;
     trial.scene_name = variant.file.stem().string();
     trial.scene_hash = variant.hash;
-    trial.method_files = files_read(method.method);
+    trial.method_files = files_read(method.method, indirect.method);
     trial.swept = variant.swept;
     trial.swept.insert(trial.swept.end(), method.params.begin(), method.params.end());
     for (const auto& [key, value] : indirect.params)

@@ -113,7 +113,7 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     if (file.hash != trial.scene_hash)
         throw InputError(
             fmt::format("{}: changed while the sweep runs", trial.request.scene_file.string()));
-    if (files_read(trial.request.method) != trial.method_files)
+    if (files_read(trial.request.method, trial.request.indirect) != trial.method_files)
         throw InputError("a file that a parameter names changed while the sweep runs");
     const Scene scene(file.desc);
     record_scene(record, file, scene);
@@ -127,8 +127,7 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     for (const std::string& note : result.notes) log("note: " + note);
 
     log("measure");
-    for (const char* layer : {"", "caustic", "indirect"})
-        if (result.film.has_layer(layer)) require_finite(result.film, layer, "the picture");
+    require_finite(result.film, "the picture");
     if (reference != nullptr) record_errors(record, result.film, *reference);
     result.film.metadata = picture_metadata(trial.request, file, result.report);
     record["picture_hash"] = picture_hash(result.film);

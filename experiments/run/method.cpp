@@ -99,8 +99,13 @@ json identity_of(const ConfiguredParameters& parameters) {
 json describe(const Method& method) { return values_of(*method.configured); }
 json describe(const IndirectMethod& method) { return values_of(*method.configured); }
 
-std::map<std::string, std::string> files_read(const Method& method) {
-    return hashes_of(*method.configured);
+std::map<std::string, std::string> files_read(const Method& method,
+                                              const std::optional<IndirectMethod>& indirect) {
+    std::map<std::string, std::string> all = hashes_of(*method.configured);
+    if (!indirect) return all;
+    for (const auto& [parameter, hash] : hashes_of(*indirect->configured))
+        all["indirect_" + parameter] = hash;
+    return all;
 }
 
 json identity(const Method& method) { return identity_of(*method.configured); }

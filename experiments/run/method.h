@@ -52,9 +52,10 @@ JsonNode parameters_node(const std::vector<std::string>& assignments,
 nlohmann::json describe(const Method& method);
 nlohmann::json describe(const IndirectMethod& method);
 
-/// The files that the method's parameters read, by parameter, as hashes of their contents. Throws
-/// InputError for a file that is not what the parameter asks for.
-std::map<std::string, std::string> files_read(const Method& method);
+/// The files that the methods' parameters read, by parameter (those of the indirect layer with "indirect_"
+/// before), as hashes of their contents. Throws InputError for a file that is not what the parameter asks for.
+std::map<std::string, std::string> files_read(const Method& method,
+                                              const std::optional<IndirectMethod>& indirect);
 
 /// What distinguishes two runs: describe() with the hashes of files in place of their names.
 nlohmann::json identity(const Method& method);

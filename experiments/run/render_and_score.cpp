@@ -36,7 +36,7 @@ std::string parameter_words(const std::string& option, const nlohmann::json& par
 BuildReport of_indirect(const BuildReport& own) {
     BuildReport report;
     report.bytes = own.bytes;
-    for (const auto& [name, count] : own.counters) report.counters["indirect_" + name] = count;
+    add_under("indirect_", own.counters, report.counters);
     for (const auto& [name, value] : own.resolved) report.resolved["indirect_" + name] = value;
     return report;
 }
@@ -74,7 +74,7 @@ std::map<std::string, std::string> picture_metadata(const RunRequest& request,
         {"spp", fmt::format("{}", request.samples_per_pixel)},
         {"code_version", code_version()},
         {"command", command("render", request)}};
-    for (const auto& [parameter, hash] : files_read(request.method))
+    for (const auto& [parameter, hash] : files_read(request.method, request.indirect))
         metadata[parameter + "_hash"] = hash;
     if (request.indirect) {
         metadata["indirect"] = request.indirect->name;

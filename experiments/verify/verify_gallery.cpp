@@ -31,6 +31,14 @@ ReceiverPoint receiver_at(const Scene& scene, const KnownPoint& known, std::uint
     return *point;
 }
 
+std::unique_ptr<const PointEstimator> build_of(const Series& series, const Effort& effort,
+                                               const Scene& scene, const RunOptions& options) {
+    const JsonNode parameters = parameters_node(effort.parameters);
+    if (series.indirect)
+        return parse_indirect(series.method, parameters)->configured->build(scene, options, 0);
+    return build(scene, parse_method(series.method, parameters), options);
+}
+
 /// Error and mean of a method's answers, relative to the truth.
 struct Score {
     double error, mean;
@@ -39,8 +47,7 @@ struct Score {
 Score score(const GalleryScene& gallery, const Series& series, const Effort& effort,
             const RunOptions& options) {
     const Scene scene(gallery.make(effort.resolution));
-    const Method method = parse_method(series.method, parameters_node(effort.parameters));
-    const auto built = build(scene, method, options);
+    const auto built = build_of(series, effort, scene, options);
     const std::vector<ReceiverPoint> points = receiver_points(scene, gallery, series.radius);
     const auto context = built->make_context();
     const std::vector<Estimate> found = answers(*built, gallery, points, *context);
@@ -65,7 +72,7 @@ std::vector<ReceiverPoint> receiver_points(const Scene& scene, const GalleryScen
     return points;
 }
 
-std::vector<Estimate> answers(const CausticEstimator& method, const GalleryScene& gallery,
+std::vector<Estimate> answers(const PointEstimator& method, const GalleryScene& gallery,
                               const std::vector<ReceiverPoint>& points, QueryContext& context) {
     std::vector<Estimate> found(points.size());
     if (gallery.points.front().wo.isZero(0))
@@ -97,7 +104,8 @@ SeriesOutcome run_series(const GalleryScene& scene, const Series& series,
                          const RunOptions& options) {
     SeriesOutcome outcome;
     outcome.scene = scene.name;
-    outcome.method = series.method + (series.variant.empty() ? "" : ", " + series.variant);
+    outcome.method = series.method + (series.indirect ? ", indirect" : "") +
+                     (series.variant.empty() ? "" : ", " + series.variant);
     outcome.factor = series.factor;
     outcome.tolerance = series.tolerance;
     outcome.points = scene.points.size();

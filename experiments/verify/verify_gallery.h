@@ -38,7 +38,7 @@ std::vector<ReceiverPoint> receiver_points(const Scene& scene, const GalleryScen
 
 /// What a built method answers at those points: the irradiance, or where the gallery names viewers the
 /// radiance.
-std::vector<Estimate> answers(const CausticEstimator& method, const GalleryScene& gallery,
+std::vector<Estimate> answers(const PointEstimator& method, const GalleryScene& gallery,
                               const std::vector<ReceiverPoint>& points, QueryContext& context);
 
 /// Runs one method on one scene at growing effort. What it refuses (UnsupportedScene) is reported.

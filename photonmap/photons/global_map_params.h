@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 
 namespace caustics::photonmap {
 
@@ -13,6 +14,11 @@ struct GlobalMapParams {
     int nearest = 50;                 ///< N of an estimate, at least 2
     double max_radius = 0;            ///< [m]; 0: chosen from the photons
     int gather = 32;                  ///< M rays from each point; 0: the map itself is shown
+    int precompute = 4;  ///< K: irradiance known at every K-th photon; 0: estimated at each end
+    std::uint64_t shadow_photons = 0;  ///< rays of each light; 0: every shadow ray is traced
+    /// Files that the photons are written to and come from, as PhotonMapParams::save and load.
+    std::filesystem::path save = {};
+    std::filesystem::path load = {};
 };
 
 }  // namespace caustics::photonmap

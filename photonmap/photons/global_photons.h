@@ -9,7 +9,7 @@ namespace caustics::photonmap {
 /// Traces whole light paths until exactly `params.photons` are stored: a pilot says how many paths bring a
 /// few more, and those beyond are dropped at random (drop_photons), so that the flux stays unbiased. Photons
 /// that come from a diffuse surface have from_diffuse_mark. Throws UnsupportedScene where no light arrives
-/// anywhere, InputError where it comes to no end (trace_whole_path).
+/// anywhere, InputError where its paths do not end (trace_whole_path).
 TracedPhotons trace_global(const Scene& scene, const GlobalMapParams& params,
                            const RunOptions& options);
 

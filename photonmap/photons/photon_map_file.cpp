@@ -22,7 +22,8 @@ constexpr std::string_view magic = "causticbench photon map\n";
 /// Of the header, without the command.
 std::size_t header_numbers(std::uint32_t version) {
     const std::size_t counts = version == 2 ? 12 : 13;
-    return (2 + counts) * sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t);
+    const std::size_t words = version < 4 ? 6 : 8;
+    return (2 + counts) * sizeof(std::uint64_t) + words * sizeof(std::uint32_t);
 }
 
 constexpr std::size_t longest_header = 1 << 20;
@@ -55,6 +56,8 @@ std::string header_bytes(const TracedPhotons& photons, const PhotonOrigin& origi
     put(static_cast<std::uint32_t>(origin.emission));
     put(static_cast<std::uint32_t>(origin.interaction));
     put(static_cast<std::uint32_t>(origin.max_bounces));
+    put(static_cast<std::uint32_t>(origin.whole_paths));
+    put(static_cast<std::uint32_t>(origin.diffuse_bounces));
     for_each_count(photon_map_version, photons.counts, put);
     for (int c = 0; c < 3; ++c) put(photons.flux_unit[c]);
     return header + origin.command.substr(0, longest_header - header.size());
@@ -136,6 +139,13 @@ Header read_header(Reader& in) {
     header.origin.emission = static_cast<PhotonMapParams::Emission>(emission);
     header.origin.interaction = static_cast<Interaction>(interaction);
     header.origin.max_bounces = static_cast<int>(max_bounces);
+    if (version > 3) {
+        const auto whole_paths = in.read<std::uint32_t>();
+        const auto diffuse_bounces = in.read<std::uint32_t>();
+        if (whole_paths > 1 || diffuse_bounces > std::numeric_limits<int>::max()) fail();
+        header.origin.whole_paths = whole_paths == 1;
+        header.origin.diffuse_bounces = static_cast<int>(diffuse_bounces);
+    }
     for_each_count(version, header.counts,
                    [&](std::uint64_t& count) { count = in.read<std::uint64_t>(); });
     for (int c = 0; c < 3; ++c) header.flux_unit[c] = in.read<float>();

@@ -49,6 +49,14 @@ std::vector<Way> ways(bool paths = true) {
              params.diffuse_bounces = diffuse_bounces;
              return build(scene, params, {});
          },
+         0.03},
+        {"globalphotonmap gather 400, nothing known beforehand",
+         [](const Scene& scene, int diffuse_bounces) {
+             GlobalMapParams params{
+                 .photons = 200'000, .nearest = 100, .gather = 400, .precompute = 0};
+             params.diffuse_bounces = diffuse_bounces;
+             return build(scene, params, {});
+         },
          0.03}};
     if (paths)
         all.push_back({"pathtrace",
@@ -191,14 +199,15 @@ TEST(IndirectLight, IsTheSameByAllMethodsBesideGlass) {
     }
 }
 
-TEST(IndirectLight, PicturesAreTheSameForAnyNumberOfThreads) {
+TEST(IndirectLight, PicturesAreTheSameByThreadsAndInstructionSets) {
     const Scene scene = box_with_ball();
     const auto caustic = build(scene, photonmap::PhotonMapParams{.photons = 2000}, {});
     for (const int gather : {0, 16}) {
         std::vector<std::vector<float>> reds;
-        for (const int threads : {1, 3}) {
+        for (const Isa isa : supported_isas()) {
             RunOptions options;
-            options.threads = threads;
+            options.threads = isa == Isa::plain ? 1 : 3;
+            options.isa = isa;
             options.samples_per_pixel = 4;
             const auto indirect =
                 build(scene, GlobalMapParams{.photons = 5000, .gather = gather}, options);
@@ -211,8 +220,57 @@ TEST(IndirectLight, PicturesAreTheSameForAnyNumberOfThreads) {
                 EXPECT_LE((film.rgb("", i) - sum).abs().maxCoeff(), 1e-5F * sum.maxCoeff());
             }
         }
-        EXPECT_EQ(reds[0], reds[1]);
+        for (const std::vector<float>& red : reds) EXPECT_EQ(red, reds[0]);
     }
+}
+
+// Of the lookups alone: the same gather rays, and so many photons that the estimates hardly scatter.
+TEST(IndirectLight, IsNotChangedByWhatIsKnownBeforehand) {
+    const Scene scene = sphere_with_lamp(support::diffuse(0.6F), Vec3d(0.3, -0.5, 0.4));
+    const auto points = inside(scene, 0, 1);
+    const auto mean = [&](int precompute, int nearest) {
+        GlobalMapParams params{.photons = 1'000'000, .nearest = nearest, .gather = 1000};
+        params.precompute = precompute;
+        support::Moments all;
+        for (const Estimate& e : support::irradiance(*build(scene, params, {}), points))
+            all.add(static_cast<double>(e.value.mean()));
+        return all.mean();
+    };
+    const double estimated = mean(0, 50);
+    EXPECT_NEAR(mean(1, 50) / estimated, 1, 0.005);
+    EXPECT_NEAR(mean(4, 50) / estimated, 1, 0.005);
+    EXPECT_NEAR(mean(16, 200) / mean(0, 200), 1, 0.005);
+    // Places so far apart that a reader's nearest is as far as the photons of its estimate: 1/N too much at most.
+    const double sparse = mean(50, 50) / estimated;
+    EXPECT_GT(sparse, 1.005);
+    EXPECT_LT(sparse, 1.02);
+}
+
+// The scatter of pictures with other seeds is what their standard error says.
+TEST(IndirectLight, HasItsStandardError) {
+    const Scene scene = box_with_ball();
+    const auto caustic = build(scene, photonmap::PhotonMapParams{.photons = 500}, {});
+    support::Moments squares;
+    Film first(1, 1);
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        RunOptions options;
+        options.seed = seed;
+        options.samples_per_pixel = 64;
+        const auto paths = build(scene, IndirectPathTraceParams{.spp = 64}, options);
+        Film film = render(scene, *caustic, options, paths.get()).film;
+        if (seed == 1) {
+            first = std::move(film);
+            continue;
+        }
+        for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+            const auto difference =
+                static_cast<double>((film.rgb("indirect", i) - first.rgb("indirect", i))[1]);
+            const auto a = static_cast<double>(film.rgb("indirect_stderr", i)[1]);
+            const auto b = static_cast<double>(first.rgb("indirect_stderr", i)[1]);
+            squares.add(difference * difference / (a * a + b * b));
+        }
+    }
+    EXPECT_NEAR(squares.mean(), 1, 0.35);
 }
 
 // ARCHITECTURE.md, "Path sets": a path from the light, its events as letters, to the eye.

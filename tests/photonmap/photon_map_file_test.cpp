@@ -40,6 +40,8 @@ const PhotonOrigin origin = {.transport = 0x1234567890abcdefU,
                              .emission = PhotonMapParams::Emission::stratified,
                              .interaction = Interaction::split,
                              .max_bounces = 5,
+                             .whole_paths = false,
+                             .diffuse_bounces = 0,
                              .command = "causticbench render a.json"};
 
 std::string content(const std::filesystem::path& file) {
@@ -147,36 +149,45 @@ TEST_F(PhotonMapFile, RefusesPhotonsThatAreNoLightThoughTheChecksumFits) {
     EXPECT_NE(bright.find("the flux of photon 1 is not finite"), std::string::npos) << bright;
 }
 
-/// The same content as version 2 had it: 12 counts, and photons whose surfaces are not known.
-std::string as_version_2(std::string text) {
+/// The same content as an older version had it: version 3 without what a global map adds, version 2 with 12
+/// counts, and photons whose surfaces are not known.
+std::string as_version(char version, std::string text) {
     const std::size_t numbers = std::string_view("causticbench photon map\n").size() + 8;
-    text[numbers - 8] = 2;
+    text[numbers - 8] = version;
     std::uint32_t length = 0;
     std::memcpy(&length, text.data() + numbers - 4, sizeof length);
+    const std::size_t kind = numbers + 2 * 8 + 3 * 4;
+    text.erase(kind, 8);
     length -= 8;
+    if (version == 2) {
+        text.erase(kind + 12 * 8, 8);
+        length -= 8;
+    }
     std::memcpy(text.data() + numbers - 4, &length, sizeof length);
-    text.erase(numbers + 2 * 8 + 3 * 4 + 12 * 8, 8);
     text.resize(text.size() - 8);
     const std::uint64_t hash = fnv1a(text);
     text.append(reinterpret_cast<const char*>(&hash), sizeof hash);
     return text;
 }
 
-TEST_F(PhotonMapFile, OfTheVersionBeforeIsRead) {
+TEST_F(PhotonMapFile, OfOlderVersionsIsRead) {
     save(100);
+    const std::string content_now = content(file_);
     const SavedPhotons now = load_photon_map(file_);
-    EXPECT_EQ(now.version, 3U);
-    EXPECT_EQ(now.photons.counts.misdirected, 13U);
-    write_atomic_file(file_, as_version_2(content(file_)));
-    const SavedPhotons before = load_photon_map(file_);
-    EXPECT_EQ(before.version, 2U);
-    EXPECT_EQ(before.photons.counts.misdirected, 0U);
-    EXPECT_EQ(before.photons.counts.dropped, now.photons.counts.dropped);
-    EXPECT_TRUE((before.photons.flux_unit == now.photons.flux_unit).all());
-    EXPECT_EQ(before.origin.command, now.origin.command);
-    EXPECT_EQ(std::memcmp(before.photons.store.photons().data(), now.photons.store.photons().data(),
-                          now.photons.store.bytes()),
-              0);
+    EXPECT_EQ(now.version, 4U);
+    for (const char version : {char{2}, char{3}}) {
+        write_atomic_file(file_, as_version(version, content_now));
+        const SavedPhotons before = load_photon_map(file_);
+        EXPECT_EQ(before.version, static_cast<std::uint32_t>(version));
+        EXPECT_EQ(before.photons.counts.misdirected, version == 2 ? 0U : 13U);
+        EXPECT_EQ(before.photons.counts.dropped, now.photons.counts.dropped);
+        EXPECT_FALSE(before.origin.whole_paths);
+        EXPECT_TRUE((before.photons.flux_unit == now.photons.flux_unit).all());
+        EXPECT_EQ(before.origin.command, now.origin.command);
+        EXPECT_EQ(std::memcmp(before.photons.store.photons().data(),
+                              now.photons.store.photons().data(), now.photons.store.bytes()),
+                  0);
+    }
 }
 
 TEST_F(PhotonMapFile, NamesWhatIsWrong) {
@@ -188,7 +199,7 @@ TEST_F(PhotonMapFile, NamesWhatIsWrong) {
     std::string text = content(file_);
     text[24] = 1;
     write_atomic_file(file_, text);
-    EXPECT_NE(refusal(file_).find("version 1 (known: 2 to 3)"), std::string::npos)
+    EXPECT_NE(refusal(file_).find("version 1 (known: 2 to 4)"), std::string::npos)
         << refusal(file_);
     save(3);
     text = content(file_);

@@ -1,4 +1,5 @@
 #include "photonmap/photons/photon_source.h"
+#include "photonmap/global_photon_map.h"
 #include "photonmap/photon_map.h"
 
 #include <gtest/gtest.h>
@@ -110,8 +111,9 @@ TEST_F(KeptPhotons, AreRefusedWhereTheLightGoesElsewhere) {
 
 TEST_F(KeptPhotons, TellHowTheyWereTraced) {
     const Scene scene(still_life());
-    const auto traced = build(scene, {.photons = 500, .max_bounces = 4, .save = file_}, options());
-    const auto loaded = build(scene, {.photons = 0, .load = file_}, {});
+    const auto traced =
+        build(scene, PhotonMapParams{.photons = 500, .max_bounces = 4, .save = file_}, options());
+    const auto loaded = build(scene, PhotonMapParams{.photons = 0, .load = file_}, {});
     EXPECT_EQ(loaded->build_report().counters, traced->build_report().counters);
     EXPECT_EQ(loaded->build_report().resolved.at("max_bounces"), 4);
     EXPECT_EQ(load_photon_map(file_).origin.command, "a test");
@@ -125,9 +127,56 @@ TEST_F(KeptPhotons, BeginWithTryingTheFileToWrite) {
     const PhotonMapParams params{.photons = 10, .save = folder_ / "absent" / "a.photons"};
     EXPECT_THROW(build(scene, params, run), InputError);
     EXPECT_TRUE(phases.empty());
-    build(scene, {.photons = 10, .save = file_}, run);
-    build(scene, {.photons = 0, .load = file_}, run);
+    build(scene, PhotonMapParams{.photons = 10, .save = file_}, run);
+    build(scene, PhotonMapParams{.photons = 0, .load = file_}, run);
     EXPECT_EQ(phases, (std::vector<std::string>{"trace", "save", "balance", "load", "balance"}));
+}
+
+Film indirect_picture(SceneDesc desc, const GlobalMapParams& params, RunOptions run = options()) {
+    const Scene scene(std::move(desc));
+    const auto none = build(scene, PhotonMapParams{.photons = 10}, run);
+    const auto indirect = build(scene, params, run);
+    return render(scene, *none, run, indirect.get()).film;
+}
+
+TEST_F(KeptPhotons, OfAllSurfacesGiveThePictureThatTracingGives) {
+    for (const int gather : {0, 8}) {
+        GlobalMapParams params{.photons = 2000, .gather = gather, .save = file_};
+        params.diffuse_bounces = 3;
+        const Film traced = indirect_picture(still_life(), params);
+        GlobalMapParams loading{.gather = gather, .load = file_};
+        RunOptions other = options();
+        other.threads = 2;
+        const Film loaded = indirect_picture(still_life(), loading, other);
+        EXPECT_EQ(*traced.find("indirect.R"), *loaded.find("indirect.R"));
+        const SavedPhotons saved = load_photon_map(file_);
+        EXPECT_TRUE(saved.origin.whole_paths);
+        // The last receiver is the one that gathers.
+        EXPECT_EQ(saved.origin.diffuse_bounces, gather > 0 ? 2 : 3);
+    }
+}
+
+TEST_F(KeptPhotons, OfAllSurfacesDependOnWhatReceiversReflect) {
+    indirect_picture(still_life(), {.photons = 200, .save = file_});
+    const auto refusal_of_whole = [&](SceneDesc desc) -> std::string {
+        try {
+            indirect_picture(std::move(desc), {.load = file_});
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "taken";
+    };
+    EXPECT_EQ(refusal_of_whole(still_life()), "taken");
+    SceneDesc darker = still_life();
+    darker.shapes[0].bsdf = support::schlick(0.5F, 0.3F);
+    EXPECT_NE(refusal_of_whole(darker).find("another scene: lights, surfaces"), std::string::npos);
+    SceneDesc smoother = still_life();
+    smoother.shapes[0].bsdf = support::schlick(0.6F, 0.2F);
+    EXPECT_NE(refusal_of_whole(smoother).find("another scene"), std::string::npos);
+    EXPECT_NE(refusal(still_life()).find("a map of all surfaces"), std::string::npos);
+    const Scene scene(still_life());
+    build(scene, PhotonMapParams{.photons = 10, .save = file_}, options());
+    EXPECT_NE(refusal_of_whole(still_life()).find("a map of caustics alone"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,197 @@
+#!/usr/bin/python3
+"""Measures what the global photon map gains over path tracing at equal error, and writes results/indirect/README.md.
+
+Runs the sweep experiments/sweeps/indirect_room.json on one thread; its trials stay in results/indirect/trials (not in git).
+Ratios are of CPU times of one thread on one machine, without what the other layers cost. `--mitsuba` adds Mitsuba's `path` on the
+same room, whose error and time it takes without those of its direct light (needs tools/crosscheck-requirements.txt, so that it
+runs by .venv/bin/python). Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
+"""
+import argparse
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True  # the source folder may be read-only
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+
+from report import records
+from report.program import BENCH, Program, machine
+from report.report_files import write
+
+SCENE = ROOT / "experiments" / "scenes" / "room.json"
+FILM = ("--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240")
+SHADOW_RAYS = (20_000, 200_000, 2_000_000)
+# The room with nothing specular: all noise of a path tracer is of direct and indirect light.
+DULL = tuple(word for ball in ("glass", "mirror") for word in ("--set", f'/{ball}/bsdf={{"type":"diffuse","reflectance":0.5}}'))
+PATHS = 64  # a pixel, here and in Mitsuba
+
+PAGE = """# Light between walls
+
+Made by `tools/measure_indirect.py{options}` on {machine} CPU times of one thread, medians over the seeds, of the room
+(experiments/scenes/room.json) at 320 x 240, 16 samples a pixel (experiments/sweeps/indirect_room.json). Error and time are those
+of the layer `indirect` alone: the time without what a picture without that layer costs ({none:.1f} s). Gain: what `pathtrace` would
+need for the same error, from the nearest of its rows, since its squared error falls as 1 / s, over the time.
+
+| method | photons | rays a sample | known beforehand at every | rmse | precompute [s] | all [s] | gain |
+|---|---|---|---|---|---|---|---|
+{rows}
+{mitsuba}## Shadow photons
+
+The room's direct light with `shadow_photons`, on the same camera samples as without (`none`, `gather: 0`): the rays that were spared,
+and the error that this made, in the layer `direct`.
+
+| rays of the lamp | shadow rays to trace | spared | rmse [W m⁻² sr⁻¹] | mean ratio |
+|---|---|---|---|---|
+{shadows}
+A shadow ray costs less than asking for the nearest twenty photons in so small a scene ({plain:.1f} s without against {asked:.1f} s with
+{most} rays): shadow photons spare rays here, not time.
+"""
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--keep", action="store_true", help="take the trials that are there, run only those that are not")
+    parser.add_argument("--mitsuba", action="store_true", help="measure Mitsuba's path tracer, too")
+    parser.add_argument("--program", type=pathlib.Path, default=BENCH)
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "indirect", metavar="DIR")
+    return parser.parse_args()
+
+
+def median(rows, column):
+    return statistics.median(float(row[column]) for row in rows)
+
+
+def measured(rows, without):
+    """(method, photons, gather, precompute) -> rmse, seconds before the picture, seconds in all."""
+    keys = ("indirect", "indirect_photons", "indirect_gather", "indirect_precompute", "indirect_spp")
+    cells = {}
+    for row in rows:
+        if row["indirect"]:
+            cells.setdefault(tuple(row.get(key, "") for key in keys), []).append(row)
+    return {key: (median(of, "indirect_rmse"), median(of, "indirect_s"), median(of, "cpu_s") - without)
+            for key, of in cells.items()}
+
+
+def nearest_paths(cells, error):
+    """The seconds of path tracing for an error."""
+    paths = [(rmse, all_s) for key, (rmse, _, all_s) in cells.items() if key[0] == "pathtrace"]
+    rmse, seconds = min(paths, key=lambda each: abs(each[0] - error))
+    return seconds * (rmse / error) ** 2
+
+
+def table(cells):
+    for (method, photons, gather, known, spp), (rmse, before, seconds) in cells.items():
+        rays = gather if method == "globalphotonmap" else f"{int(spp) // 16} paths"
+        yield (f"| {method} | {photons} | {rays} | {known} | {rmse:.4g} | {before:.1f} | {seconds:.1f} "
+               f"| {nearest_paths(cells, rmse) / seconds:.1f} |\n")
+
+
+def picture(program, file, *words):
+    """Renders the room into the file; what the program says, and the seconds."""
+    start = time.monotonic()
+    told = subprocess.run([program.path, "render", str(SCENE), *FILM, *words, "--threads", "1", "-o", str(file)],
+                          check=True, capture_output=True, text=True).stderr
+    return told, time.monotonic() - start
+
+
+def shadow_lines(program, folder):
+    """The lines of the table, and the seconds without and with the most shadow photons."""
+    words = ("--method", "none", "--indirect", "globalphotonmap", "--indirect-param", "photons=1000", "--indirect-param", "gather=0")
+    all_rays = pathlib.Path(folder) / "all.exr"
+    _, plain = picture(program, all_rays, *words)
+    lines = []
+    for rays in SHADOW_RAYS:
+        file = pathlib.Path(folder) / f"{rays}.exr"
+        told, asked = picture(program, file, *words, "--indirect-param", f"shadow_photons={rays}")
+        traced, spared = (int(re.search(rf"(\d+) {what}", told)[1]) for what in ("shadow rays", "spared by shadow photons"))
+        compared = program.run("compare", file, all_rays, "--layer", "direct", stdout=subprocess.PIPE)
+        error, ratio = (float(re.search(rf"{what}\s+(\S+)", compared)[1]) for what in ("rmse", "mean_ratio"))
+        lines.append(f"| {rays:,} | {traced + spared:,} | {100 * spared / (traced + spared):.1f} % | {error:.3g} | {ratio:.5f} |\n")
+    return lines, plain, asked
+
+
+def variance(pictures):
+    """Mean variance of a picture's values, from two of other seeds."""
+    import numpy
+    first, second = pictures
+    return float(numpy.mean((first - second) ** 2)) / 2
+
+
+def ours_of_dull_room(program, folder, mitsuba):
+    """Variance of the layer `indirect` by path tracing, and its seconds without those of the other layers."""
+    import numpy
+    words = ("--method", "none", *DULL, "--spp", "16")
+    _, without = picture(program, pathlib.Path(folder) / "without.exr", *words)
+    layers, seconds = [], []
+    for seed in ("1", "2"):
+        file = pathlib.Path(folder) / f"paths{seed}.exr"
+        seconds.append(picture(program, file, *words, "--seed", seed, "--indirect", "pathtrace",
+                               "--indirect-param", f"spp={PATHS}")[1] - without)
+        parts = dict(mitsuba.Bitmap(str(file)).split())
+        layers.append(numpy.array(parts["indirect"], dtype=float))
+    return variance(layers), statistics.median(seconds)
+
+
+def mitsuba_of_dull_room(program, folder, mitsuba):
+    """The same of Mitsuba's `path`: what its direct light alone has is taken off both."""
+    import numpy
+    program.run("export", SCENE, *FILM, *DULL, "--to", "mitsuba", "-o", pathlib.Path(folder) / "mitsuba", stderr=subprocess.DEVNULL)
+    of_depth = {}
+    for depth in (2, 80):
+        loaded = mitsuba.load_file(str(pathlib.Path(folder) / "mitsuba" / "scene.xml"), integrator="path", max_depth=str(depth))
+        pictures, seconds = [], []
+        for seed in (1, 2):
+            start = time.process_time()
+            pictures.append(numpy.array(mitsuba.render(loaded, seed=seed, spp=PATHS), dtype=float))
+            seconds.append(time.process_time() - start)
+        of_depth[depth] = variance(pictures), statistics.median(seconds)
+    return tuple(all_light - direct for all_light, direct in zip(of_depth[80], of_depth[2]))
+
+
+def mitsuba_section(program, folder, best):
+    import mitsuba
+    mitsuba.set_variant("scalar_rgb")
+    mitsuba.set_log_level(mitsuba.LogLevel.Error)
+    mitsuba.logger().clear_appenders()  # its progress bars
+    ours, ours_s = ours_of_dull_room(program, folder, mitsuba)
+    theirs, theirs_s = mitsuba_of_dull_room(program, folder, mitsuba)
+    ratio = theirs * theirs_s / (ours * ours_s)
+    return (f"Beside Mitsuba {mitsuba.__version__} (`path`, scalar_rgb), in the room with both balls diffuse, so that all noise is of "
+            f"direct and indirect light, {PATHS} paths a pixel: variance x seconds of indirect light is {theirs:.3g} x {theirs_s:.0f} there, "
+            f"{ours:.3g} x {ours_s:.0f} by our `pathtrace`. Mitsuba's path tracer takes {ratio:.1f} times as long as ours for the same error, "
+            f"and so {ratio * best:.0f} times as long as the best row above.\n\n")
+
+
+def main():
+    options = arguments()
+    try:
+        program = Program("measure_indirect", options.program)
+        folder = options.output / "trials" / "indirect_room"
+        program.sweep("indirect_room", folder, options.keep)
+        rows = [row for _, row in records.read_rows(folder / "records.csv")[1] if row["status"] == "done"]
+        without = median([row for row in rows if not row["indirect"]], "cpu_s")
+        cells = measured(rows, without)
+        best = max(nearest_paths(cells, rmse) / seconds for rmse, _, seconds in cells.values())
+        with tempfile.TemporaryDirectory() as work:
+            shadows, plain, asked = shadow_lines(program, work)
+            mitsuba = mitsuba_section(program, work, best) if options.mitsuba else "Mitsuba was not measured (`--mitsuba`).\n\n"
+        write(options.output / "README.md",
+              PAGE.format(options=" --mitsuba" if options.mitsuba else "", machine=machine([folder]), none=without,
+                          rows="".join(table(cells)), mitsuba=mitsuba, shadows="".join(shadows), plain=plain, asked=asked,
+                          most=f"{SHADOW_RAYS[-1]:,}"))
+    except records.RecordsError as error:
+        print(f"measure_indirect: {error}", file=sys.stderr)
+        return 2
+    except (ChildProcessError, subprocess.CalledProcessError) as error:
+        print(f"measure_indirect: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
