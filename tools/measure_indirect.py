@@ -29,12 +29,13 @@ SHADOW_RAYS = (20_000, 200_000, 2_000_000)
 # The room with nothing specular: all noise of a path tracer is of direct and indirect light.
 DULL = tuple(word for ball in ("glass", "mirror") for word in ("--set", f'/{ball}/bsdf={{"type":"diffuse","reflectance":0.5}}'))
 PATHS = 64  # a pixel, here and in Mitsuba
+REFERENCE_PATHS = 1024  # a pixel, in the sweep file
 
 PAGE = """# Light between walls
 
 Made by `tools/measure_indirect.py{options}` on {machine} CPU times of one thread, medians over the seeds, of the room
 (experiments/scenes/room.json) at 320 x 240, 16 samples a pixel (experiments/sweeps/indirect_room.json). Error and time are those
-of the layer `indirect` alone: the time without what a picture without that layer costs ({none:.1f} s). Gain: what `pathtrace` would
+of the layer `indirect` alone: without the error of the reference ({reference} paths a pixel), and the time without what a picture without that layer costs ({none:.1f} s). Gain: what `pathtrace` would
 need for the same error, from the nearest of its rows, since its squared error falls as 1 / s, over the time.
 
 | method | photons | rays a sample | known beforehand at every | rmse | precompute [s] | all [s] | gain |
@@ -67,14 +68,19 @@ def median(rows, column):
 
 
 def measured(rows, without):
-    """(method, photons, gather, precompute) -> rmse, seconds before the picture, seconds in all."""
+    """(method, photons, gather, precompute, spp) -> rmse, seconds before the picture, seconds in all.
+
+    The squared error of path tracing with n paths is s/n, and s/m more by a reference of m paths, which is taken off.
+    """
     keys = ("indirect", "indirect_photons", "indirect_gather", "indirect_precompute", "indirect_spp")
     cells = {}
     for row in rows:
         if row["indirect"]:
             cells.setdefault(tuple(row.get(key, "") for key in keys), []).append(row)
-    return {key: (median(of, "indirect_rmse"), median(of, "indirect_s"), median(of, "cpu_s") - without)
-            for key, of in cells.items()}
+    squares = {key: median(of, "indirect_rmse") ** 2 for key, of in cells.items()}
+    of_reference = statistics.median(squares[key] / (REFERENCE_PATHS / int(key[-1]) + 1) for key in cells if key[0] == "pathtrace")
+    return {key: (max(squares[key] - of_reference, 0.01 * of_reference) ** 0.5, median(of, "indirect_s"),
+                  median(of, "cpu_s") - without) for key, of in cells.items()}
 
 
 def nearest_paths(cells, error):
@@ -115,15 +121,23 @@ def shadow_lines(program, folder):
     return lines, plain, asked
 
 
-def variance(pictures):
+def variance(pictures, mask):
     """Mean variance of a picture's values, from two of other seeds."""
     import numpy
     first, second = pictures
-    return float(numpy.mean((first - second) ** 2)) / 2
+    return float(numpy.mean((first - second)[mask] ** 2)) / 2
+
+
+def off_the_lamp(pictures):
+    """The pixels that do not see the lamp, nor a neighbour: its rim scatters more than all the rest."""
+    import numpy
+    seen = numpy.pad(sum(each["specular"] for each in pictures).sum(axis=-1) > 0, 1)
+    height, width = seen.shape[0] - 2, seen.shape[1] - 2
+    return ~numpy.any([seen[y:y + height, x:x + width] for y in range(3) for x in range(3)], axis=0)
 
 
 def ours_of_dull_room(program, folder, mitsuba):
-    """Variance of the layer `indirect` by path tracing, and its seconds without those of the other layers."""
+    """Variance of the layer `indirect` by path tracing, its seconds without those of the other layers, and the mask."""
     import numpy
     words = ("--method", "none", *DULL, "--spp", "16")
     _, without = picture(program, pathlib.Path(folder) / "without.exr", *words)
@@ -132,12 +146,12 @@ def ours_of_dull_room(program, folder, mitsuba):
         file = pathlib.Path(folder) / f"paths{seed}.exr"
         seconds.append(picture(program, file, *words, "--seed", seed, "--indirect", "pathtrace",
                                "--indirect-param", f"spp={PATHS}")[1] - without)
-        parts = dict(mitsuba.Bitmap(str(file)).split())
-        layers.append(numpy.array(parts["indirect"], dtype=float))
-    return variance(layers), statistics.median(seconds)
+        layers.append({name: numpy.array(each, dtype=float) for name, each in mitsuba.Bitmap(str(file)).split()})
+    mask = off_the_lamp(layers)
+    return variance([each["indirect"] for each in layers], mask), statistics.median(seconds), mask
 
 
-def mitsuba_of_dull_room(program, folder, mitsuba):
+def mitsuba_of_dull_room(program, folder, mitsuba, mask):
     """The same of Mitsuba's `path`: what its direct light alone has is taken off both."""
     import numpy
     program.run("export", SCENE, *FILM, *DULL, "--to", "mitsuba", "-o", pathlib.Path(folder) / "mitsuba", stderr=subprocess.DEVNULL)
@@ -149,7 +163,7 @@ def mitsuba_of_dull_room(program, folder, mitsuba):
             start = time.process_time()
             pictures.append(numpy.array(mitsuba.render(loaded, seed=seed, spp=PATHS), dtype=float))
             seconds.append(time.process_time() - start)
-        of_depth[depth] = variance(pictures), statistics.median(seconds)
+        of_depth[depth] = variance(pictures, mask), statistics.median(seconds)
     return tuple(all_light - direct for all_light, direct in zip(of_depth[80], of_depth[2]))
 
 
@@ -158,11 +172,11 @@ def mitsuba_section(program, folder, best):
     mitsuba.set_variant("scalar_rgb")
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
     mitsuba.logger().clear_appenders()  # its progress bars
-    ours, ours_s = ours_of_dull_room(program, folder, mitsuba)
-    theirs, theirs_s = mitsuba_of_dull_room(program, folder, mitsuba)
+    ours, ours_s, mask = ours_of_dull_room(program, folder, mitsuba)
+    theirs, theirs_s = mitsuba_of_dull_room(program, folder, mitsuba, mask)
     ratio = theirs * theirs_s / (ours * ours_s)
     return (f"Beside Mitsuba {mitsuba.__version__} (`path`, scalar_rgb), in the room with both balls diffuse, so that all noise is of "
-            f"direct and indirect light, {PATHS} paths a pixel: variance x seconds of indirect light is {theirs:.3g} x {theirs_s:.0f} there, "
+            f"direct and indirect light, {PATHS} paths a pixel, without the pixels at the lamp: variance x seconds of indirect light is {theirs:.3g} x {theirs_s:.0f} there, "
             f"{ours:.3g} x {ours_s:.0f} by our `pathtrace`. Mitsuba's path tracer takes {ratio:.1f} times as long as ours for the same error, "
             f"and so {ratio * best:.0f} times as long as the best row above.\n\n")
 
@@ -181,7 +195,7 @@ def main():
             shadows, plain, asked = shadow_lines(program, work)
             mitsuba = mitsuba_section(program, work, best) if options.mitsuba else "Mitsuba was not measured (`--mitsuba`).\n\n"
         write(options.output / "README.md",
-              PAGE.format(options=" --mitsuba" if options.mitsuba else "", machine=machine([folder]), none=without,
+              PAGE.format(options=" --mitsuba" if options.mitsuba else "", machine=machine([folder]), none=without, reference=REFERENCE_PATHS,
                           rows="".join(table(cells)), mitsuba=mitsuba, shadows="".join(shadows), plain=plain, asked=asked,
                           most=f"{SHADOW_RAYS[-1]:,}"))
     except records.RecordsError as error:

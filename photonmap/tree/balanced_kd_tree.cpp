@@ -24,21 +24,51 @@ void order_subtree(std::span<Photon> photons, const TreeKernels& kernels, OrderS
     kernels.order_small(bytes_of(photons), photons.size(), scratch);
 }
 
-/// Moves every photon from its place in order to its place in the heap, cycle by cycle of the
-/// permutation; a bit of the flags marks the places that are done.
-void move_to_heap(std::span<Photon> photons) {
-    for (std::size_t start = 0; start < photons.size(); ++start) {
-        if ((photons[start].flags & placed_flag) != 0) continue;
-        const Photon first = photons[start];
-        std::size_t place = start;
-        for (;;) {
-            const std::size_t source = in_order_rank(place + 1, photons.size());
-            photons[place] = source == start ? first : photons[source];
-            photons[place].flags |= placed_flag;
-            if (source == start) break;
+/// A cycle of the permutation that takes photons in order to their places in the heap, from one of its
+/// places on. Its links jump through memory, but depend on no photon: those far ahead are asked for early.
+class Cycle {
+public:
+    Cycle(std::span<Photon> photons, std::size_t start)
+        : photons_(photons), start_(start), ahead_(start) {
+        for (int link = 0; link < links_ahead; ++link) fetch();
+    }
+
+    /// Moves every photon of the cycle, and marks its new place.
+    void move() {
+        const Photon first = photons_[start_];
+        for (std::size_t place = start_;;) {
+            fetch();
+            const std::size_t source = source_of(place);
+            photons_[place] = source == start_ ? first : photons_[source];
+            photons_[place].flags |= placed_flag;
+            if (source == start_) return;
             place = source;
         }
     }
+
+private:
+    static constexpr int links_ahead = 12;
+
+    std::size_t source_of(std::size_t place) const {
+        return in_order_rank(place + 1, photons_.size());
+    }
+    void fetch() {
+        const std::size_t next = source_of(ahead_);
+        if (next == start_) return;
+        ahead_ = next;
+        __builtin_prefetch(&photons_[ahead_], 1);
+    }
+
+    std::span<Photon> photons_;
+    std::size_t start_;
+    std::size_t ahead_;
+};
+
+/// Moves every photon from its place in order to its place in the heap; a bit of the flags marks the places
+/// that are done.
+void move_to_heap(std::span<Photon> photons) {
+    for (std::size_t start = 0; start < photons.size(); ++start)
+        if ((photons[start].flags & placed_flag) == 0) Cycle(photons, start).move();
     for (Photon& photon : photons) photon.flags &= static_cast<std::uint16_t>(~placed_flag);
 }
 
