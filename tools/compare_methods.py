@@ -20,10 +20,10 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 
 from report import records
 from report.estimate_cells import STAGES
+from report.intervals import FEWEST_SEEDS, Answer, half_interval, is_worse, log_variance
 from report.report_files import report, write
 
 STEPS = 5  # times and errors asked for, a scene
-FEWEST_SEEDS = 5  # below, no method is called the best
 
 
 def main():
@@ -107,33 +107,6 @@ class Point:
     def turned(self):
         """Error for time, to ask for the time at an error."""
         return Point(self.error, self.seconds, self.error_variance, self.seconds_variance, self.seeds)
-
-
-@dataclasses.dataclass(frozen=True)
-class Answer:
-    """What a curve says at a place; the terms of its logarithm's variance, each with its degrees of freedom."""
-    value: float
-    terms: tuple = ()
-
-
-def student(degrees):
-    """Student's t for a two-sided 95 % interval."""
-    from scipy.special import stdtrit  # here, so that a broken table is named even without SciPy
-
-    return float(stdtrit(degrees, 0.975))
-
-
-def half_interval(values):
-    if len(values) < 2:
-        return None
-    return student(len(values) - 1) * statistics.stdev(values) / math.sqrt(len(values))
-
-
-def log_variance(values):
-    """Of the logarithm of the mean, to first order; 0 for one value."""
-    if len(values) < 2:
-        return 0.0
-    return statistics.variance(values) / len(values) / statistics.mean(values) ** 2
 
 
 def parameter_names(cells):
@@ -289,16 +262,6 @@ def tied(curves, question, place):
         return set()
     best = min(reached.values(), key=lambda answer: answer.value)
     return {method for method, answer in reached.items() if not is_worse(answer, best)}
-
-
-def is_worse(mine, best):
-    """Whether a value is above another by more than chance, by Welch's t with Satterthwaite's degrees of freedom."""
-    terms = [(variance, degrees) for variance, degrees in mine.terms + best.terms if variance > 0]
-    variance = sum(variance for variance, _ in terms)
-    if variance == 0:
-        return mine.value > best.value
-    degrees = variance ** 2 / sum(variance ** 2 / degrees for variance, degrees in terms)
-    return math.log(mine.value / best.value) > student(degrees) * math.sqrt(variance)
 
 
 if __name__ == "__main__":

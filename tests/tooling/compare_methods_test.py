@@ -22,6 +22,7 @@ except ImportError as error:
     sys.exit(77)
 
 import compare_methods as tool
+from report import intervals
 
 COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "isa", "photons_stored", "nearest", "alpha",
            "mesh_resolution", "render_cpu_s", "total_s", "rmse", "relmse", "variance", "mean_ratio", "reference",
@@ -55,7 +56,7 @@ class Comparison(unittest.TestCase):
         self.assertAlmostEqual(tool.half_interval([1.0, 2.0, 3.0]), 4.30265 / math.sqrt(3), places=5)
         self.assertIsNone(tool.half_interval([1.0]))
         for degrees, t in ((1, 12.706), (15, 2.131), (16, 2.120), (30, 2.042), (120, 1.980)):  # from printed tables
-            self.assertAlmostEqual(tool.student(degrees), t, places=3)
+            self.assertAlmostEqual(intervals.student(degrees), t, places=3)
         seventeen = [float(i) for i in range(17)]
         self.assertAlmostEqual(tool.half_interval(seventeen), 2.1199 * statistics.stdev(seventeen) / math.sqrt(17), places=3)
 

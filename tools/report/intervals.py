@@ -1,0 +1,43 @@
+"""What seeds tell: 95 % intervals, and whether one value is above another by more than chance."""
+import dataclasses
+import math
+import statistics
+
+FEWEST_SEEDS = 5  # below, no method is called the best
+
+
+@dataclasses.dataclass(frozen=True)
+class Answer:
+    """A value with the terms of its logarithm's variance, each with its degrees of freedom."""
+    value: float
+    terms: tuple = ()
+
+
+def student(degrees):
+    """Student's t for a two-sided 95 % interval."""
+    from scipy.special import stdtrit  # here, so that a broken table is named even without SciPy
+
+    return float(stdtrit(degrees, 0.975))
+
+
+def half_interval(values):
+    if len(values) < 2:
+        return None
+    return student(len(values) - 1) * statistics.stdev(values) / math.sqrt(len(values))
+
+
+def log_variance(values):
+    """Of the logarithm of the mean, to first order; 0 for one value."""
+    if len(values) < 2:
+        return 0.0
+    return statistics.variance(values) / len(values) / statistics.mean(values) ** 2
+
+
+def is_worse(mine, best):
+    """Whether a value is above another by more than chance, by Welch's t with Satterthwaite's degrees of freedom."""
+    terms = [(variance, degrees) for variance, degrees in mine.terms + best.terms if variance > 0]
+    variance = sum(variance for variance, _ in terms)
+    if variance == 0:
+        return mine.value > best.value
+    degrees = variance ** 2 / sum(variance ** 2 / degrees for variance, degrees in terms)
+    return math.log(mine.value / best.value) > student(degrees) * math.sqrt(variance)
