@@ -1,0 +1,206 @@
+// The controls, the keys, and what is drawn anew when the state changes.
+
+const SIZES = ["scene", "contest", "seed", "pictures", "left", "right", "mode", "show", "formula", "against", "epsilon", "layer", "tone",
+  "exposure", "low", "high", "scale"];
+const KEYS = [
+  ["1 … 9", "show that picture (flip), or make it the left one (split, side by side)"], ["Space", "swap left and right: flip between two pictures"],
+  ["n, p", "next, previous picture"], ["m", "next mode: side by side, flip, split"], ["e", "picture or error map"], ["f", "false colour or colours of a screen"],
+  ["[, ]", "exposure half a stop down, up"], ["+, −, 0", "zoom in, out, whole picture"], ["h, j, k, l", "move the view"],
+  ["arrows", "move the probed pixel (Shift: ten pixels); in split mode with Alt: the split"], ["r", "draw a region by dragging"], ["c", "copy the command of the left picture"],
+  ["s", "next seed"], ["t", "light or dark"], ["?", "this list"],
+];
+
+function buildControls() {
+  byId("scene-choice").replaceChildren(choice("scene", "Scene", page.scenes.map((each, i) => [String(i), each.title])));
+  onChange((names) => { // a scene has its own pictures, places and ranges
+    if (names.has("scene")) change({pictures: "", left: "", right: "", contest: "", crops: "", pixel: "", region: "", view: "", spread: "", against: defaults.against, hidden: ""});
+  });
+  byId("viewer-controls").append(
+    choice("mode", "Mode", [["side", "side by side"], ["flip", "flip"], ["split", "split"]], "key m"),
+    choice("show", "Show", Object.entries(SHOWN), "key e"),
+    choice("layer", "Layer", [["caustic", "caustic alone"], ["beauty", "whole picture"]], "the whole picture: the caustic, and all other light of the reference"),
+    choice("tone", "Colours", [["colour", "screen"], ["false", "false colour"]], "key f"), seedChoice(),
+    typed("exposure", "Exposure", "stops; empty: the 99th percentile of the reference is white", "0.5"));
+  byId("map-controls").append(
+    choice("formula", "Error", Object.entries(FORMULAS).map(([name, formula]) => [name, formula.text])), againstChoice(),
+    typed("epsilon", "ε", "in units of mean(r), or of its square"), choice("scale", "Scale", [["log", "logarithmic"], ["linear", "linear"]]),
+    typed("low", "from", "least of the scale"), typed("high", "to", "greatest of the scale"));
+  byId("split-at").addEventListener("input", () => change({split: byId("split-at").value}));
+  byId("draw-region").addEventListener("click", () => toggleRegion());
+  byId("curve-controls").append(metricChoice(), costChoice(), button("SVG", () => saveSvg("curve", "curves.svg"), "keep the plot as SVG", {id: "save-curve"}));
+  byId("probe-controls").append(choice("place", "Convergence of the", [["error", "error"], ["value", "value"]]), button("SVG", () => saveSvg("probe-curve", "convergence.svg"), "keep the plot as SVG", {id: "save-probe"}));
+  byId("spread-controls").append(button("SVG", () => saveSvg("spread", "distribution.svg"), "keep the plot as SVG"), button("clear", () => change({spread: ""}), "show no pixels of a bar"));
+  byId("spectrum-controls").append(button("SVG", () => saveSvg("spectrum", "spectrum.svg"), "keep the plot as SVG"));
+  byId("save-strip").addEventListener("click", () => download("strip.svg", stripSvg()));
+  byId("table-controls").append(choice("rows", "Rows", [["cells", "cells (over seeds)"], ["records", "records (one a trial)"]]), filterInput(),
+    button("CSV", () => download("table.csv", tableCsv(), "text/csv"), "keep the shown rows as CSV", {id: "save-table"}));
+  for (const link of document.querySelectorAll("nav a")) { // the fragment of the link is the state
+    link.addEventListener("click", (event) => { event.preventDefault(); byId(link.dataset.to).scrollIntoView(); });
+  }
+  byId("theme").addEventListener("click", nextTheme);
+  byId("copy-link").addEventListener("click", () => copy(location.href, byId("copy-link")));
+  byId("budget").addEventListener("input", () => change({contest: byId("budget").value, pictures: ""}));
+  byId("keys").replaceChildren(...KEYS.map(([keys, text]) => make("div", {}, make("dt", {}, make("kbd", {}, keys)), make("dd", {}, text))));
+}
+
+function saveSvg(id, name) {
+  const svg = byId(id).querySelector("svg");
+  if (svg) download(name, svgText(svg));
+}
+
+/** A select whose options depend on the scene. */
+function changing(name, label, options, title) {
+  const select = make("select", {id: `choose-${name}`, onchange: () => change({[name]: select.value})});
+  const fill = () => {
+    select.replaceChildren(...options().map(([value, text]) => make("option", {value}, text)));
+    select.value = state[name];
+    if (select.selectedIndex < 0) select.selectedIndex = 0;
+  };
+  onChange(fill);
+  return make("label", {title}, `${label} `, select);
+}
+
+function seedChoice() {
+  return changing("seed", "Seed", () => (scene().cells[0]?.seeds ?? []).map((seed, i) => [String(i), seed]), "key s");
+}
+
+function againstChoice() {
+  return changing("against", "against", () => [[REFERENCE, "reference"], ...scene().cells.map((cell, i) => [String(i), cell.label])], "r of the formula");
+}
+
+function metricChoice() { return choice("metric", "Error", page.errors.map((name) => [name, name])); }
+
+function costChoice() {
+  return changing("cost", "over", () => {
+    const parameters = [...new Set(scene().cells.map((cell) => cell.work_parameter).filter(Boolean))];
+    return [...page.costs.map((name) => [name, costWord(name)]), ...parameters.map((name) => [`parameter:${name}`, `${name} (parameter)`])];
+  }, "what the error is drawn over");
+}
+
+function filterInput() {
+  const input = make("input", {type: "search", id: "filter", placeholder: "words that a row has", oninput: () => change({filter: input.value})});
+  onChange(() => { if (document.activeElement !== input) input.value = state.filter; });
+  input.value = state.filter;
+  return make("label", {}, "Filter ", input);
+}
+
+function toggleRegion() {
+  const pressed = byId("draw-region");
+  pressed.setAttribute("aria-pressed", String(pressed.getAttribute("aria-pressed") !== "true"));
+}
+
+const THEMES = ["", "light", "dark"];
+function nextTheme() { change({theme: THEMES[(THEMES.indexOf(state.theme) + 1) % 3]}); }
+
+function drawHead() {
+  if (state.theme) document.documentElement.dataset.theme = state.theme; else delete document.documentElement.dataset.theme;
+  byId("theme").textContent = `Theme: ${state.theme || "as the system"}`;
+  const contests = scene().contests, budget = byId("budget");
+  byId("budget-line").hidden = contests.length === 0;
+  if (contests.length) {
+    budget.max = contests.length - 1;
+    budget.value = state.contest === "" ? scene().contest ?? contests.length - 1 : state.contest;
+    byId("budget-text").textContent = `${short(shownContest().seconds, 3)} CPU s`;
+  }
+  const seeds = scene().seeds;
+  byId("scene-text").textContent = `${scene().width} × ${scene().height} pixels, ${scene().cells.length} cells, ${seeds} seed${seeds > 1 ? "s" : ""}, `
+    + (scene().reference ? `reference ${scene().reference.method} ${scene().reference.key}` : "no reference");
+  drawNotDone();
+}
+
+function drawNotDone() {
+  const reasons = new Map();
+  for (const each of scene().not_done) {
+    const text = `${each.method}: ${each.status}${each.message ? `: ${each.message}` : ""}`;
+    reasons.set(text, (reasons.get(text) ?? 0) + 1);
+  }
+  byId("not-done").replaceChildren(...[...reasons].map(([text, count]) => make("li", {}, `${count} trial${count > 1 ? "s" : ""} of ${text}`)));
+}
+
+/** The list of pictures shown, each with what makes it again, and those that may be added. */
+function drawChosen() {
+  const keys = shownKeys();
+  const chips = keys.map((key, i) => make("li", {class: "chip", "data-key": key},
+    button(`${i + 1} ${key === REFERENCE ? "" : methodSign(scene().cells[Number(key)].method)} ${labelOf(key)}`, () => change({left: key, right: key === rightKey() ? leftKey() : rightKey()}), "make it the left picture",
+      {"aria-pressed": String(key === leftKey())}), button("right", () => change({right: key}), "make it the right picture", {"aria-pressed": String(key === rightKey())}),
+    ...copyButtons(key), button("×", () => change({pictures: keys.filter((each) => each !== key).join(".") || REFERENCE}), "take it away", {"aria-label": `take away ${labelOf(key)}`})));
+  const others = [[REFERENCE, "reference"], ...scene().cells.map((cell, i) => [String(i), cell.label])].filter(([key]) => !keys.includes(key));
+  const select = make("select", {id: "add-picture", "aria-label": "add a picture", onchange: () => change({pictures: [...keys, select.value].slice(-9).join(".")})},
+    make("option", {value: ""}, "add a picture …"), others.map(([key, text]) => make("option", {value: key}, text)));
+  byId("chosen").replaceChildren(...chips, make("li", {}, select), make("li", {}, button("as at equal time", () => change({pictures: "", left: "", right: ""}), "reference and the picks of the opening")));
+  byId("split-line").hidden = state.mode !== "split";
+  byId("split-at").value = state.split;
+}
+
+function copyButtons(key) {
+  if (key === REFERENCE) return scene().reference ? [copyButton("hash", scene().reference.key)] : [];
+  const found = pictureOf(key);
+  return [found.command ? copyButton("command", found.command) : null, found.hash ? copyButton("hash", found.hash) : null].filter(Boolean);
+}
+
+function cycle(name, values) { change({[name]: values[(values.indexOf(state[name]) + 1) % values.length]}); }
+
+function movePixel(dx, dy, far) {
+  const [x, y] = probedPixel() ?? [Math.floor(scene().width / 2), Math.floor(scene().height / 2)], step = far ? 10 : 1;
+  change({pixel: inside(x + dx * step, y + dy * step).join(","), region: ""});
+}
+
+function choosePicture(i) {
+  const key = shownKeys()[i];
+  if (key) change({left: key, right: key === rightKey() ? leftKey() : rightKey()});
+}
+
+function onKey(event) {
+  if (event.ctrlKey || event.metaKey || /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) return;
+  if (event.key === " " && /^(BUTTON|SUMMARY|A)$/.test(event.target.tagName)) return;
+  const canvas = viewer.panes[0]?.canvas, keys = shownKeys();
+  const step = (by) => choosePicture((keys.indexOf(leftKey()) + by + keys.length) % keys.length);
+  const pan = (dx, dy) => { const at = view(canvas); setView({...at, x: at.x + dx * 40 / at.zoom, y: at.y + dy * 40 / at.zoom}); };
+  const arrow = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+  const exposed = () => Number(state.exposure === "" ? viewer.exposure.toFixed(1) : state.exposure);
+  const actions = {
+    " ": () => change({left: rightKey(), right: leftKey()}), n: () => step(1), p: () => step(-1), m: () => cycle("mode", ["side", "flip", "split"]),
+    e: () => cycle("show", ["picture", "error"]), f: () => cycle("tone", ["colour", "false"]), "[": () => change({exposure: exposed() - 0.5}),
+    "]": () => change({exposure: exposed() + 0.5}), "+": () => zoomAbout(canvas, 1.5), "=": () => zoomAbout(canvas, 1.5), "-": () => zoomAbout(canvas, 1 / 1.5),
+    0: () => change({view: ""}), h: () => pan(-1, 0), l: () => pan(1, 0), k: () => pan(0, -1), j: () => pan(0, 1), r: toggleRegion, t: nextTheme,
+    c: () => { const found = leftKey() === REFERENCE ? {} : pictureOf(leftKey()); if (found.command) copy(found.command, document.activeElement); },
+    s: () => cycle("seed", (scene().cells[0]?.seeds ?? ["0"]).map((_, i) => String(i))), "?": () => { byId("help").open = !byId("help").open; },
+  };
+  if (arrow && event.altKey && state.mode === "split") change({split: Math.min(1, Math.max(0, Number(state.split) + arrow[0] * 0.02)).toFixed(3)});
+  else if (arrow && (document.activeElement === document.body || document.activeElement.tagName === "CANVAS")) movePixel(...arrow, event.shiftKey);
+  else if (/^[1-9]$/.test(event.key)) choosePicture(Number(event.key) - 1);
+  else if (actions[event.key]) actions[event.key]();
+  else return;
+  event.preventDefault();
+}
+
+function drawAll(names) {
+  const any = (...wanted) => !names || wanted.some((name) => names.has(name));
+  drawHead();
+  if (any("scene", "contest", "seed", "exposure", "crops")) drawStrip();
+  if (any("scene", "contest", "seed", "pictures", "left", "right", "mode")) drawChosen();
+  const maps = drawIf(any(...SIZES, "layer"), drawViewer);
+  if (!any(...SIZES) && any("view", "pixel", "region", "split")) paintPanes();
+  if (any("split")) byId("split-at").value = state.split;
+  if (any("scene", "metric", "cost", "hidden", "pictures")) drawCurves();
+  if (any("scene", "seed", "pixel", "region", "place", "cost", "hidden")) maps.then(drawProbe);
+  if (any("scene", "contest", "seed", "pictures", "left", "right", "formula", "against", "epsilon", "spread")) maps.then(drawSpread);
+  if (any("scene", "contest", "pictures", "left", "right")) maps.then(drawSpectrum);
+  if (any("rows", "sort", "filter", "columns")) drawTable();
+}
+
+function drawIf(wanted, draw) { return wanted ? draw() : Promise.resolve(); }
+
+readLink();
+buildControls();
+onChange(drawAll);
+window.addEventListener("hashchange", () => { readLink(); listeners.forEach((draw) => draw(new Set(Object.keys(defaults).filter((name) => name !== "scene")))); drawAll(null); });
+window.addEventListener("keydown", onKey);
+window.addEventListener("resize", paintPanes);
+byId("machines").replaceChildren(...page.machines.map((line, i) => make("li", {}, `${page.tables[i].folder}: ${line}`)));
+byId("words").replaceChildren(...[...page.errors, ...page.costs].map((name) => make("li", {}, page.words[name] ?? name, page.units[name] ? ` [${page.units[name]}]` : "")));
+byId("made").textContent = page.made;
+byId("warning").hidden = page.left_out === 0;
+byId("warning").textContent = `${page.left_out} pictures are left out: with them the pictures would be larger than ${page.megabytes} MB (--megabytes). All numbers are of all trials; maps over seeds are of the seeds that are here.`;
+for (const draw of listeners) if (draw !== drawAll) draw(new Set());
+drawAll(null);

@@ -1,0 +1,207 @@
+"""The page: what it shows as JSON, its pictures, and the one file of HTML, CSS and JavaScript around them."""
+import datetime
+import json
+import os
+import pathlib
+
+from report.intervals import student
+from report.records import FORMULAS
+from report_page import exr, pictures
+from report_page.scenes import COSTS, ERRORS, best_of
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+REFERENCES = (ROOT / "experiments" / "references", ROOT / "references")  # of the source, of an installation
+SCRIPTS = ("page", "pixels", "colours", "formulas", "statistics", "plots", "viewer", "strip", "probe", "curves", "table", "main")
+WORDS = {
+    "rmse": FORMULAS["rmse"], "relmse": FORMULAS["relmse"], "mean_ratio": FORMULAS["mean_ratio"],
+    "bias": "bias = mean(x − r) / mean(r)",
+    "variance": "variance: sample variance over the seeds (divided by seeds − 1), mean over pixels and channels",
+    "leak_energy": "leak_energy = mean of x where r is exactly 0, over mean(r)",
+    "mask_rmse": "mask_rmse = √ mean (x − r)² where r ≥ mean(r)",
+    "mask_relmse": "mask_relmse = mean (x − r)² / (r² + ε) where r ≥ mean(r),  ε = 0.01 mean(r)²",
+    "mask_mean_ratio": "mask_mean_ratio = mean(x) / mean(r) where r ≥ mean(r)",
+    "beauty_rmse": "beauty_rmse = √ mean (x − r)² of the whole picture",
+    "flip": "flip: mean HDR-FLIP of the reference's beauty beside the same with the trial's caustic",
+    "work_s": "CPU seconds of build and query together, without reading the scene",
+    "build_s": "CPU seconds of the method's precompute pass (photons or beams, and their trees)",
+    "query_s": "CPU seconds of the eye pass",
+    "total_s": "wall seconds of the whole trial",
+    "photons_stored": "photons in the map", "photons_emitted": "light paths started",
+    "map_bytes": "bytes of what the method built", "peak_rss_bytes": "most bytes of the process in memory",
+}
+UNITS = {"rmse": "W m⁻² sr⁻¹", "mask_rmse": "W m⁻² sr⁻¹", "beauty_rmse": "W m⁻² sr⁻¹", "variance": "(W m⁻² sr⁻¹)²",
+         "work_s": "CPU s", "build_s": "CPU s", "query_s": "CPU s", "total_s": "s", "map_bytes": "bytes",
+         "peak_rss_bytes": "bytes"}
+
+
+class Album:
+    """The pictures of the page, kept in the order of what is wanted first, until they are as large as the page may be."""
+
+    def __init__(self, most_bytes):
+        self.most_bytes, self.bytes, self.about, self.texts, self.left_out = most_bytes, 0, [], [], 0
+
+    def keep(self, values):
+        """The number of a picture, or the reason why it is not here."""
+        about, text = pictures.packed(values)
+        if self.bytes + len(text) > self.most_bytes:
+            self.left_out += 1
+            return {"hole": f"left out: with it the pictures are larger than {self.most_bytes / 1e6:g} MB (--megabytes)"}
+        self.bytes += len(text)
+        self.about.append(about)
+        self.texts.append(text)
+        return len(self.about) - 1
+
+
+def make(sweeps, scenes, references, megabytes):
+    """(the page's text, what to tell the user)."""
+    album = Album(int(megabytes * 1e6))
+    holes = []
+    shown = [SceneData(scene, album, references, holes) for scene in scenes]
+    for rank in range(max((len(cell.seeds()) for scene in scenes for cell in scene.cells), default=0)):
+        for scene in shown:
+            scene.keep_seed(rank)
+    data = {
+        "made": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "tables": [{"folder": os.path.basename(os.path.normpath(os.path.abspath(sweep.folder))), "header": sweep.header,
+                    "rows": [[row[name] for name in sweep.header] for row in sweep.rows]} for sweep in sweeps],
+        "scenes": [scene.data(sweeps) for scene in shown],
+        "pictures": album.about,
+        "errors": present(ERRORS, "errors", shown), "costs": present(COSTS, "costs", shown),
+        "words": WORDS, "units": UNITS, "machines": machines(sweeps),
+        "student": [student(degrees) for degrees in range(1, 101)], "left_out": album.left_out, "megabytes": megabytes,
+    }
+    notes = list(holes)
+    if album.left_out:
+        notes.append(f"{album.left_out} pictures left out to stay within {megabytes:g} MB (--megabytes)")
+    return assembled(data, album.texts), notes
+
+
+def present(columns, kind, shown):
+    """The columns that a cell of some scene has."""
+    return [name for name in columns if any(name in cell[kind] for scene in shown for cell in scene.cells)]
+
+
+class SceneData:
+    """One scene of the page: its reference's layers and its cells, as JSON."""
+
+    def __init__(self, scene, album, references, holes):
+        self.scene, self.album, self.holes = scene, album, holes
+        self.size, self.rest = None, None
+        self.reference = self.read_reference(references) if scene.reference else None
+        self.cells = [cell_data(cell) for cell in scene.cells]
+
+    def read_reference(self, folders):
+        method, _, key = self.scene.reference.partition(":")
+        about = {"method": method, "key": key}
+        own = [pathlib.Path(sweep) / "references" for sweep in
+               dict.fromkeys(cell.sweep.folder for cell in self.scene.cells)]
+        path = next((folder / f"{key}.exr" for folder in (*own, *folders) if (folder / f"{key}.exr").is_file()), None)
+        if path is None:
+            return {**about, "hole": self.hole(f"the reference {key}.exr is in none of the folders of references "
+                                               "(--references)")}
+        try:
+            layers, _ = pictures.read(path)
+        except exr.PictureError as error:
+            return {**about, "hole": self.hole(f"the reference {key}.exr: {error}")}
+        self.size, self.rest = layers["caustic"].shape[1:], self.album.keep(layers.pop("rest"))
+        return {**about, "layers": {name: self.album.keep(values) for name, values in layers.items()}}
+
+    def hole(self, reason):
+        self.holes.append(f"{self.scene.title()}: {reason}")
+        return reason
+
+    def keep_seed(self, rank):
+        """Takes up the pictures of each cell's seed of that rank."""
+        for cell, data in zip(self.scene.cells, self.cells):
+            if rank < len(cell.seeds()):
+                data["pictures"].append(self.picture(cell, cell.seeds()[rank]))
+
+    def picture(self, cell, seed):
+        row = next(row for row in cell.rows if row["seed"] == seed)
+        path = os.path.join(cell.sweep.folder, "trials", row["trial"], "image.exr")
+        found = {"seed": seed, "trial": row["trial"], "hash": row.get("picture_hash", "")}
+        try:
+            layers, command = pictures.read(path)
+            size = layers["caustic"].shape[1:]
+            if self.size is not None and size != self.size:
+                raise exr.PictureError(f"{size[1]} x {size[0]} pixels beside others of {self.size[1]} x {self.size[0]}")
+        except exr.PictureError as error:
+            return {**found, "hole": self.hole(f"the picture of {row['trial']}: {error}")}
+        self.size = size
+        if self.rest is None:
+            self.rest = self.album.keep(layers["rest"])
+        if command:
+            options = "".join(f" --{name} {row[name]}" for name in ("threads", "isa") if row.get(name))
+            found["command"] = f"{command}{options} -o {row['trial']}.exr"
+        kept = self.album.keep(layers["caustic"])
+        if isinstance(kept, dict):
+            return {**found, **kept}
+        found["caustic"] = kept
+        if "unreached" in layers:
+            found["unreached"] = self.album.keep(layers["unreached"])
+        return found
+
+    def data(self, sweeps):
+        cells = self.scene.cells
+        tied = best_of(self.scene.scored())
+        for cell, data in zip(cells, self.cells):
+            data["rows"] = [[sweeps.index(cell.sweep), cell.sweep.place[row["trial"]]] for row in cell.rows]
+            data["tied"] = cell in tied
+        return {
+            "name": self.scene.name, "title": self.scene.title(), "seeds": self.scene.seeds(),
+            "height": self.size[0] if self.size else 0, "width": self.size[1] if self.size else 0,
+            "reference": self.reference, "rest": self.rest, "cells": self.cells,
+            "contests": [{"seconds": seconds, "picks": {method: cells.index(cell) for method, cell in picks.items()},
+                          "best": [cells.index(cell) for cell in best]}
+                         for seconds, picks, best in self.scene.contests()],
+            "contest": self.scene.usual_contest(),
+            "not_done": [{"trial": row["trial"], "status": row["status"], "method": row["method"],
+                          "message": row.get("message", "")}
+                         for sweep in {id(cell.sweep): cell.sweep for cell in cells}.values()
+                         for row in sweep.left_out if row["scene"] == self.scene.name],
+        }
+
+
+def cell_data(cell):
+    errors = {name: cell.error(name) for name in ERRORS if cell.error(name)}
+    costs = {name: cell.cost(name) for name in COSTS if cell.cost(name) is not None}
+    return {"method": cell.method, "label": cell.label, "line": list(cell.line), "parameters": cell.parameters,
+            "work_parameter": cell.work_parameter, "seeds": cell.seeds(), "errors": errors, "costs": costs,
+            "references_error": reference_error(cell.rows), "pictures": []}
+
+
+def reference_error(rows):
+    """The standard error of a pixel of the reference [W m⁻² sr⁻¹], or None."""
+    row = rows[0]
+    return (float(row["reference_stderr"]) * float(row["reference_mean"])
+            if row.get("reference_stderr") and row.get("reference_mean") else None)
+
+
+def machines(sweeps):
+    """One line for each sweep: where, when and with what it was measured."""
+    lines = []
+    for sweep in sweeps:
+        done = [row for row in sweep.rows if row["status"] == "done"]
+        several = lambda name: ", ".join(dict.fromkeys(row[name] for row in done if row.get(name)))
+        loads = sorted(float(row["load_average"]) for row in done if row.get("load_average"))
+        words = [several("cpu") or "machine not recorded", f"{several('threads')} threads a trial", several("isa"),
+                 f"causticbench {several('code_version')}",
+                 f"load average {loads[0]:.1f} to {loads[-1]:.1f}" if loads else "",
+                 ", ".join(dict.fromkeys(row["finished"][:10] for row in done if row.get("finished")))]
+        lines.append("; ".join(word for word in words if word))
+    return lines
+
+
+def assembled(data, texts):
+    """The one file; `</` in JSON would end its element."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+    blobs = "\n".join(f'<script type="text/plain" id="p{i}">{blob}</script>' for i, blob in enumerate(texts))
+    read = lambda name: (HERE / name).read_text(encoding="utf-8")
+    script = "\n".join(read(f"{name}.js") for name in SCRIPTS)
+    parts = {"STYLE": read("style.css"), "DATA": f'<script type="application/json" id="data">{text}</script>\n{blobs}',
+             "SCRIPT": script}
+    page = read("template.html")
+    for name, part in parts.items():
+        page = page.replace(f"<!-- {name} -->", part)
+    return page

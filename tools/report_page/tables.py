@@ -1,0 +1,129 @@
+"""The tables of the page as CSV, with all digits, and as LaTeX (booktabs) for one or two columns of a paper."""
+import csv
+import io
+import math
+import re
+
+from report.record_tables import tex
+from report.records import RecordsError
+from report_page.scenes import COSTS, ERRORS
+
+KNOWN = ERRORS + COSTS
+USUAL = ("rmse", "work_s")
+NARROW = 2  # columns of numbers that fit beside the labels in one column of a paper
+TEX_UNITS = {"rmse": r"\,[$\mathrm{W\,m^{-2}\,sr^{-1}}$]", "work_s": r"\,[CPU s]", "build_s": r"\,[CPU s]",
+             "query_s": r"\,[CPU s]", "total_s": r"\,[s]", "map_bytes": r"\,[bytes]", "peak_rss_bytes": r"\,[bytes]"}
+
+
+def check_columns(names):
+    unknown = [name for name in names if name not in KNOWN]
+    if unknown:
+        raise RecordsError(f"--columns: unknown column {unknown[0]} (known: {', '.join(KNOWN)})")
+
+
+def all_of(scenes, columns):
+    """[(file name, text)]."""
+    made = [("cells.csv", cells_csv(scenes)), ("equal_time.csv", equal_time_csv(scenes)),
+            ("equal_time.tex", equal_time_tex(scenes))]
+    for scene in scenes:
+        name = re.sub(r"[^A-Za-z0-9.]+", "_", scene.title()).strip("_")
+        made.append((f"cells-{name}.tex", cells_tex(scene, columns)))
+    return made
+
+
+def csv_text(rows):
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
+def cells_csv(scenes):
+    names = list(dict.fromkeys(name for scene in scenes for cell in scene.cells for name in cell.parameters))
+    heads = [f"{name}{what}" for name in ERRORS for what in ("", "_half_interval_95")] + list(COSTS)
+    rows = [["scene", "method", *names, "seeds", *heads]]
+    for scene in scenes:
+        for cell in scene.cells:
+            errors = [number for name in ERRORS for number in cell.error(name) or (None, None)]
+            costs = [cell.cost(name) for name in COSTS]
+            rows.append([scene.title(), cell.method, *(cell.parameters.get(name, "") for name in names),
+                         len(cell.seeds()), *("" if number is None else repr(number) for number in errors + costs)])
+    return csv_text(rows)
+
+
+def contest_rows(scene):
+    """(CPU seconds allowed, method, its best cell until then, whether it is among the best) of the contest shown first."""
+    chosen = scene.usual_contest()
+    if chosen is None:
+        return []
+    seconds, picks, best = scene.contests()[chosen]
+    return [(seconds, method, picks[method], picks[method] in best)
+            for method in sorted(picks, key=lambda method: picks[method].error("rmse")[0])]
+
+
+def equal_time_csv(scenes):
+    rows = [["scene", "cpu_s_allowed", "method", "settings", "seeds", "rmse", "rmse_half_interval_95", "work_s", "build_s",
+             "query_s", "among_best"]]
+    for scene in scenes:
+        for seconds, method, cell, best in contest_rows(scene):
+            error, half = cell.error("rmse")
+            rows.append([scene.title(), repr(seconds), method, cell.label, len(cell.seeds()), repr(error),
+                         "" if half is None else repr(half), *(repr(cell.cost(name)) for name in COSTS[:3]),
+                         "yes" if best else ""])
+    return csv_text(rows)
+
+
+def number_tex(value, half=None):
+    """0.0532 ± 0.0004 to the digits that the interval leaves, else three digits."""
+    if value is None:
+        return "--"
+    if half and half < abs(value):
+        digits = max(0, 1 - math.floor(math.log10(half)))
+        return f"${value:.{digits}f} \\pm {half:.{digits}f}$"
+    mantissa, _, power = f"{value:.3g}".partition("e")
+    return f"${mantissa} \\cdot 10^{{{int(power)}}}$" if power else f"${mantissa}$"
+
+
+def head_tex(name):
+    return tex(name.removesuffix("_s")) + TEX_UNITS.get(name, "")
+
+
+def tabular(columns, head, rows, wide, caption):
+    kind = "table*" if wide else "table"
+    lines = [r"% Needs \usepackage{booktabs}", rf"\begin{{{kind}}}", r"\centering\footnotesize",
+             rf"\caption{{{caption}}}", rf"\begin{{tabular}}{{@{{}}{columns}@{{}}}}", r"\toprule",
+             " & ".join(head) + r" \\", r"\midrule", *(" & ".join(row) + r" \\" for row in rows), r"\bottomrule",
+             r"\end{tabular}", rf"\end{{{kind}}}"]
+    return "\n".join(lines) + "\n"
+
+
+def cells_tex(scene, columns):
+    rows = []
+    for cell in scene.cells:
+        fields = [number_tex(*(cell.error(name) or (None,))) if name in ERRORS else number_tex(cell.cost(name))
+                  for name in columns]
+        rows.append([tex(cell.label), *fields])
+    caption = (f"{tex(scene.title())}: mean over {scene.seeds()} seeds $\\pm$ half its 95\\,\\% interval (Student); times and "
+               "sizes are medians.")
+    return tabular("l" + "r" * len(columns), ["cell", *map(head_tex, columns)], rows, len(columns) > NARROW, caption)
+
+
+def equal_time_tex(scenes):
+    """Method x scene: rmse, with build and query apart."""
+    columns = {scene.title(): contest_rows(scene) for scene in scenes if contest_rows(scene)}
+    methods = list(dict.fromkeys(method for rows in columns.values() for _, method, _, _ in rows))
+    head = ["method", *(rf"{tex(title)} ({rows[0][0]:.2g}\,s)" for title, rows in columns.items())]
+    rows = []
+    for method in methods:
+        fields = []
+        for entries in columns.values():
+            own = next(((cell, best) for _, name, cell, best in entries if name == method), None)
+            if own is None:
+                fields.append("--")
+                continue
+            text = number_tex(*own[0].error("rmse"))
+            text = rf"\boldmath{{{text}}}" if own[1] else text
+            fields.append(rf"{text} ({own[0].cost('build_s'):.2g}\,+\,{own[0].cost('query_s'):.2g}\,s)")
+        rows.append([tex(method), *fields])
+    caption = ("RMSE of each method's best setting within the CPU time named at the scene, with that setting's CPU seconds of "
+               "build + query; bold: the best and all that the seeds do not tell from it, where there are five seeds.")
+    return tabular("l" + "l" * len(columns), head, rows, len(columns) > 1, caption)
