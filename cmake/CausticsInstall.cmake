@@ -1,5 +1,5 @@
-# cmake --install: the program, and the scenes, sweep files and kept references, which find each other by
-# their places. The libraries are not installed: their interfaces are not promised to stay.
+# cmake --install: the program, the scenes, sweep files and kept references, and the tool behind `report`,
+# which find each other by their places. The libraries are not installed: their interfaces are not promised to stay.
 
 include(GNUInstallDirs)
 
@@ -8,4 +8,8 @@ foreach(folder IN ITEMS scenes sweeps references)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/experiments/${folder}"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/causticbench")
 endforeach()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/report" "${PROJECT_SOURCE_DIR}/tools/report_page"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/causticbench/tools" PATTERN "__pycache__" EXCLUDE)
+install(PROGRAMS "${PROJECT_SOURCE_DIR}/tools/make_report.py"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/causticbench/tools")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

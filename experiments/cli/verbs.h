@@ -21,13 +21,15 @@ Verb add_compare(CLI::App& app);
 Verb add_info(CLI::App& app);
 Verb add_merge(CLI::App& app);
 Verb add_explain(CLI::App& app);
+Verb add_report(CLI::App& app);
 Verb add_verify(CLI::App& app);
 Verb add_export(CLI::App& app);
 Verb add_help(CLI::App& app);
 
 inline std::vector<Verb> add_verbs(CLI::App& app) {
-    return {add_render(app), add_probe(app),   add_sweep(app),  add_compare(app), add_info(app),
-            add_merge(app),  add_explain(app), add_verify(app), add_export(app),  add_help(app)};
+    return {add_render(app),  add_probe(app),  add_sweep(app),  add_compare(app),
+            add_info(app),    add_merge(app),  add_explain(app), add_report(app),
+            add_verify(app), add_export(app), add_help(app)};
 }
 
 }  // namespace caustics::experiments

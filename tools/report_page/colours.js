@@ -27,8 +27,8 @@ function place(value, range) {
   return Math.min(1, Math.max(0, (value - range.low) / (range.high - range.low)));
 }
 
-/** Paints a picture of radiance, or a map by false colours, at one pixel a pixel. */
-function painted(image, exposure, range) {
+/** Paints a picture of radiance, or a map by false colours, at one pixel a pixel; pixels that are not counted are greyed. */
+function painted(image, exposure, range, counted) {
   const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext("2d");
   const pixels = context.createImageData(image.width, image.height), size = image.width * image.height;
   const factor = 2 ** exposure;
@@ -39,6 +39,7 @@ function painted(image, exposure, range) {
       const shown = image.planes.length === 1 ? image.planes[0][i] : luminance(image, i);
       colour = Number.isNaN(shown) ? [128, 128, 128] : range.signed ? diverging(place(shown, range)) : sequential(place(shown, range));
     }
+    if (counted && !counted[i]) colour = colour.map((part) => Math.round(0.3 * part + ((i + Math.floor(i / image.width)) % 4 < 2 ? 96 : 70)));
     pixels.data.set([...colour, 255], 4 * i);
   }
   context.putImageData(pixels, 0, 0);

@@ -11,10 +11,7 @@ const KEYS = [
 ];
 
 function buildControls() {
-  byId("scene-choice").replaceChildren(choice("scene", "Scene", page.scenes.map((each, i) => [String(i), each.title])));
-  onChange((names) => { // a scene has its own pictures, places and ranges
-    if (names.has("scene")) change({pictures: "", left: "", right: "", contest: "", crops: "", pixel: "", region: "", view: "", spread: "", against: defaults.against, hidden: ""});
-  });
+  byId("scene-choice").replaceChildren(sceneChoice());
   byId("viewer-controls").append(
     choice("mode", "Mode", [["side", "side by side"], ["flip", "flip"], ["split", "split"]], "key m"),
     choice("show", "Show", Object.entries(SHOWN), "key e"),
@@ -46,6 +43,12 @@ function buildControls() {
 function saveSvg(id, name) {
   const svg = byId(id).querySelector("svg");
   if (svg) download(name, svgText(svg));
+}
+
+function sceneChoice() {
+  const select = make("select", {id: "choose-scene", onchange: () => chooseScene(select.value)}, page.scenes.map((each, i) => make("option", {value: i}, each.title)));
+  onChange(() => { select.value = state.scene; });
+  return make("label", {}, "Scene ", select);
 }
 
 /** A select whose options depend on the scene. */

@@ -53,6 +53,12 @@ function readLink() {
 
 function scene() { return page.scenes[Number(state.scene)]; }
 
+/** Another scene has its own pictures and places. */
+function chooseScene(i) {
+  const own = ["pictures", "left", "right", "contest", "crops", "pixel", "region", "view", "spread", "against", "hidden", "low", "high"];
+  change({...Object.fromEntries(own.map((name) => [name, defaults[name]])), scene: i});
+}
+
 /** A number as people read it: four digits. */
 function short(value, digits = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
@@ -132,13 +138,8 @@ async function copy(text, from) {
 }
 
 /** Signs of a method that do not need colour: a marker, and a dash for its lines. */
-const METHODS = [...new Set(page.scenes.flatMap((each) => each.cells.map((cell) => cell.method)))]
-  .sort((a, b) => rank(a) - rank(b));
-function rank(method) {
-  const known = ["photonmap", "beamtree", "causticpolygons", "illuminationmap", "lighttrace", "pathtrace", "none"];
-  const at = known.indexOf(method);
-  return at < 0 ? known.length : at;
-}
+const METHODS = page.methods; // the two that the project compares first, then the others
+function rank(method) { return METHODS.indexOf(method); }
 const MARKERS = ["●", "■", "▲", "◆", "▼", "✚", "✖"];
 function methodSign(method) { return MARKERS[METHODS.indexOf(method) % MARKERS.length]; }
 function methodColour(method) { return `var(--method-${METHODS.indexOf(method) % 7})`; }

@@ -7,7 +7,7 @@ import pathlib
 from report.intervals import student
 from report.records import FORMULAS
 from report_page import exr, pictures
-from report_page.scenes import COSTS, ERRORS, best_of
+from report_page.scenes import COSTS, ERRORS, best_of, rank
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -58,10 +58,11 @@ def make(sweeps, scenes, references, megabytes):
     album = Album(int(megabytes * 1e6))
     holes = []
     shown = [SceneData(scene, album, references, holes) for scene in scenes]
-    for rank in range(max((len(cell.seeds()) for scene in scenes for cell in scene.cells), default=0)):
+    for nth in range(max((len(cell.seeds()) for scene in scenes for cell in scene.cells), default=0)):
         for scene in shown:
-            scene.keep_seed(rank)
+            scene.keep_seed(nth)
     data = {
+        "methods": sorted({cell.method for scene in scenes for cell in scene.cells}, key=rank),
         "made": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         "tables": [{"folder": os.path.basename(os.path.normpath(os.path.abspath(sweep.folder))), "header": sweep.header,
                     "rows": [[row[name] for name in sweep.header] for row in sweep.rows]} for sweep in sweeps],
@@ -111,11 +112,11 @@ class SceneData:
         self.holes.append(f"{self.scene.title()}: {reason}")
         return reason
 
-    def keep_seed(self, rank):
-        """Takes up the pictures of each cell's seed of that rank."""
+    def keep_seed(self, nth):
+        """Takes up the pictures of each cell's nth seed."""
         for cell, data in zip(self.scene.cells, self.cells):
-            if rank < len(cell.seeds()):
-                data["pictures"].append(self.picture(cell, cell.seeds()[rank]))
+            if nth < len(cell.seeds()):
+                data["pictures"].append(self.picture(cell, cell.seeds()[nth]))
 
     def picture(self, cell, seed):
         row = next(row for row in cell.rows if row["seed"] == seed)
@@ -194,8 +195,8 @@ def machines(sweeps):
 
 
 def assembled(data, texts):
-    """The one file; `</` in JSON would end its element."""
-    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+    """The one file; a `<` in JSON could end its element."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     blobs = "\n".join(f'<script type="text/plain" id="p{i}">{blob}</script>' for i, blob in enumerate(texts))
     read = lambda name: (HERE / name).read_text(encoding="utf-8")
     script = "\n".join(read(f"{name}.js") for name in SCRIPTS)

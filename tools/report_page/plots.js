@@ -69,7 +69,7 @@ function plot(lines, options) {
   frame(svg, x, y, toX, toY, box, width, height, options);
   for (const level of options.levels ?? []) {
     svg.append(make("line", {x1: box.left, x2: width - box.right, y1: toY(level.y), y2: toY(level.y), class: "level"}),
-      make("text", {x: width - box.right, y: toY(level.y) - 4, "text-anchor": "end", class: "tick"}, level.name));
+      make("text", {x: width - box.right, y: toY(level.y) - 4, "text-anchor": "end", class: "level-name"}, level.name));
   }
   for (const line of lines) drawLine(svg, line, toX, toY, options);
   return svg;
@@ -117,7 +117,7 @@ function svgText(svg) {
   document.body.append(host);
   const clone = host.firstChild;
   clone.setAttribute("xmlns", "http://www.w3.org/2000/svg");
-  const kept = ["fill", "stroke", "stroke-width", "stroke-dasharray", "font-size", "font-family", "font-weight", "opacity"];
+  const kept = ["fill", "stroke", "stroke-width", "stroke-dasharray", "font-size", "font-family", "font-weight", "opacity", "paint-order"];
   for (const element of clone.querySelectorAll("*")) {
     const style = getComputedStyle(element);
     element.setAttribute("style", kept.map((name) => `${name}:${style.getPropertyValue(name)}`).join(";"));

@@ -29,13 +29,14 @@ async function drawProbe() {
   if (!region) { byId("probe-table").replaceChildren(); byId("probe-curve").replaceChildren(); return; }
   const reference = await referencePicture("caustic"), own = await referencePicture("stderr");
   const rows = [];
-  let middle = null, deviation = null;
+  let middle = null, deviation = null, pixelDeviation = null;
   if (reference) {
     middle = regionMean(reference, region);
     if (own) { // pixels of the reference are independent, so errors of a mean add as squares
       let squares = 0, count = 0;
       forRegion(own, region, (i) => { squares += own.planes[0][i] ** 2; ++count; });
       deviation = Math.sqrt(squares) / count;
+      pixelDeviation = Math.sqrt(squares / count);
     }
     rows.push(probeRow("reference", middle, `${short(meanOfChannels(middle))}${deviation === null ? "" : ` ± ${short(deviation, 2)}`}`, "", ""));
   }
@@ -49,7 +50,7 @@ async function drawProbe() {
   if (turn !== probe.turn) return;
   byId("probe-table").replaceChildren(make("table", {}, make("caption", {}, `${regionText(region)}, seed ${scene().cells[0]?.seeds[Number(state.seed)] ?? "–"}: mean over channels [W m⁻² sr⁻¹], x − r, and that in standard errors σ of the reference`),
     make("thead", {}, make("tr", {}, ["picture", "red", "green", "blue", "mean", "x − r", "in σ"].map((head) => make("th", {scope: "col"}, head)))), make("tbody", {}, rows)));
-  await drawConvergence(turn, region, reference, middle, deviation);
+  await drawConvergence(turn, region, reference, middle, deviation, pixelDeviation);
 }
 
 function signed(number, digits) { return (number > 0 ? "+" : "") + short(number, digits); }
@@ -60,7 +61,7 @@ function probeRow(name, colour, ...texts) {
 }
 
 /** The value, or the error, of a pixel or a region over the cost, a point for each cell: over its seeds. */
-async function drawConvergence(turn, region, reference, middle, deviation) {
+async function drawConvergence(turn, region, reference, middle, deviation, pixelDeviation) {
   const found = new Map(), counted = reference ? await countedPixels([]) : null;
   for (let i = 0; i < scene().cells.length; ++i) {
     const images = await seedsOf(i);
@@ -71,7 +72,7 @@ async function drawConvergence(turn, region, reference, middle, deviation) {
   if (turn !== probe.turn) return;
   const lines = linesOver(state.cost, (i) => found.get(i) ?? null);
   const levels = state.place === "value" ? (middle ? [{y: meanOfChannels(middle), name: `reference${deviation ? ` ± ${short(deviation, 2)}` : ""}`}] : [])
-    : deviation ? [{y: deviation, name: "standard error of the reference"}] : [];
+    : pixelDeviation ? [{y: pixelDeviation, name: "standard error of the reference's pixels"}] : [];
   byId("probe-curve").replaceChildren(plot(lines, {x: costLabel(state.cost), y: state.place === "value" ? "mean radiance there [W m⁻² sr⁻¹]" : "rmse there [W m⁻² sr⁻¹]",
     title: `${regionText(region)}: ${state.place === "value" ? "value" : "error"} over ${costWord(state.cost)}`, width: 620, height: 340, logX: true, logY: state.place !== "value",
     levels, pick: (point) => showCell(point.key), empty: "no picture, or no reference"}));

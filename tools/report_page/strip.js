@@ -10,21 +10,22 @@ function shownContest() {
 /** The picks of a contest: photon map and beam tree first, as the sentence this page exists for asks, then by error. */
 function orderedPicks(contest) {
   return Object.values(contest.picks).sort((a, b) => {
-    const first = (i) => Math.min(2, rank(scene().cells[i].method));
-    return first(a) - first(b) || scene().cells[a].errors.rmse[0] - scene().cells[b].errors.rmse[0];
+    const leading = (i) => { const at = ["photonmap", "beamtree"].indexOf(scene().cells[i].method); return at < 0 ? 2 : at; };
+    return leading(a) - leading(b) || scene().cells[a].errors.rmse[0] - scene().cells[b].errors.rmse[0];
   });
 }
 
 const INSETS = ["#ff9d00", "#00b7ff"];
 const strip = {turn: 0};
 
-/** The corners of the two insets: where the reference changes most, unless the state names others. */
-function insets(reference) {
+/** The corners of the two insets: where the reference changes most among counted pixels, unless the state names others. */
+function insets(reference, counted) {
   if (state.crops) return state.crops.split("_").map((corner) => corner.split(",").map(Number));
   const side = insetSide(), {width, height} = reference, found = [];
   const change = new Float64Array(width * height);
   for (let y = 0; y + 1 < height; ++y) for (let x = 0; x + 1 < width; ++x) {
     const i = y * width + x, here = luminance(reference, i);
+    if (!counted[i] || !counted[i + 1] || !counted[i + width]) continue;
     change[i] = Math.abs(luminance(reference, i + 1) - here) + Math.abs(luminance(reference, i + width) - here);
   }
   for (let n = 0; n < 2; ++n) {
@@ -46,18 +47,19 @@ async function drawStrip() {
   const turn = ++strip.turn, contest = shownContest();
   const keys = usualKeys().slice(0, 9);
   const images = new Map();
-  for (const key of keys) images.set(key, await causticOf(key));
+  for (const key of keys) images.set(key, await wholePicture(await causticOf(key)));
   if (turn !== strip.turn) return;
   const reference = images.get(REFERENCE), whole = [...images.values()].find((image) => !image.hole);
   const guide = reference && !reference.hole ? reference : whole;
   const exposure = state.exposure !== "" ? Number(state.exposure) : guide ? usualExposure(guide) : 0;
-  const corners = guide ? insets(guide) : [];
+  const corners = guide ? insets(guide, await countedPixels([])) : [];
   const figures = [];
   for (const key of keys) figures.push(await stripFigure(key, images.get(key), exposure, corners, contest));
   if (turn !== strip.turn) return;
   byId("strip").replaceChildren(...figures);
   byId("strip").dataset.ready = String(turn);
-  byId("contest-text").textContent = contestText(contest);
+  const left = (await countedPixels([])).filter((each) => !each).length;
+  byId("contest-text").textContent = contestText(contest) + (left ? ` Greyed: ${left} pixels that the reference does not reach; no number counts them.` : "");
 }
 
 function contestText(contest) {
@@ -80,7 +82,7 @@ async function stripFigure(key, image, exposure, corners, contest) {
   }
   const caption = make("figcaption", {}, lines.map((line) => make("div", {}, line)));
   if (!image || image.hole) return make("figure", {class: "tile"}, make("p", {class: "hole"}, `no picture: ${image?.hole}`), caption);
-  const paintedOnce = painted(image, exposure, null);
+  const paintedOnce = painted(image, exposure, null, await countedPixels([key]));
   const canvas = make("canvas", {width: image.width * 3, height: image.height * 3, role: "img", "aria-label": `caustic of ${labelOf(key)}`,
     title: "click: move the first inset here; with Shift: the second", onclick: (event) => moveInset(canvas, corners, event)});
   const context = canvas.getContext("2d");

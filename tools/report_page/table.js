@@ -9,11 +9,11 @@ function sortBy(name) {
 function cellRows() {
   const rows = [];
   page.scenes.forEach((where, s) => where.cells.forEach((cell, i) => {
-    const texts = {scene: where.title, method: `${methodSign(cell.method)} ${cell.method}`, settings: cell.label.replace(cell.method, "").replace(/^, /, ""), seeds: String(cell.seeds.length), "": cell.tied ? "★" : ""};
+    const texts = {scene: where.title, method: `${methodSign(cell.method)} ${cell.method}`, settings: cell.label.replace(cell.method, "").replace(/^, /, ""), seeds: String(cell.seeds.length), best: cell.tied ? "★" : ""};
     const sort = {...texts, method: cell.method, seeds: cell.seeds.length};
     for (const name of page.errors) { texts[name] = cell.errors[name] ? withInterval(cell.errors[name]) : ""; sort[name] = cell.errors[name]?.[0]; }
     for (const name of page.costs) { texts[name] = cell.costs[name] === undefined ? "" : short(cell.costs[name]); sort[name] = cell.costs[name]; }
-    rows.push({texts, sort, title: cell.label, run: () => { if (Number(state.scene) !== s) change({scene: s, pictures: "", left: "", right: "", contest: "", crops: "", pixel: "", region: ""}); showCell(i); }});
+    rows.push({texts, sort, title: cell.label, run: () => { if (Number(state.scene) !== s) chooseScene(s); showCell(i); }});
   }));
   return rows;
 }
@@ -28,7 +28,7 @@ function recordRows() {
   }));
 }
 
-const CELL_COLUMNS = ["", "scene", "method", "settings", "seeds"];
+const CELL_COLUMNS = ["best", "scene", "method", "settings", "seeds"];
 const RECORD_COLUMNS = ["trial", "status", "scene", "method", "seed", "rmse", "relmse", "total_s", "cpu_s", "picture_hash", "config_hash"];
 
 function allColumns() {
@@ -50,8 +50,8 @@ function drawTable() {
   const [column, way] = state.sort.split(":");
   if (column) rows.sort((a, b) => (way === "down" ? -1 : 1) * compare(a.sort[column], b.sort[column]));
   const head = columns.map((name) => make("th", {scope: "col", "aria-sort": column === name ? (way === "down" ? "descending" : "ascending") : "none"},
-    make("button", {type: "button", title: page.words[name] ?? name, onclick: () => sortBy(name)}, `${name === "" ? "best" : name}${page.units[name] ? ` [${page.units[name]}]` : ""}${column === name ? (way === "down" ? " ▼" : " ▲") : ""}`)));
-  const body = rows.map((row) => make("tr", {class: row.texts[""] === "★" ? "tied" : null}, columns.map((name) => make("td", {"data-column": name}, row.texts[name] ?? "")), make("td", {}, rowButtons(row))));
+    make("button", {type: "button", title: page.words[name] ?? name, onclick: () => sortBy(name)}, `${name}${page.units[name] ? ` [${page.units[name]}]` : ""}${column === name ? (way === "down" ? " ▼" : " ▲") : ""}`)));
+  const body = rows.map((row) => make("tr", {class: row.texts.best === "★" ? "tied" : null}, columns.map((name) => make("td", {"data-column": name}, row.texts[name] ?? "")), make("td", {}, rowButtons(row))));
   byId("table").replaceChildren(make("table", {}, make("thead", {}, make("tr", {}, head, make("th", {scope: "col"}, state.rows === "cells" ? "picture" : "command"))), make("tbody", {}, body)));
   byId("table-count").textContent = `${rows.length} of ${all} rows. ${state.rows === "cells" ? tieText() : "Every field as records.csv has it."}`;
   drawColumnChoice(columns);

@@ -6,7 +6,7 @@ import re
 
 from report.record_tables import tex
 from report.records import RecordsError
-from report_page.scenes import COSTS, ERRORS
+from report_page.scenes import COSTS, ERRORS, rank
 
 KNOWN = ERRORS + COSTS
 USUAL = ("rmse", "work_s")
@@ -57,7 +57,7 @@ def contest_rows(scene):
         return []
     seconds, picks, best = scene.contests()[chosen]
     return [(seconds, method, picks[method], picks[method] in best)
-            for method in sorted(picks, key=lambda method: picks[method].error("rmse")[0])]
+            for method in sorted(picks, key=rank)]
 
 
 def equal_time_csv(scenes):
@@ -72,14 +72,14 @@ def equal_time_csv(scenes):
     return csv_text(rows)
 
 
-def number_tex(value, half=None):
-    """0.0532 ± 0.0004 to the digits that the interval leaves, else three digits."""
+def number_tex(value, half=None, digits=3):
+    """0.0532 ± 0.0004 to the digits that the interval leaves, else so many digits."""
     if value is None:
         return "--"
     if half and half < abs(value):
-        digits = max(0, 1 - math.floor(math.log10(half)))
-        return f"${value:.{digits}f} \\pm {half:.{digits}f}$"
-    mantissa, _, power = f"{value:.3g}".partition("e")
+        places = max(0, 1 - math.floor(math.log10(half)))
+        return f"${value:.{places}f} \\pm {half:.{places}f}$"
+    mantissa, _, power = f"{value:.{digits}g}".partition("e")
     return f"${mantissa} \\cdot 10^{{{int(power)}}}$" if power else f"${mantissa}$"
 
 
@@ -110,7 +110,7 @@ def cells_tex(scene, columns):
 def equal_time_tex(scenes):
     """Method x scene: rmse, with build and query apart."""
     columns = {scene.title(): contest_rows(scene) for scene in scenes if contest_rows(scene)}
-    methods = list(dict.fromkeys(method for rows in columns.values() for _, method, _, _ in rows))
+    methods = sorted({method for rows in columns.values() for _, method, _, _ in rows}, key=rank)
     head = ["method", *(rf"{tex(title)} ({rows[0][0]:.2g}\,s)" for title, rows in columns.items())]
     rows = []
     for method in methods:
@@ -122,7 +122,8 @@ def equal_time_tex(scenes):
                 continue
             text = number_tex(*own[0].error("rmse"))
             text = rf"\boldmath{{{text}}}" if own[1] else text
-            fields.append(rf"{text} ({own[0].cost('build_s'):.2g}\,+\,{own[0].cost('query_s'):.2g}\,s)")
+            build, query = (number_tex(own[0].cost(name), digits=2) for name in ("build_s", "query_s"))
+            fields.append(rf"{text} ({build}\,+\,{query}\,s)")
         rows.append([tex(method), *fields])
     caption = ("RMSE of each method's best setting within the CPU time named at the scene, with that setting's CPU seconds of "
                "build + query; bold: the best and all that the seeds do not tell from it, where there are five seeds.")

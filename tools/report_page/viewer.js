@@ -34,10 +34,7 @@ async function shownImage(key) {
   if (state.show === "picture") {
     const caustic = await causticOf(key);
     if (caustic.hole || state.layer === "caustic") return caustic;
-    if (typeof scene().rest !== "number") return {hole: "the light that is not caustic is not in the page"};
-    const rest = await picture(scene().rest);
-    return {width: caustic.width, height: caustic.height, planes: [0, 1, 2].map((channel) =>
-      Float32Array.from({length: caustic.width * caustic.height}, (_, i) => value(caustic, channel, i) + value(rest, channel, i)))};
+    return wholePicture(caustic);
   }
   if (state.show === "error") return errorOf(key, state.against);
   if (key === REFERENCE) return state.show === "mean" ? reference ?? {hole: "no reference"} : {hole: "the reference has no seeds"};
@@ -49,6 +46,14 @@ async function shownImage(key) {
   const counted = await countedPixels([key]);
   if (state.show === "bias2") return biasSquare(found, reference, await referencePicture("stderr"), counted);
   return errorMap(found.mean, reference, "signed", 0, counted); // bias
+}
+
+/** A caustic with all other light of the reference's picture; alone, where that is not in the page. */
+async function wholePicture(caustic) {
+  if (caustic.hole || typeof scene().rest !== "number") return caustic;
+  const rest = await picture(scene().rest);
+  return {width: caustic.width, height: caustic.height, planes: [0, 1, 2].map((channel) =>
+    Float32Array.from({length: caustic.width * caustic.height}, (_, i) => value(caustic, channel, i) + value(rest, channel, i)))};
 }
 
 /** The error map of a key against another, by the chosen formula. */
@@ -85,7 +90,7 @@ async function drawViewer() {
   viewer.images = images;
   const whole = [...images.values()].filter((image) => !image.hole);
   chooseColours(whole, await causticOf(REFERENCE));
-  for (const image of whole) image.canvas = painted(image, viewer.exposure, viewer.range);
+  for (const [key, image] of images) if (!image.hole) image.canvas = painted(image, viewer.exposure, viewer.range, await countedPixels([key]));
   layPanes(state.mode === "side" ? wanted.map((key) => [key]) : state.mode === "split" ? [[leftKey(), rightKey()]] : [[leftKey()]]);
   byId("meaning").textContent = shownText();
   byId("scale").replaceChildren(...(viewer.range ? [scaleBar(viewer.range, 300, "")] : [exposureText()]));

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "experiments/cli/verbs.h"
+
+namespace caustics::experiments {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* python = "/usr/bin/python3";  // Debian's, which sees Debian's NumPy and SciPy
+
+struct ReportOptions {
+    std::vector<std::string> folders;
+    std::vector<std::string> values;  ///< "--option", "value", ...
+};
+
+/// The tool beside the program: in a folder above a build, or where it was installed.
+fs::path report_tool() {
+    std::error_code unknown;
+    const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+    for (fs::path place = program.parent_path(); place.has_relative_path();
+         place = place.parent_path())
+        for (const char* below : {"tools", "share/causticbench/tools"}) {
+            const fs::path tool = place / below / "make_report.py";
+            if (fs::is_regular_file(tool, unknown)) return tool;
+        }
+    throw InputError(fmt::format("report: tools/make_report.py is in no folder above {} (run it "
+                                 "from its source instead)",
+                                 program.string()));
+}
+
+/// Becomes the tool; returns only by throwing.
+int run_tool(const ReportOptions& options) {
+    std::vector<std::string> words = {python, report_tool().string()};
+    words.insert(words.end(), options.values.begin(), options.values.end());
+    words.emplace_back("--");
+    words.insert(words.end(), options.folders.begin(), options.folders.end());
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    execv(python, arguments.data());
+    throw InputError(fmt::format("{}: {} (report needs Debian's python3, python3-numpy and "
+                                 "python3-scipy)",
+                                 python, std::generic_category().message(errno)));
+}
+
+}  // namespace
+
+Verb add_report(CLI::App& app) {
+    auto options = std::make_shared<ReportOptions>();
+    CLI::App* const verb =
+        app.add_subcommand("report", "Make one HTML file of the records and pictures of sweeps");
+    verb->add_option("DIR", options->folders, "Folders of results")->required();
+    const auto handed_on = [&](const std::string& flags, const char* name, const char* what) {
+        return verb
+            ->add_option_function<std::string>(
+                flags,
+                [options, name](const std::string& value) {
+                    options->values.insert(options->values.end(), {name, value});
+                },
+                what)
+            ->type_name("");
+    };
+    handed_on("-o,--output", "--output", "FILE  The page to write: report.html")->required();
+    handed_on("--tables", "--tables", "FOLDER  Writes every table there, as CSV and LaTeX");
+    handed_on("--columns", "--columns", "NAMES  Columns of the LaTeX tables: rmse,work_s");
+    handed_on("--references", "--references", "FOLDER  Where references are kept as well");
+    handed_on("--megabytes", "--megabytes",
+              "NUMBER  Most that the pictures may take (default 30); the rest are left out by name");
+    verb->footer(
+        "The page opens without a network and holds all it shows. It is made by tools/make_report.py "
+        "with Debian's Python.\nExample:\n  causticbench report results/quickstart -o report.html");
+    return {verb, [options] { return run_tool(*options); }};
+}
+
+}  // namespace caustics::experiments

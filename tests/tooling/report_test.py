@@ -1,0 +1,293 @@
+"""tools/make_report.py from outside: what the page holds is what the records and pictures hold; holes; errors in one line.
+
+Exits with 77 where NumPy or SciPy is missing.
+"""
+import csv
+import json
+import pathlib
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "tests" / "tooling"))
+
+try:
+    import numpy
+    import scipy  # noqa: F401
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+import report_sweep as sweep
+from report_page import exr, pictures
+
+TOOL = ROOT / "tools" / "make_report.py"
+
+
+class Exr(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = pathlib.Path(folder.name) / "a.exr"
+
+    def test_every_kind_reads_back(self):
+        noise = numpy.random.default_rng(1)
+        for kind in ("<f4", "<f2", "<u4"):
+            for compression in (0, 2, 3):
+                for smooth in (True, False):
+                    values = numpy.arange(37 * 5).reshape(37, 5) if smooth else noise.integers(0, 2047, (37, 5))
+                    planes = {"R": values.astype(kind), "a.b": (values // 2).astype(kind)}
+                    with self.subTest(kind=kind, compression=compression, smooth=smooth):
+                        sweep.write_exr(self.path, planes, compression, kind, [("note", "ü")])
+                        found, texts = exr.read(self.path)
+                        self.assertEqual(sorted(found), sorted(planes))
+                        for name, plane in planes.items():
+                            self.assertTrue(numpy.array_equal(found[name], plane), name)
+                        self.assertEqual(texts["note"], "ü")
+
+    @unittest.skipUnless(shutil.which("oiiotool"), "needs oiiotool")
+    def test_a_kept_reference_reads_as_openimageio_reads_it(self):
+        path = ROOT / "experiments" / "references" / "16cfc114e245802d.exr"
+        text = subprocess.run(["oiiotool", "--dumpdata", path], capture_output=True, text=True, check=True).stdout
+        found, _ = exr.read(path)
+        names = ("R", "G", "B", "caustic.R", "caustic.G", "caustic.B", "stderr.Y", "unreached.Y")
+        lines = re.findall(r"Pixel \((\d+), (\d+)\): (.*)", text)
+        self.assertEqual((len(lines), set(found)), (128 * 96, set(names)))
+        for x, y, values in lines:
+            for name, value in zip(names, map(float, values.split())):
+                self.assertAlmostEqual(float(found[name][int(y), int(x)]), value, delta=1e-8 + 1e-6 * abs(value))
+
+    def test_damage_is_named(self):
+        sweep.write_exr(self.path, {"R": numpy.sin(numpy.arange(1200)).reshape(40, 30) // 0.1})
+        whole = self.path.read_bytes()
+        for what, data in (("no OpenEXR file", b"no picture"), ("no OpenEXR file", b""), ("cut short", whole[:len(whole) // 2]),
+                           ("cut short", whole[:60]), ("damaged", whole[:-100] + bytes(100)),
+                           ("tiles or several parts", whole[:5] + b"\x02" + whole[6:])):
+            with self.subTest(what, size=len(data)):
+                self.path.write_bytes(data)
+                with self.assertRaisesRegex(exr.PictureError, what):
+                    exr.read(self.path)
+
+    def test_every_cut_of_a_file_is_an_error_of_one_kind(self):
+        sweep.write_exr(self.path, {"R": numpy.ones((4, 4))})
+        whole = self.path.read_bytes()
+        for size in range(len(whole)):
+            self.path.write_bytes(whole[:size])
+            with self.assertRaises(exr.PictureError):
+                exr.read(self.path)
+
+
+class Packing(unittest.TestCase):
+    def test_values_are_the_halves_of_their_scaled_selves(self):
+        for largest in (1e-6, 0.7, 3e6):
+            values = (numpy.random.default_rng(2).random((3, 9, 7)) * largest).astype(numpy.float32)
+            about, text = pictures.packed(values)
+            halves = numpy.ldexp(values.astype(float), about["scale"]).astype(numpy.float16)
+            self.assertTrue(numpy.array_equal(pictures.unpacked(about, text), numpy.ldexp(halves.astype(float), -about["scale"])))
+            self.assertLess(float(halves.max()), 2 ** 14 + 1)
+            self.assertLess(numpy.abs(pictures.unpacked(about, text) - values).max() / largest, 2 ** -11)
+
+    def test_equal_channels_are_kept_once(self):
+        plane = numpy.ones((4, 5), numpy.float32)
+        self.assertEqual(pictures.packed(numpy.stack([plane] * 3))[0]["planes"], 1)
+        self.assertEqual(pictures.packed(numpy.stack([plane, plane, 2 * plane]))[0]["planes"], 3)
+
+
+class Page(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.output = self.folder / "report.html"
+        self.sweep = self.folder / "sweep"
+        self.rows = sweep.write_sweep(self.sweep)
+
+    def run_tool(self, *words):
+        return subprocess.run([sys.executable, TOOL, *words, "-o", self.output], capture_output=True, text=True, encoding="utf-8")
+
+    def page(self, *words):
+        done = self.run_tool(*(words or (self.sweep,)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.notes = done.stderr
+        self.text = self.output.read_text(encoding="utf-8")
+        return json.loads(re.search(r'id="data">(.*?)</script>', self.text, re.S)[1])
+
+    def refuses(self, *words, directory=None):
+        done = self.run_tool(directory or self.sweep)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertFalse(self.output.exists())
+
+    def picture(self, data, number):
+        text = re.search(rf'id="p{number}">([^<]*)<', self.text)[1]
+        return pictures.unpacked(data["pictures"][number], text)
+
+    def test_every_record_is_there_to_the_last_digit(self):
+        data = self.page()
+        with open(self.sweep / "records.csv", newline="", encoding="utf-8") as file:
+            header, *rows = csv.reader(file)
+        self.assertEqual((data["tables"][0]["header"], data["tables"][0]["rows"]), (header, rows))
+
+    def test_cells_have_means_and_students_intervals(self):
+        cell = next(cell for cell in self.page()["scenes"][0]["cells"] if cell["label"] == "photonmap, 1k photons")
+        own = [float(row["rmse"]) for row in self.rows if row["method"] == "photonmap" and row["photons"] == "1000"]
+        mean, half = cell["errors"]["rmse"]
+        self.assertEqual(mean, statistics.mean(own))
+        deviation = numpy.std(own, ddof=1)
+        self.assertAlmostEqual(half, 2.7764451 * deviation / 5 ** 0.5, places=9)
+        self.assertAlmostEqual(cell["costs"]["build_s"], 0.1)
+        self.assertAlmostEqual(cell["costs"]["query_s"], 0.203)
+        self.assertAlmostEqual(cell["costs"]["work_s"], 0.303)
+
+    def test_pixels_are_those_of_the_pictures(self):
+        data = self.page()
+        scene, = data["scenes"]
+        for cell in scene["cells"]:
+            step = {"1k": 1, "2k": 2, "4k": 4}[cell["label"].split()[1]] if cell["method"] == "photonmap" \
+                else int(cell["parameters"]["mesh_resolution"]) // 16
+            for picture in cell["pictures"]:
+                values, _ = sweep.picture_of(cell["method"], int(picture["seed"]), step)
+                found = self.picture(data, picture["caustic"])
+                scale = data["pictures"][picture["caustic"]]["scale"]
+                halves = numpy.ldexp(numpy.ldexp(values.astype(float), scale).astype(numpy.float16).astype(float), -scale)
+                self.assertTrue(numpy.array_equal(found, halves), cell["label"])
+        caustic, rest, unreached = sweep.reference_planes()
+        layers = scene["reference"]["layers"]
+        self.assertTrue(numpy.array_equal(self.picture(data, layers["unreached"])[0], unreached))
+        self.assertLess(numpy.abs(self.picture(data, layers["caustic"]) - caustic).max(), 1e-3)
+        self.assertLess(numpy.abs(self.picture(data, scene["rest"]) - rest).max(), 1e-6)
+        self.assertAlmostEqual(float(self.picture(data, layers["stderr"])[0, 0, 0]), 0.001, delta=1e-6)
+
+    def test_each_picture_has_its_command_and_hash(self):
+        picture = self.page()["scenes"][0]["cells"][0]["pictures"][0]
+        self.assertEqual(picture["command"], "causticbench render ring.json --method beamtree --seed 1 --threads 1 --isa plain "
+                         "-o ring-beamtree-1-s1.exr")
+        self.assertEqual(picture["hash"], self.rows[15]["picture_hash"])
+
+    def test_equal_time_takes_the_best_within_the_time(self):
+        scene, = self.page()["scenes"]
+        for contest in scene["contests"]:
+            for method, pick in contest["picks"].items():
+                within = [cell for cell in scene["cells"] if cell["method"] == method and cell["costs"]["work_s"] <= contest["seconds"]]
+                self.assertEqual(scene["cells"][pick]["errors"]["rmse"][0], min(cell["errors"]["rmse"][0] for cell in within))
+        chosen = scene["contests"][scene["contest"]]
+        self.assertEqual(set(chosen["picks"]), {"photonmap", "beamtree"})
+        self.assertEqual({scene["cells"][i]["label"] for i in chosen["best"]}, {"beamtree, mesh_resolution 32"})
+
+    def test_too_few_seeds_have_no_best(self):
+        shutil.rmtree(self.sweep)
+        sweep.write_sweep(self.sweep, seeds=(1, 2, 3))
+        scene, = self.page()["scenes"]
+        self.assertEqual([contest["best"] for contest in scene["contests"]], [[]] * len(scene["contests"]))
+        self.assertFalse(any(cell["tied"] for cell in scene["cells"]))
+
+    def test_the_file_asks_for_nothing(self):
+        self.page()
+        self.assertEqual(re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', self.text), [])
+        own = self.text.replace("http://www.w3.org/2000/svg", "")
+        self.assertEqual(re.findall("http(?!-equiv)|@import", own), [])
+        self.assertTrue("default-src 'none'" in self.text)
+
+    def test_names_cannot_end_the_script(self):
+        self.rows[0]["message"] = "</script><script>alert(1)</script>"
+        sweep.write_table(self.sweep, self.rows)
+        data = self.page()
+        self.assertIn("</script><script>alert(1)</script>", data["tables"][0]["rows"][0])
+        self.assertEqual(self.text.count("<script>"), 1)
+
+    def test_missing_and_damaged_pictures_are_holes(self):
+        trial = lambda i: self.sweep / "trials" / self.rows[i]["trial"] / "image.exr"
+        trial(0).unlink()
+        trial(1).write_bytes(trial(2).read_bytes()[:500])
+        small = numpy.ones((3, 2), numpy.float32)
+        sweep.write_exr(trial(3), sweep.planes_of(numpy.stack([small] * 3), small))
+        wrong = numpy.stack([small] * 3)
+        wrong[1, 2, 1] = numpy.nan
+        sweep.write_exr(trial(4), sweep.planes_of(wrong, small))
+        scene, = self.page()["scenes"]
+        holes = {picture["trial"]: picture["hole"] for cell in scene["cells"] for picture in cell["pictures"] if "hole" in picture}
+        for i, word in enumerate(("no such file", "damaged, or cut short", "2 x 3 pixels beside others of 16 x 12",
+                                  "not finite at pixel (1, 2)")):
+            position = i if i < 2 else i + 1
+            self.assertIn(word, holes[self.rows[position]["trial"]])
+            self.assertIn(self.rows[position]["trial"], self.notes)
+        self.assertEqual(len(holes), 4)
+        self.assertEqual(len(scene["cells"]), 5)
+
+    def test_a_missing_reference_is_a_hole(self):
+        (self.sweep / "references" / f"{sweep.KEY}.exr").unlink()
+        scene, = self.page()["scenes"]
+        self.assertIn("in none of the folders of references", scene["reference"]["hole"])
+        self.assertIn("pictures", scene["cells"][0])
+
+    def test_what_does_not_fit_is_left_out_loudly(self):
+        data = self.page(self.sweep, "--megabytes", "0.004")
+        self.assertGreater(data["left_out"], 0)
+        self.assertIn(f"{data['left_out']} pictures left out to stay within 0.004 MB", self.notes)
+        kept = [[isinstance(picture.get("caustic"), int) for picture in cell["pictures"]] for cell in data["scenes"][0]["cells"]]
+        self.assertTrue(all(cell[0] for cell in kept), "first seeds come first")
+        self.assertLess(sum(len(text) for text in re.findall(r'id="p\d+">([^<]*)<', self.text)), 4000)
+
+    def test_several_folders_are_one_page(self):
+        other = self.folder / "other"
+        sweep.write_sweep(other, scenes=("pool",))
+        data = self.page(self.sweep, other)
+        self.assertEqual([scene["name"] for scene in data["scenes"]], ["pool", "ring"])
+        self.assertEqual([table["folder"] for table in data["tables"]], ["sweep", "other"])
+
+    def test_trials_that_are_not_done_are_named_with_their_reason(self):
+        self.rows[0].update(status="unsupported", message="no way")
+        sweep.write_table(self.sweep, self.rows)
+        scene, = self.page()["scenes"]
+        self.assertEqual(scene["not_done"], [{"trial": self.rows[0]["trial"], "status": "unsupported", "method": "photonmap", "message": "no way"}])
+
+    def test_tables(self):
+        tables = self.folder / "tables"
+        self.page(self.sweep, "--tables", tables, "--columns", "rmse,work_s,bias")
+        self.assertEqual({path.name for path in tables.iterdir()}, {"cells.csv", "equal_time.csv", "equal_time.tex", "cells-ring.tex"})
+        with open(tables / "cells.csv", newline="", encoding="utf-8") as file:
+            cells = list(csv.DictReader(file))
+        own = [float(row["rmse"]) for row in self.rows if row["method"] == "photonmap" and row["photons"] == "4000"]
+        cell = next(cell for cell in cells if cell["photons"] == "4000")
+        self.assertEqual(cell["rmse"], repr(statistics.mean(own)))
+        text = (tables / "cells-ring.tex").read_text(encoding="utf-8")
+        self.assertIn(r"\toprule", text)
+        self.assertIn(r"\begin{table*}", text)
+        self.assertIn(r"mesh\_resolution 32", text)
+        rows = [line for line in text.splitlines() if line.endswith(r"\\")]
+        self.assertEqual({line.count(" & ") for line in rows}, {3})
+        self.assertRegex((tables / "equal_time.tex").read_text(encoding="utf-8"), r"beamtree & \\boldmath\{\$0\.\d+ \\pm")
+
+    def test_unknown_columns_and_sizes_are_refused(self):
+        done = self.run_tool(self.sweep, "--columns", "rmse,speed")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('unknown column speed (known: rmse, ', done.stderr)
+        self.assertEqual(self.run_tool(self.sweep, "--megabytes", "-1").returncode, 2)
+
+    def test_bad_folders_are_refused(self):
+        self.refuses("no such folder", directory=self.folder / "nowhere")
+        self.refuses("no records.csv", directory=self.folder)
+
+    def test_broken_records_are_refused(self):
+        self.rows[3]["rmse"] = "nan"
+        sweep.write_table(self.sweep, self.rows)
+        self.refuses("line 5", 'column rmse is "nan"')
+
+    def test_another_version_is_refused(self):
+        (self.sweep / "plan.json").write_text('{"version": 2}')
+        self.refuses("plan.json", "version 2", "reads version 1")
+        (self.sweep / "plan.json").write_text("{")
+        self.refuses("plan.json", "not a plan")
+
+
+if __name__ == "__main__":
+    unittest.main()
