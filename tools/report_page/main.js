@@ -150,7 +150,8 @@ function movePixel(dx, dy, far) {
 
 function choosePicture(i) {
   const key = shownKeys()[i];
-  if (key) change({left: key, right: key === rightKey() ? leftKey() : rightKey()});
+  if (!key || key === leftKey()) return;
+  change({left: key, right: state.mode === "flip" || key === rightKey() ? leftKey() : rightKey()});
 }
 
 function onKey(event) {
