@@ -32,9 +32,10 @@ fs::path report_tool() {
             const fs::path tool = place / below / "make_report.py";
             if (fs::is_regular_file(tool, unknown)) return tool;
         }
-    throw InputError(fmt::format("report: tools/make_report.py is in no folder above {} (run it "
-                                 "from its source instead)",
-                                 program.string()));
+    throw InputError(
+        fmt::format("report: tools/make_report.py is in no folder above {} (run it "
+                    "from its source instead)",
+                    program.string()));
 }
 
 /// Becomes the tool; returns only by throwing.
@@ -47,9 +48,10 @@ int run_tool(const ReportOptions& options) {
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     execv(python, arguments.data());
-    throw InputError(fmt::format("{}: {} (report needs Debian's python3, python3-numpy and "
-                                 "python3-scipy)",
-                                 python, std::generic_category().message(errno)));
+    throw InputError(
+        fmt::format("{}: {} (report needs Debian's python3, python3-numpy and "
+                    "python3-scipy)",
+                    python, std::generic_category().message(errno)));
 }
 
 }  // namespace
@@ -73,10 +75,12 @@ Verb add_report(CLI::App& app) {
     handed_on("--tables", "--tables", "FOLDER  Writes every table there, as CSV and LaTeX");
     handed_on("--columns", "--columns", "NAMES  Columns of the LaTeX tables: rmse,work_s");
     handed_on("--references", "--references", "FOLDER  Where references are kept as well");
-    handed_on("--megabytes", "--megabytes",
-              "NUMBER  Most that the pictures may take (default 30); the rest are left out by name");
+    handed_on(
+        "--megabytes", "--megabytes",
+        "NUMBER  Most that the pictures may take (default 30); the rest are left out by name");
     verb->footer(
-        "The page opens without a network and holds all it shows. It is made by tools/make_report.py "
+        "The page opens without a network and holds all it shows. It is made by "
+        "tools/make_report.py "
         "with Debian's Python.\nExample:\n  causticbench report results/quickstart -o report.html");
     return {verb, [options] { return run_tool(*options); }};
 }

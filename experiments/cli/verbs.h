@@ -27,8 +27,8 @@ Verb add_export(CLI::App& app);
 Verb add_help(CLI::App& app);
 
 inline std::vector<Verb> add_verbs(CLI::App& app) {
-    return {add_render(app),  add_probe(app),  add_sweep(app),  add_compare(app),
-            add_info(app),    add_merge(app),  add_explain(app), add_report(app),
+    return {add_render(app), add_probe(app),  add_sweep(app),   add_compare(app),
+            add_info(app),   add_merge(app),  add_explain(app), add_report(app),
             add_verify(app), add_export(app), add_help(app)};
 }
 

@@ -31,8 +31,7 @@ TEST(Program, TellsItsVersionAndHelp) {
     EXPECT_EQ(version.exit_code, 0);
     EXPECT_EQ(version.out.rfind("causticbench ", 0), 0U) << version.out;
     for (const std::string verb :
-         {"render", "probe", "sweep", "compare", "info", "verify", "export",
-          "report"}) {
+         {"render", "probe", "sweep", "compare", "info", "verify", "export", "report"}) {
         const ProgramResult help = causticbench({verb, "--help"});
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_NE(help.out.find("Example:\n  causticbench " + verb), std::string::npos) << help.out;
