@@ -26,11 +26,11 @@ async function decode(id) {
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   const size = about.width * about.height, count = size * about.planes, factor = 2 ** -about.scale;
+  const bits = (plane, i) => bytes[plane * size + i] | (bytes[plane * size + i + count] << 8);
   const planes = [];
-  for (let plane = 0; plane < about.planes; ++plane) {
-    const values = new Float32Array(size);
-    for (let i = 0, at = plane * size; i < size; ++i, ++at) values[i] = HALVES[bytes[at] | (bytes[at + count] << 8)] * factor;
-    planes.push(values);
+  for (let plane = 0; plane < about.planes; ++plane) { // of three, red and blue are steps from green
+    const step = about.planes === 3 && plane !== 1;
+    planes.push(Float32Array.from({length: size}, (_, i) => HALVES[(bits(plane, i) + (step ? bits(1, i) : 0)) & 65535] * factor));
   }
   return {width: about.width, height: about.height, planes};
 }
