@@ -19,7 +19,8 @@ from report import beam_report
 from report import beam_trials
 
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if __name__ == "__main__" else None
-COUNTED = ("photons_emitted", "photons_stored", "map_bytes", "camera_rays")
+IDENTITY = ("scene", "method", "seed", "photons", "nearest", "alpha", "mesh_resolution", "adaptive", "intensity", "emitted", "paths")
+COUNTED = ("photons_emitted", "photons_stored", "map_bytes", "camera_rays", "beams", "nodes")
 
 
 def timed(title):
@@ -94,18 +95,32 @@ class CommittedTables(unittest.TestCase):
             cell = self.beams(f"beam_watt_{name}", method="causticpolygons", **filters)
             self.assert_is_a_row("watt", beam_report.watt_row(axis, cell))
 
-    def test_the_quick_start(self):
-        with open(ROOT / "results" / "quickstart-2026-11" / "records.csv", newline="", encoding="utf-8") as file:
-            kept = list(csv.DictReader(file))
-        for name, filters in (("quickstart_ring", {"alpha": 1, "nearest": 20}), ("quickstart_ring_area", {}),
-                              ("quickstart_pool", {"scene": "pool", "mesh_resolution": 4}), ("quickstart_ball", {"nearest": 20})):
-            folder = self.sweep(name, photons=10000, seed=1, **filters)
+    def assert_trials_are_kept(self, kept, sweeps):
+        """One trial of each sweep is made again and counts what the kept table says; parameters tell its row."""
+        with open(ROOT / "results" / kept / "records.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        for name, filters in sweeps:
+            folder = self.sweep(name, seed=1, **filters)
             with open(pathlib.Path(folder, "records.csv"), newline="", encoding="utf-8") as file:
                 row, = csv.DictReader(file)
-            same = [old for old in kept if all(old[key] == row[key] for key in (
-                "scene", "method", "seed", "photons", "nearest", "alpha", "mesh_resolution"))]
+            same = [old for old in table if all(old[key] == row[key] for key in IDENTITY if key in old)]
             self.assertEqual(len(same), 1, name)
             self.assertEqual({key: row[key] for key in COUNTED}, {key: same[0][key] for key in COUNTED}, name)
+
+    def test_the_photon_maps_sweeps(self):
+        few = {"photons": 10000}
+        self.assert_trials_are_kept("photons-2026-11", (
+            ("photons_ring", {**few, "alpha": 1, "nearest": 20}), ("photons_ring_area", few),
+            ("photons_pool", {**few, "scene": "pool", "mesh_resolution": 4}), ("photons_ball", {**few, "nearest": 20})))
+
+    def test_the_quick_start(self):
+        self.assert_trials_are_kept("quickstart-2026-11", (
+            ("quickstart_ring", {"method": "photonmap", "photons": 10000, "nearest": 20}),
+            ("quickstart_ring", {"method": "beamtree", "mesh_resolution": 16, "intensity": "area"}),
+            ("quickstart_ring", {"method": "causticpolygons", "mesh_resolution": 16}),
+            ("quickstart_ring", {"method": "illuminationmap", "emitted": 100000}),
+            ("quickstart_pool", {"method": "beamtree", "intensity": "refined"}),
+            ("quickstart_ball", {"method": "lighttrace", "paths": 100000})))
 
 
 if __name__ == "__main__":

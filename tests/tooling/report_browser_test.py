@@ -190,7 +190,7 @@ class Report(unittest.TestCase):
         self.assertAlmostEqual(found["slope"], -0.5)
         self.assertAlmostEqual(found["error"], 0)
         # Errors of write_sweep fall as 1 / work of the sizes 1, 2, 4, nearly.
-        self.choose("choose-cost", "map_bytes")
+        self.choose("choose-curve-cost", "map_bytes")
         self.assertRegex(self.text("#curve-legend"), r"photonmap slope −1\.00 ± ")
         self.assertRegex(self.text("#curve-legend"), r"beamtree slope −1\.00")
 

@@ -24,8 +24,8 @@ function buildControls() {
     typed("low", "from", "least of the scale"), typed("high", "to", "greatest of the scale"));
   byId("split-at").addEventListener("input", () => change({split: byId("split-at").value}));
   byId("draw-region").addEventListener("click", () => toggleRegion());
-  byId("curve-controls").append(metricChoice(), costChoice(), button("SVG", () => saveSvg("curve", "curves.svg"), "keep the plot as SVG", {id: "save-curve"}));
-  byId("probe-controls").append(choice("place", "Convergence of the", [["error", "error"], ["value", "value"]]), button("SVG", () => saveSvg("probe-curve", "convergence.svg"), "keep the plot as SVG", {id: "save-probe"}));
+  byId("curve-controls").append(metricChoice(), costChoice("curve-cost"), button("SVG", () => saveSvg("curve", "curves.svg"), "keep the plot as SVG", {id: "save-curve"}));
+  byId("probe-controls").append(choice("place", "Convergence of the", [["error", "error"], ["value", "value"]]), costChoice("probe-cost"), button("SVG", () => saveSvg("probe-curve", "convergence.svg"), "keep the plot as SVG", {id: "save-probe"}));
   byId("spread-controls").append(button("SVG", () => saveSvg("spread", "distribution.svg"), "keep the plot as SVG"), button("clear", () => change({spread: ""}), "show no pixels of a bar"));
   byId("spectrum-controls").append(button("SVG", () => saveSvg("spectrum", "spectrum.svg"), "keep the plot as SVG"));
   byId("save-strip").addEventListener("click", () => download("strip.svg", stripSvg()));
@@ -52,8 +52,8 @@ function sceneChoice() {
 }
 
 /** A select whose options depend on the scene. */
-function changing(name, label, options, title) {
-  const select = make("select", {id: `choose-${name}`, onchange: () => change({[name]: select.value})});
+function changing(name, label, options, title, id = name) {
+  const select = make("select", {id: `choose-${id}`, onchange: () => change({[name]: select.value})});
   const fill = () => {
     select.replaceChildren(...options().map(([value, text]) => make("option", {value}, text)));
     select.value = state[name];
@@ -73,11 +73,11 @@ function againstChoice() {
 
 function metricChoice() { return choice("metric", "Error", page.errors.map((name) => [name, name])); }
 
-function costChoice() {
+function costChoice(id) {
   return changing("cost", "over", () => {
     const parameters = [...new Set(scene().cells.map((cell) => cell.work_parameter).filter(Boolean))];
     return [...page.costs.map((name) => [name, costWord(name)]), ...parameters.map((name) => [`parameter:${name}`, `${name} (parameter)`])];
-  }, "what the error is drawn over");
+  }, "what is drawn against", id);
 }
 
 function filterInput() {

@@ -53,7 +53,8 @@ function drawTable() {
     make("button", {type: "button", title: page.words[name] ?? name, onclick: () => sortBy(name)}, `${name}${page.units[name] ? ` [${page.units[name]}]` : ""}${column === name ? (way === "down" ? " ▼" : " ▲") : ""}`)));
   const body = rows.map((row) => make("tr", {class: row.texts.best === "★" ? "tied" : null}, columns.map((name) => make("td", {"data-column": name}, row.texts[name] ?? "")), make("td", {}, rowButtons(row))));
   byId("table").replaceChildren(make("table", {}, make("thead", {}, make("tr", {}, head, make("th", {scope: "col"}, state.rows === "cells" ? "picture" : "command"))), make("tbody", {}, body)));
-  byId("table-count").textContent = `${rows.length} of ${all} rows. ${state.rows === "cells" ? tieText() : "Every field as records.csv has it."}`;
+  byId("table-count").textContent = `${rows.length} of ${all} rows. ${state.rows === "cells" ? tieText() : "Every field as records.csv has it."} `
+    + columns.filter((name) => page.errors.includes(name)).map((name) => page.words[name]).join("; ");
   drawColumnChoice(columns);
 }
 

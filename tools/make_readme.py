@@ -1,0 +1,195 @@
+#!/usr/bin/python3
+"""Makes README's table and strip of the methods from records: results/quickstart-2026-11/records.csv and strip.csv.
+
+Without options it writes the table between README.md's two marks. --check only says whether the table there is what the
+records say. --strip sweeps experiments/sweeps/readme_strip.json into results/quickstart/strip (only what is missing; a
+quarter of an hour in all), keeps its records as strip.csv and draws results/pictures/duel.png: needs build/release or
+--bench, and Debian's python3-matplotlib. Exit codes: 0 done, 1 the table differs or the sweep failed, 2 bad input or usage.
+"""
+import argparse
+import pathlib
+import shutil
+import sys
+
+sys.dont_write_bytecode = True  # the source folder may be read-only
+
+from report.program import BENCH, ROOT, Program
+from report.records import RecordsError
+from report.report_files import report, write
+from report_page import scenes
+
+RECORDS = ROOT / "results" / "quickstart-2026-11"
+README = ROOT / "README.md"
+STRIP = ROOT / "results" / "quickstart" / "strip"
+PICTURE = ROOT / "results" / "pictures" / "duel.png"
+MARKS = ("<!-- duel: tools/make_readme.py -->\n", "<!-- end of duel -->\n")
+NAMES = {"ring": "mirror ring", "ball_area": "glass ball, area light", "pool": "folded pool"}
+SHOWN = ("photonmap", "beamtree")
+INSETS = ((0.32, 0.44), (0.62, 0.62))  # left upper corners, as shares of the picture
+SIDE = 0.16  # of an inset, as a share of the picture's width
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--check", action="store_true", help="change nothing")
+    parser.add_argument("--strip", action="store_true", help="draw the strip anew as well")
+    parser.add_argument("--bench", type=pathlib.Path, default=BENCH, metavar="PROGRAM",
+                        help="(default: build/release/bin/causticbench)")
+    return parser.parse_args()
+
+
+def number(value):
+    return f"{value:.3g}"
+
+
+def seconds(cell):
+    return f"{cell.cost('build_s'):.2g} + {cell.cost('query_s'):.2g} s"
+
+
+def field(scene, contest, method):
+    """What the table says of a method on a scene: its least error in the time of the contest, or why there is none."""
+    allowed, picks, best = contest
+    if method in picks:
+        error, half = picks[method].error("rmse")
+        text = number(error) + (f" ± {half:.1g}" if half else "")
+        return (f"**{text}**" if picks[method] in best else text) + f" ({seconds(picks[method])})"
+    own = [cell for cell in scene.scored() if cell.method == method]
+    if own:
+        return f"first after {number(min(cell.cost('work_s') for cell in own))} s"
+    return "does not serve it"
+
+
+def table(folder):
+    """The table in Markdown, and a line on where its times were measured."""
+    sweep = scenes.Sweep(str(folder))
+    found = [scene for scene in scenes.scenes_of([sweep]) if scene.usual_contest() is not None]
+    if not found:
+        raise RecordsError(f"{folder}: no scene on which two methods have errors and times")
+    found.sort(key=lambda scene: list(NAMES).index(scene.name) if scene.name in NAMES else len(NAMES))
+    contests = [scene.contests()[scene.usual_contest()] for scene in found]
+    methods = sorted({cell.method for scene in found for cell in scene.cells}, key=scenes.rank)
+    heads = [f"{NAMES.get(scene.name, scene.title())}, {number(contest[0])} s" for scene, contest in zip(found, contests)]
+    lines = ["| method | " + " | ".join(heads) + " |", "|---|" + "---|" * len(heads)]
+    for method in methods:
+        lines.append(f"| `{method}` | " + " | ".join(field(*pair, method) for pair in zip(found, contests)) + " |")
+    own = [scene.cells[0].rows[0] for scene in found]
+    lines.append("| standard error of the reference | " + " | ".join(
+        number(float(row["reference_stderr"]) * float(row["reference_mean"])) for row in own) + " |")
+    return "\n".join(lines) + "\n\n" + machine(sweep) + "\n"
+
+
+def machine(sweep):
+    done = [row for row in sweep.rows if row["status"] == "done"]
+    loads = sorted(float(row["load_average"]) for row in done)
+    several = lambda name: ", ".join(sorted({row[name] for row in done}))
+    seeds = len({row["seed"] for row in done})
+    return (f"{seeds} seeds; {several('cpu')}, {several('isa')}, {several('threads')} threads a trial, load average "
+            f"{loads[0]:.0f} to {loads[-1]:.0f} by other work, causticbench {several('code_version')}.")
+
+
+def with_block(text, block):
+    """README with the block between its marks."""
+    before, first, rest = text.partition(MARKS[0])
+    _, second, after = rest.partition(MARKS[1])
+    if not first or not second:
+        raise RecordsError(f"{README}: lacks the marks {MARKS[0].strip()} and {MARKS[1].strip()}")
+    return before + first + block + second + after
+
+
+def make_strip(bench):
+    Program("make_readme", bench).sweep("readme_strip", STRIP, True)
+    shutil.copyfile(STRIP / "records.csv", RECORDS / "strip.csv")
+    draw_strip()
+
+
+def strip_cells(scene):
+    """The photon map's and the beam tree's best cells in the time that the slower of their first cells takes."""
+    for _, picks, _ in scene.contests():
+        if all(method in picks for method in SHOWN):
+            return [picks[method] for method in SHOWN]
+    raise RecordsError(f"{STRIP}: lacks a picture of {' or '.join(SHOWN)}")
+
+
+def draw_strip():
+    """Reference, photon map and beam tree in one picture, with two insets each."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy
+    from report_page import pictures
+
+    scene, = scenes.scenes_of([scenes.Sweep(str(STRIP))])
+    key = scene.reference.partition(":")[2]
+    reference = STRIP / "references" / f"{key}.exr"
+    shown = [(pictures.read(reference)[0], "reference", "particle tracing, 300 million paths")]
+    for cell in strip_cells(scene):
+        layers, _ = pictures.read(STRIP / "trials" / cell.rows[0]["trial"] / "image.exr")
+        error, half = cell.error("rmse")
+        title = {"photonmap": "photon map", "beamtree": "beam tree"}[cell.method]
+        shown.append((layers, title, f"{cell.cost('work_s'):.2g} CPU s, rmse {number(error)} ± {half:.1g}"))
+    rest = shown[0][0]["rest"]
+    whole = [numpy.moveaxis(numpy.maximum(layers["caustic"] + rest, 0), 0, 2) for layers, _, _ in shown]
+    luminance = whole[0] @ numpy.array([0.2126, 0.7152, 0.0722])
+    white = float(numpy.percentile(luminance[luminance > 0], 99))
+    height, width = luminance.shape
+    side = round(SIDE * width)
+    colours = ("#ff9d00", "#00b7ff")
+    figure = plt.figure(figsize=(12, 12 / 3 * height / width + 2.45), dpi=100, facecolor="white")
+    grid = figure.add_gridspec(2, 6, left=0.004, right=0.996, top=0.995, bottom=0.085, wspace=0.03, hspace=0.03,
+                               height_ratios=[2 * height / width, 1])
+    for i, (picture, (_, title, words)) in enumerate(zip(whole, shown)):
+        tone = srgb(picture / white)
+        axes = figure.add_subplot(grid[0, 2 * i:2 * i + 2])
+        axes.imshow(tone, interpolation="nearest")
+        axes.set_axis_off()
+        for n, (x, y) in enumerate(INSETS):
+            left, top = round(x * width), round(y * height)
+            axes.add_patch(plt.Rectangle((left, top), side, side, fill=False, edgecolor=colours[n], linewidth=2, linestyle=("-", "--")[n]))
+            inset = figure.add_subplot(grid[1, 2 * i + n])
+            inset.imshow(tone[top:top + side, left:left + side], interpolation="nearest")
+            inset.set_xticks([]), inset.set_yticks([])
+            for edge in inset.spines.values():
+                edge.set(edgecolor=colours[n], linewidth=2.5, linestyle=("-", "--")[n])
+        figure.text((i + 0.02) / 3 if i else 0.006, 0.045, title, weight="bold", size=13)
+        figure.text((i + 0.02) / 3 if i else 0.006, 0.012, words, size=11)
+    PICTURE.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(PICTURE, metadata={"Software": ""})
+
+
+def srgb(linear):
+    import numpy
+
+    x = numpy.clip(linear, 0, 1)
+    return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
+def main():
+    chosen = arguments()
+    differs = []
+
+    def make():
+        if chosen.strip:
+            make_strip(chosen.bench)
+        text = README.read_text(encoding="utf-8")
+        wanted = with_block(text, table(RECORDS))
+        if text == wanted:
+            return
+        differs.append(True)
+        if not chosen.check:
+            write(README, wanted)
+
+    try:
+        code = report("make_readme", "the table and the strip", README, make)
+    except ChildProcessError as error:
+        print(f"make_readme: {error}", file=sys.stderr)
+        return 1
+    if code == 0 and chosen.check and differs:
+        print("make_readme: README.md's table is not what results/quickstart-2026-11/records.csv says (run tools/make_readme.py)",
+              file=sys.stderr)
+        return 1
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
