@@ -7,6 +7,7 @@ quarter of an hour in all), keeps its records as strip.csv and draws results/pic
 --bench, and Debian's python3-matplotlib. Exit codes: 0 done, 1 the table differs or the sweep failed, 2 bad input or usage.
 """
 import argparse
+import json
 import pathlib
 import shutil
 import sys
@@ -117,12 +118,13 @@ def draw_strip():
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy
-    from report_page import pictures
+    from report_page import exr, pictures
 
     scene, = scenes.scenes_of([scenes.Sweep(str(STRIP))])
     key = scene.reference.partition(":")[2]
     reference = STRIP / "references" / f"{key}.exr"
-    shown = [(pictures.read(reference)[0], "reference", "particle tracing, 300 million paths")]
+    paths = json.loads(exr.read(reference)[1]["causticbench.parameters"])["paths"]
+    shown = [(pictures.read(reference)[0], "reference", f"particle tracing, {paths / 1e6:g} million paths")]
     for cell in strip_cells(scene):
         layers, _ = pictures.read(STRIP / "trials" / cell.rows[0]["trial"] / "image.exr")
         error, half = cell.error("rmse")

@@ -97,7 +97,7 @@ function nextTheme() { change({theme: THEMES[(THEMES.indexOf(state.theme) + 1) %
 
 function drawHead() {
   if (state.theme) document.documentElement.dataset.theme = state.theme; else delete document.documentElement.dataset.theme;
-  byId("theme").textContent = `Theme: ${state.theme || "as the system"}`;
+  byId("theme").textContent = `Theme: ${state.theme || "system"}`;
   const contests = scene().contests, budget = byId("budget");
   byId("budget-line").hidden = contests.length === 0;
   if (contests.length) {

@@ -64,6 +64,10 @@ class Cell:
         self.reference = self.rows[0].get("reference", "")
         self.label, self.line = cell.method, (cell.method,)
 
+    def settings(self):
+        """Its label without the method; a dash where nothing tells the method's cells apart."""
+        return self.label.removeprefix(self.method).removeprefix(", ") or "–"
+
     def values(self, column):
         """The column's numbers, a row each; [] where it does not apply to all rows. Build, query and their sum are CPU
         seconds."""

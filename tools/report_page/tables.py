@@ -76,8 +76,8 @@ def number_tex(value, half=None, digits=3):
     """0.0532 ± 0.0004 to the digits that the interval leaves, else so many digits."""
     if value is None:
         return "--"
-    if half and half < abs(value):
-        places = max(0, 1 - math.floor(math.log10(half)))
+    if half:
+        places = min(6, max(0, 1 - math.floor(math.log10(half))))
         return f"${value:.{places}f} \\pm {half:.{places}f}$"
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
     return f"${mantissa} \\cdot 10^{{{int(power)}}}$" if power else f"${mantissa}$"
@@ -98,13 +98,15 @@ def tabular(columns, head, rows, wide, caption):
 
 def cells_tex(scene, columns):
     rows = []
-    for cell in scene.cells:
-        fields = [number_tex(*(cell.error(name) or (None,))) if name in ERRORS else number_tex(cell.cost(name))
-                  for name in columns]
-        rows.append([tex(cell.label), *fields])
+    for method in sorted({cell.method for cell in scene.cells}, key=rank):
+        rows.append([rf"\multicolumn{{{len(columns) + 1}}}{{@{{}}l}}{{\textit{{{tex(method)}}}}}"])
+        for cell in (cell for cell in scene.cells if cell.method == method):
+            fields = [number_tex(*(cell.error(name) or (None,))) if name in ERRORS else number_tex(cell.cost(name))
+                      for name in columns]
+            rows.append([rf"\quad {tex(cell.settings())}", *fields])
     caption = (f"{tex(scene.title())}: mean over {scene.seeds()} seeds $\\pm$ half its 95\\,\\% interval (Student); times and "
                "sizes are medians.")
-    return tabular("l" + "r" * len(columns), ["cell", *map(head_tex, columns)], rows, len(columns) > NARROW, caption)
+    return tabular("l" + "r" * len(columns), ["settings", *map(head_tex, columns)], rows, len(columns) > NARROW, caption)
 
 
 def equal_time_tex(scenes):
