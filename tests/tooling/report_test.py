@@ -262,7 +262,7 @@ class Page(unittest.TestCase):
         text = (tables / "cells-ring.tex").read_text(encoding="utf-8")
         self.assertIn(r"\toprule", text)
         self.assertIn(r"\begin{table*}", text)
-        self.assertIn(r"mesh\_resolution 32", text)
+        self.assertIn("mesh 32", text)
         rows = [line for line in text.splitlines() if line.endswith(r"\\") and "multicolumn" not in line]
         self.assertEqual({line.count(" & ") for line in rows}, {3})
         self.assertRegex((tables / "equal_time.tex").read_text(encoding="utf-8"), r"beamtree & \\boldmath\{\$0\.\d+ \\pm")

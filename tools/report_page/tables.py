@@ -11,8 +11,8 @@ from report_page.scenes import COSTS, ERRORS, rank
 KNOWN = ERRORS + COSTS
 USUAL = ("rmse", "work_s")
 NARROW = 2  # columns of numbers that fit beside the labels in one column of a paper
-TEX_UNITS = {"rmse": r"\,[$\mathrm{W\,m^{-2}\,sr^{-1}}$]", "work_s": r"\,[CPU s]", "build_s": r"\,[CPU s]",
-             "query_s": r"\,[CPU s]", "total_s": r"\,[s]", "map_bytes": r"\,[bytes]", "peak_rss_bytes": r"\,[bytes]"}
+TEX_UNITS = {"rmse": r"$\mathrm{W\,m^{-2}\,sr^{-1}}$", "work_s": "CPU seconds", "build_s": "CPU seconds", "query_s": "CPU seconds",
+             "total_s": "seconds", "map_bytes": "bytes", "peak_rss_bytes": "bytes"}
 
 
 def check_columns(names):
@@ -84,12 +84,22 @@ def number_tex(value, half=None, digits=3):
 
 
 def head_tex(name):
-    return tex(name.removesuffix("_s")) + TEX_UNITS.get(name, "")
+    return tex(name.removesuffix("_s"))
+
+
+def settings_tex(cell):
+    """A cell's settings in the short words of papers."""
+    return re.sub(r"nearest (\d+)", r"$N = \1$", tex(cell.settings().replace("mesh_resolution", "mesh")))
+
+
+def units_tex(columns):
+    """Units are in the caption, since a column of a paper is narrow."""
+    return "; ".join(f"{head_tex(name)} in {TEX_UNITS[name]}" for name in columns if name in TEX_UNITS)
 
 
 def tabular(columns, head, rows, wide, caption):
     kind = "table*" if wide else "table"
-    lines = [r"% Needs \usepackage{booktabs}", rf"\begin{{{kind}}}", r"\centering\footnotesize",
+    lines = [r"% Needs \usepackage{booktabs}", rf"\begin{{{kind}}}", r"\centering\footnotesize\setlength{\tabcolsep}{3pt}",
              rf"\caption{{{caption}}}", rf"\begin{{tabular}}{{@{{}}{columns}@{{}}}}", r"\toprule",
              " & ".join(head) + r" \\", r"\midrule", *(" & ".join(row) + r" \\" for row in rows), r"\bottomrule",
              r"\end{tabular}", rf"\end{{{kind}}}"]
@@ -103,9 +113,9 @@ def cells_tex(scene, columns):
         for cell in (cell for cell in scene.cells if cell.method == method):
             fields = [number_tex(*(cell.error(name) or (None,))) if name in ERRORS else number_tex(cell.cost(name))
                       for name in columns]
-            rows.append([rf"\quad {tex(cell.settings())}", *fields])
+            rows.append([rf"\, {settings_tex(cell)}", *fields])
     caption = (f"{tex(scene.title())}: mean over {scene.seeds()} seeds $\\pm$ half its 95\\,\\% interval (Student); times and "
-               "sizes are medians.")
+               f"sizes are medians. {units_tex(columns)}.")
     return tabular("l" + "r" * len(columns), ["settings", *map(head_tex, columns)], rows, len(columns) > NARROW, caption)
 
 
