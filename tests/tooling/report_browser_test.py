@@ -206,7 +206,7 @@ class Report(unittest.TestCase):
     def test_hovering_a_point_tells_its_numbers(self):
         place = self.browser.place_of("#curve .spot")
         self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=place[0], y=place[1])
-        self.assertRegex(self.text("#status"), r"photonmap, 1k photons: 0\.02\d+ \(95 %: .* to .*\) at 0\.\d+ work_s \[CPU s\]")
+        self.assertRegex(self.text("#status"), r"photonmap, 1k photons: 0\.02\d+ \(95 %: .* to .*\) at 0\.\d+ CPU time \[CPU s\]")
         self.click("#curve .spot")
         self.assertIn("2", self.state("pictures").split("."))
 

@@ -32,7 +32,7 @@ function linesOver(cost, valueOf) {
   }).filter(Boolean).sort((a, b) => a.x - b.x)})).filter((line) => line.points.length);
 }
 
-function costWord(cost) { return cost.startsWith("parameter:") ? cost.slice(10) : `${cost} [${page.units[cost] ?? "1"}]`; }
+function costWord(cost) { return cost.startsWith("parameter:") ? cost.slice(10) : `${page.names[cost]} [${page.units[cost] ?? "1"}]`; }
 function costLabel(cost) {
   if (cost.startsWith("parameter:")) return cost.slice(10);
   return `${page.words[cost] ?? cost}`;

@@ -30,6 +30,9 @@ WORDS = {
     "photons_stored": "photons in the map", "photons_emitted": "light paths started",
     "map_bytes": "bytes of what the method built", "peak_rss_bytes": "most bytes of the process in memory",
 }
+NAMES = {"work_s": "CPU time", "build_s": "build time", "query_s": "query time", "total_s": "wall time",
+         "photons_stored": "stored photons", "photons_emitted": "light paths", "map_bytes": "size of what was built",
+         "peak_rss_bytes": "peak memory"}
 UNITS = {"rmse": "W m⁻² sr⁻¹", "mask_rmse": "W m⁻² sr⁻¹", "beauty_rmse": "W m⁻² sr⁻¹", "variance": "(W m⁻² sr⁻¹)²",
          "work_s": "CPU s", "build_s": "CPU s", "query_s": "CPU s", "total_s": "s", "map_bytes": "bytes",
          "peak_rss_bytes": "bytes"}
@@ -69,7 +72,7 @@ def make(sweeps, scenes, references, megabytes):
         "scenes": [scene.data(sweeps) for scene in shown],
         "pictures": album.about,
         "errors": present(ERRORS, "errors", shown), "costs": present(COSTS, "costs", shown),
-        "words": WORDS, "units": UNITS, "machines": machines(sweeps),
+        "words": WORDS, "names": NAMES, "units": UNITS, "machines": machines(sweeps),
         "student": [student(degrees) for degrees in range(1, 101)], "left_out": album.left_out, "megabytes": megabytes,
     }
     notes = list(holes)

@@ -83,7 +83,8 @@ async function stripFigure(key, image, exposure, corners, contest) {
   const caption = make("figcaption", {}, lines.map((line) => make("div", {}, line)));
   if (!image || image.hole) return make("figure", {class: "tile"}, make("p", {class: "hole"}, `no picture: ${image?.hole}`), caption);
   const paintedOnce = painted(image, exposure, null, await countedPixels([key]));
-  const canvas = make("canvas", {width: image.width * 3, height: image.height * 3, role: "img", "aria-label": `caustic of ${labelOf(key)}`,
+  const scale = Math.max(1, Math.round(400 / image.width));
+  const canvas = make("canvas", {width: image.width * scale, height: image.height * scale, role: "img", "aria-label": `caustic of ${labelOf(key)}`,
     title: "click: move the first inset here; with Shift: the second", onclick: (event) => moveInset(canvas, corners, event)});
   const context = canvas.getContext("2d");
   context.imageSmoothingEnabled = false;
@@ -93,7 +94,7 @@ async function stripFigure(key, image, exposure, corners, contest) {
     context.strokeStyle = INSETS[n];
     context.lineWidth = 3;
     context.setLineDash(n ? [9, 4] : []);
-    context.strokeRect(3 * x, 3 * y, 3 * side, 3 * side);
+    context.strokeRect(scale * x, scale * y, scale * side, scale * side);
     const crop = make("canvas", {width: side * 8, height: side * 8, class: `crop crop-${n}`, role: "img", "aria-label": `inset ${n + 1} of ${labelOf(key)}`});
     const own = crop.getContext("2d");
     own.imageSmoothingEnabled = false;

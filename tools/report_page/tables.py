@@ -113,7 +113,7 @@ def cells_tex(scene, columns):
         for cell in (cell for cell in scene.cells if cell.method == method):
             fields = [number_tex(*(cell.error(name) or (None,))) if name in ERRORS else number_tex(cell.cost(name))
                       for name in columns]
-            rows.append([rf"\,{settings_tex(cell)}", *fields])
+            rows.append([settings_tex(cell), *fields])
     caption = (f"{tex(scene.title())}: mean over {scene.seeds()} seeds $\\pm$ half its 95\\,\\% interval (Student); times and "
                f"sizes are medians. {units_tex(columns)}.")
     return tabular("l" + "r" * len(columns), ["settings", *map(head_tex, columns)], rows, len(columns) > NARROW, caption)
