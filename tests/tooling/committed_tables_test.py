@@ -103,7 +103,7 @@ class CommittedTables(unittest.TestCase):
             folder = self.sweep(name, seed=1, **filters)
             with open(pathlib.Path(folder, "records.csv"), newline="", encoding="utf-8") as file:
                 row, = csv.DictReader(file)
-            same = [old for old in table if all(old[key] == row[key] for key in IDENTITY if key in old)]
+            same = [old for old in table if all(old.get(key, "") == row.get(key, "") for key in IDENTITY)]
             self.assertEqual(len(same), 1, name)
             self.assertEqual({key: row[key] for key in COUNTED}, {key: same[0][key] for key in COUNTED}, name)
 

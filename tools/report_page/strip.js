@@ -64,7 +64,8 @@ async function drawStrip() {
 
 function contestText(contest) {
   if (!contest) return "No two methods have errors and times here, so nothing is held against equal time.";
-  const seeds = scene().seeds, time = `Each method's least rmse within ${short(contest.seconds, 3)} CPU seconds of build and query.`;
+  const seeds = scene().seeds;
+  const time = `Each method's least rmse within ${short(contest.seconds, 3)} CPU seconds of build and query; ${page.words.rmse} of the caustic layer.`;
   return seeds < 5 ? `${time} With ${seeds} seed${seeds > 1 ? "s" : ""} (five are asked for) none is called the best.`
     : `${time} ★: the best, and all that the seeds do not tell from it (Welch's t of the logarithms, 95 %).`;
 }
