@@ -183,6 +183,15 @@ class Page(unittest.TestCase):
         self.assertEqual(set(chosen["picks"]), {"photonmap", "beamtree"})
         self.assertEqual({scene["cells"][i]["label"] for i in chosen["best"]}, {"beamtree, mesh_resolution 32"})
 
+    def test_flip_is_there_where_its_column_is_filled(self):
+        self.assertNotIn("flip", self.page()["errors"])
+        for row in self.rows:
+            row["flip"] = "0.125"
+        sweep.write_table(self.sweep, self.rows)
+        data = self.page()
+        self.assertIn("flip", data["errors"])
+        self.assertEqual(data["scenes"][0]["cells"][0]["errors"]["flip"], [0.125, 0.0])
+
     def test_too_few_seeds_have_no_best(self):
         shutil.rmtree(self.sweep)
         sweep.write_sweep(self.sweep, seeds=(1, 2, 3))
