@@ -3,7 +3,7 @@
 
 Usage: causticbench report DIR [DIR...] -o report.html, or tools/make_report.py with the same words. DIR is the folder of a
 sweep; its references are looked for in DIR/references, then in the folder of --references. A missing or damaged picture
-is a hole in the page with its reason. Exit codes: 0 done, 2 bad input or usage.
+is a hole in the page with its reason. The same records and pictures give the same bytes. Exit codes: 0 done, 2 bad input or usage.
 """
 import argparse
 import os

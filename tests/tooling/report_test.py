@@ -137,6 +137,12 @@ class Page(unittest.TestCase):
             header, *rows = csv.reader(file)
         self.assertEqual((data["tables"][0]["header"], data["tables"][0]["rows"]), (header, rows))
 
+    def test_the_same_folder_gives_the_same_bytes(self):
+        self.page()
+        first = self.text
+        self.page()
+        self.assertTrue(first == self.text)
+
     def test_cells_have_means_and_students_intervals(self):
         cell = next(cell for cell in self.page()["scenes"][0]["cells"] if cell["label"] == "photonmap, 1k photons")
         own = [float(row["rmse"]) for row in self.rows if row["method"] == "photonmap" and row["photons"] == "1000"]

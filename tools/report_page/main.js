@@ -126,7 +126,7 @@ function drawChosen() {
   const chips = keys.map((key, i) => make("li", {class: "chip", "data-key": key},
     button(`${i + 1} ${key === REFERENCE ? "" : methodSign(scene().cells[Number(key)].method)} ${labelOf(key)}`, () => change({left: key, right: key === rightKey() ? leftKey() : rightKey()}), "make it the left picture",
       {"aria-pressed": String(key === leftKey())}), button("right", () => change({right: key}), "make it the right picture", {"aria-pressed": String(key === rightKey())}),
-    ...copyButtons(key), button("×", () => change({pictures: keys.filter((each) => each !== key).join(".") || REFERENCE}), "take it away", {"aria-label": `take away ${labelOf(key)}`})));
+    copyButtons(key), button("×", () => change({pictures: keys.filter((each) => each !== key).join(".") || REFERENCE}), "take it away", {"aria-label": `take away ${labelOf(key)}`})));
   const others = [[REFERENCE, "reference"], ...scene().cells.map((cell, i) => [String(i), cell.label])].filter(([key]) => !keys.includes(key));
   const select = make("select", {id: "add-picture", "aria-label": "add a picture", onchange: () => change({pictures: [...keys, select.value].slice(-9).join(".")})},
     make("option", {value: ""}, "add a picture …"), others.map(([key, text]) => make("option", {value: key}, text)));
@@ -136,7 +136,7 @@ function drawChosen() {
 }
 
 function copyButtons(key) {
-  if (key === REFERENCE) return scene().reference ? [copyButton("hash", scene().reference.key)] : [];
+  if (key === REFERENCE) return scene().reference ? [scene().reference.settings ? copyButton("settings", scene().reference.settings) : null, copyButton("hash", scene().reference.key)] : [];
   const found = pictureOf(key);
   return [found.command ? copyButton("command", found.command) : null, found.hash ? copyButton("hash", found.hash) : null].filter(Boolean);
 }
@@ -203,7 +203,7 @@ window.addEventListener("keydown", onKey);
 window.addEventListener("resize", paintPanes);
 byId("machines").replaceChildren(...page.machines.map((line, i) => make("li", {}, `${page.tables[i].folder}: ${line}`)));
 byId("words").replaceChildren(...[...page.errors, ...page.costs].map((name) => make("li", {}, page.words[name] ?? name, page.units[name] ? ` [${page.units[name]}]` : "")));
-byId("made").textContent = page.made;
+byId("newest").textContent = page.newest;
 byId("warning").hidden = page.left_out === 0;
 byId("warning").textContent = `${page.left_out} pictures are left out: with them the pictures would be larger than ${page.megabytes} MB (--megabytes). All numbers are of all trials; maps over seeds are of the seeds that are here.`;
 for (const draw of listeners) if (draw !== drawAll) draw(new Set());

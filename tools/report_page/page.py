@@ -1,5 +1,4 @@
 """The page: what it shows as JSON, its pictures, and the one file of HTML, CSS and JavaScript around them."""
-import datetime
 import json
 import os
 import pathlib
@@ -66,7 +65,7 @@ def make(sweeps, scenes, references, megabytes):
             scene.keep_seed(nth)
     data = {
         "methods": sorted({cell.method for scene in scenes for cell in scene.cells}, key=rank),
-        "made": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "newest": max((row.get("finished", "") for sweep in sweeps for row in sweep.rows), default=""),
         "tables": [{"folder": os.path.basename(os.path.normpath(os.path.abspath(sweep.folder))), "header": sweep.header,
                     "rows": [[row[name] for name in sweep.header] for row in sweep.rows]} for sweep in sweeps],
         "scenes": [scene.data(sweeps) for scene in shown],
@@ -105,10 +104,12 @@ class SceneData:
             return {**about, "hole": self.hole(f"the reference {key}.exr is in none of the folders of references "
                                                "(--references)")}
         try:
-            layers, _ = pictures.read(path)
+            layers, texts = pictures.read(path)
         except exr.PictureError as error:
             return {**about, "hole": self.hole(f"the reference {key}.exr: {error}")}
         self.size, self.rest = layers["caustic"].shape[1:], self.album.keep(layers.pop("rest"))
+        settings = [texts.get(f"causticbench.{name}", "") for name in ("method", "parameters", "spp", "seed")]
+        about["settings"] = "{} {} --spp {} --seed {}".format(*settings)
         return {**about, "layers": {name: self.album.keep(values) for name, values in layers.items()}}
 
     def hole(self, reason):
@@ -126,7 +127,7 @@ class SceneData:
         path = os.path.join(cell.sweep.folder, "trials", row["trial"], "image.exr")
         found = {"seed": seed, "trial": row["trial"], "hash": row.get("picture_hash", "")}
         try:
-            layers, command = pictures.read(path)
+            layers, texts = pictures.read(path)
             size = layers["caustic"].shape[1:]
             if self.size is not None and size != self.size:
                 raise exr.PictureError(f"{size[1]} x {size[0]} pixels beside others of {self.size[1]} x {self.size[0]}")
@@ -135,7 +136,7 @@ class SceneData:
         self.size = size
         if self.rest is None:
             self.rest = self.album.keep(layers["rest"])
-        if command:
+        if command := texts.get("causticbench.command"):
             options = "".join(f" --{name} {row[name]}" for name in ("threads", "isa") if row.get(name))
             found["command"] = f"{command}{options} -o {row['trial']}.exr"
         kept = self.album.keep(layers["caustic"])

@@ -15,7 +15,7 @@ LARGEST = 14  # exponent above the largest half that is stored
 
 
 def read(path):
-    """The layers that the page shows, as float32 arrays of 1 or 3 planes, and the command in the picture's metadata.
+    """The layers that the page shows, as float32 arrays of 1 or 3 planes, and the texts in the picture's metadata.
 
     Layers: `caustic`; `rest`, the beauty without it; where they are there `stderr`, the standard error of a pixel, and
     `unreached`, the share of its samples that were not reached. Raises exr.PictureError.
@@ -31,7 +31,7 @@ def read(path):
         layers["stderr"] = layer(planes, "stderr")
     if "unreached.Y" in planes and planes["unreached.Y"].any():
         layers["unreached"] = planes["unreached.Y"].astype(numpy.float32)[None]
-    return layers, texts.get("causticbench.command")
+    return layers, texts
 
 
 def layer(planes, name):
