@@ -44,7 +44,9 @@ def number(value):
 
 
 def seconds(cell):
-    return f"{cell.cost('build_s'):.2g} + {cell.cost('query_s'):.2g} s"
+    """Build + query; light paths that go straight to the camera build nothing."""
+    build, query = cell.cost("build_s"), cell.cost("query_s")
+    return f"{f'{build:.2g}' if build >= 1e-3 else '<0.001'} + {query:.2g} s"
 
 
 def field(scene, contest, method):

@@ -23,6 +23,9 @@ except ImportError as error:
 import make_readme as tool
 
 
+SETTINGS = ("photons", "nearest", "adaptive", "mesh_resolution", "intensity", "light_samples", "emitted", "paths")
+
+
 def rows_of_readme():
     """{method: fields} and the heads of the table between the marks."""
     block = tool.README.read_text(encoding="utf-8").partition(tool.MARKS[0])[2].partition(tool.MARKS[1])[0]
@@ -46,14 +49,14 @@ class Readme(unittest.TestCase):
             place, _, limit = head.rpartition(", ")
             own = [row for row in records if row["scene"] == names[place]]
             for method, fields in table.items():
-                found = re.match(r"\**([0-9.e-]+)(?: ± [0-9.e-]+)?\** \(([0-9.e-]+) \+ ([0-9.e-]+) s\)", fields[i])
+                found = re.match(r"\**([0-9.e-]+)(?: ± [0-9.e-]+)?\** \(<?([0-9.e-]+) \+ ([0-9.e-]+) s\)", fields[i])
                 if not found:
                     continue
                 seen += 1
                 groups = {}
                 for row in own:
                     if row["method"] == method:
-                        groups.setdefault(row["trial"].rpartition("-s")[0], []).append(row)
+                        groups.setdefault(tuple(row.get(name) for name in SETTINGS), []).append(row)
                 means = {}
                 for rows in groups.values():
                     work = statistics.median(float(row["precompute_cpu_s"] or 0) + float(row["balance_cpu_s"] or 0)
