@@ -2,10 +2,11 @@
 import dataclasses
 import statistics
 from report.beam_trials import exponent, microseconds, select
+from report.paper import Paper
 
-# Chuang and Cheng 1995, sec. 3.3: cone-point tests, beam-point tests and successes at 100 x 100 pixels.
-PAPER = (1_293_973, 68_648, 12_960)
 COUNTS = ("cone_point_tests", "beam_point_tests", "beam_point_hits")
+CHUANG = Paper("chuang1995")
+PAPER = tuple(CHUANG.number(name) for name in COUNTS)
 COUNT_HEADING = ["cone-point tests", "beam-point tests", "successes"]
 POINT_HEADING = ["cone-point tests a point", "beam-point tests a point", "successes a point"]
 BOUNDS = ("single", "double", "sphere_swept", "two_slice")
@@ -32,7 +33,7 @@ def is_near_the_paper(cell):
 
 def counts(cells):
     """The paper's three counts against those of every bound, merging, wave height and kind of polygon."""
-    rows = [["**7,575 (paper)**", "", "hybrid", "cones"] + [f"**{count:,}**" for count in PAPER]]
+    rows = [[f"**{CHUANG.number('polygons'):,} (paper)**", "", "hybrid", "cones"] + [f"**{count:,}**" for count in PAPER]]
     kinds = ("triangles", "quads")
     order = lambda cell: (kinds.index(cell.value("polygons")), int(cell.value("resolution")), cell.value("bound") != "hybrid",
                           cell.value("bound"), cell.value("merging") != "rays", float(cell.value("wave_height")))

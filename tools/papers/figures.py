@@ -1,0 +1,84 @@
+"""Figures: pictures beside each other, tone-mapped alike, and plots."""
+import io
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+from report import exr
+
+DPI = 100
+GAP, TITLE = 6, 20  # pixels
+STYLE = {"font.family": "DejaVu Sans", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7,
+         "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 1.3, "lines.markersize": 4}
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+def luminance(picture):
+    return picture @ LUMINANCE
+
+
+def white(*pictures):
+    """The radiance shown as white: the 99th percentile of luminance over lit pixels."""
+    lit = np.concatenate([luminance(picture)[luminance(picture) > 0] for picture in pictures])
+    return float(np.percentile(lit, 99)) if lit.size else 1.0
+
+
+def srgb(linear):
+    """IEC 61966-2-1."""
+    v = np.clip(linear, 0, 1)
+    return np.where(v <= 0.0031308, 12.92 * v, 1.055 * v ** (1 / 2.4) - 0.055)
+
+
+def signed(difference, scale):
+    """Red where above, blue where below, white where equal; linear values to be shown as they are."""
+    t = np.clip(difference.mean(axis=2) / scale, -1, 1)
+    fade = 1 - np.abs(t)
+    red, blue = np.where(t >= 0, 1 - 0.3 * t, fade), np.where(t < 0, 1 + 0.3 * t, fade)
+    return np.stack([red, fade, blue], axis=2)
+
+
+def strip(rows, level=None):
+    """(PNG, EXR) of rows of (title, picture); white is `level`, a number, or one a row, or of all pictures together.
+
+    A picture with a level of its own is (title, picture, level).
+    """
+    rows = [[(each[0], np.maximum(each[1], 0), each[2] if len(each) > 2 else None) for each in row] for row in rows]
+    shared = [picture for row in rows for _, picture, own in row if own is None]
+    level = level or (white(*shared) if shared else 1.0)
+    heights = [max(picture.shape[0] for _, picture, _ in row) for row in rows]
+    width = max(sum(picture.shape[1] for _, picture, _ in row) + GAP * (len(row) - 1) for row in rows)
+    height = sum(heights) + TITLE * len(rows) + GAP * (len(rows) - 1)
+    figure = plt.figure(figsize=(width / DPI, height / DPI), dpi=DPI)
+    linear = np.zeros((sum(heights) + GAP * (len(rows) - 1), width, 3), np.float32)
+    top = below = 0
+    for row, tall in zip(rows, heights):
+        left = 0
+        for title, picture, own in row:
+            high, wide = picture.shape[:2]
+            figure.text(left / width, 1 - (top + TITLE * 0.75) / height, title, fontsize=8.5, va="baseline")
+            ax = figure.add_axes([left / width, 1 - (top + TITLE + high) / height, wide / width, high / height])
+            ax.imshow(srgb(picture / (own or level)), interpolation="none", aspect="auto")
+            ax.axis("off")
+            linear[below:below + high, left:left + wide] = picture
+            left += wide + GAP
+        top += TITLE + tall + GAP
+        below += tall + GAP
+    return png(figure), exr.encode(linear)
+
+
+def plot(draw, width=6.4, height=3.2, columns=1):
+    """PNG of `columns` axes that draw(axes) fills."""
+    with matplotlib.rc_context(STYLE):
+        figure, axes = plt.subplots(1, columns, figsize=(width, height), dpi=150, layout="constrained", squeeze=False)
+        draw(*axes[0])
+        return png(figure)
+
+
+def png(figure):
+    data = io.BytesIO()
+    figure.savefig(data, format="png", metadata={"Software": None}, pil_kwargs={"optimize": True})
+    plt.close(figure)
+    return data.getvalue()

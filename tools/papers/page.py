@@ -1,0 +1,175 @@
+"""The page and tables of one paper: index.html, tables.md, tables.csv, tables.tex, verdicts.json, figures."""
+import csv
+import html
+import io
+import json
+
+from papers.part import Table
+from papers.verdict import FAILS, HOLDS, UNDECIDED, UNMEASURED
+from papers.words import short
+from report.report_files import write
+
+CLAIMS = ["claim", "paper", "paper as ratio", "ours", "ours as ratio", "holds?", "factor off"]
+STYLE = """body{font:15px/1.45 sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}
+table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border-bottom:1px solid #ddd;padding:.25em .6em;text-align:left;
+vertical-align:top}th{border-bottom:2px solid #999}.grey,.grey td{color:#999}h3{margin-bottom:.2em}figure{margin:1.5em 0}
+img{max-width:100%}figcaption,.note{font-size:13px;color:#444}.group td{background:#f3f3f3;font-weight:bold}
+.verdict{font-weight:bold}code{font-size:12px}"""
+COLOURS = {HOLDS: "#1a7f37", FAILS: "#c0392b", UNDECIDED: "#9a6700", UNMEASURED: "#777"}
+
+
+def paper_text(entry):
+    return entry["paper"] if isinstance(entry["paper"], str) else f"{short(entry['paper'])} {entry['paper_unit']}".strip()
+
+
+def ours_text(entry):
+    """Median and range of what was measured, and of what it is divided by."""
+    if entry["verdict"] == UNMEASURED:
+        return UNMEASURED
+    parts = [f"{short(part['median'])}" + (f" ({short(part['least'])}–{short(part['greatest'])})" if part["least"] != part["greatest"] else "")
+             for part in entry["made_of"]]
+    return f"{' over '.join(parts)} {entry['made_of_unit']}".strip()
+
+
+def ratio_text(entry):
+    if entry["ours"] is None:
+        return ""
+    low, high = entry["spread"]
+    return short(entry["ours"]) + (f" ({short(low)}–{short(high)})" if low != high else "")
+
+
+def claims_table(entries):
+    rows = [[entry["claim"], paper_text(entry), short(entry["paper_ratio"]) if entry["paper_ratio"] is not None else "", ours_text(entry),
+             ratio_text(entry), entry["verdict"], short(entry["factor_off"]) if entry["factor_off"] is not None else ""] for entry in entries]
+    return Table("claims", "Claims", CLAIMS, rows)
+
+
+def write_page(folder, paper, entries, part, machine, minutes):
+    """All files of a paper; the tables' texts go to tables.json, from which a test makes the others again."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "figures").mkdir(exist_ok=True)
+    for figure in part.figures:
+        (folder / "figures" / f"{figure.name}.png").write_bytes(figure.png)
+        if figure.exr:
+            (folder / "figures" / f"{figure.name}.exr").write_bytes(figure.exr)
+    unsaid = [[each["what"], each["chosen"], each["matters"].format_map(part.facts)] for each in paper.text["unsaid"]]
+    kept = {"machine": machine, "minutes": minutes, "unsaid": unsaid,
+            "tables": [vars(table) for table in part.tables],
+            "figures": [{"name": figure.name, "title": figure.title, "caption": figure.caption} for figure in part.figures]}
+    write(folder / "verdicts.json", json.dumps(entries, indent=1, ensure_ascii=False) + "\n")
+    write(folder / "tables.json", json.dumps(kept, indent=1, ensure_ascii=False) + "\n")
+    for name, text in rendered(paper, entries, kept).items():
+        write(folder / name, text)
+
+
+def rendered(paper, entries, kept):
+    """{file name: text} of everything that follows from verdicts.json and tables.json."""
+    tables = [Table(**each) for each in kept["tables"]]
+    return {"tables.md": markdown(paper, entries, kept, tables), "tables.csv": comma(entries, tables),
+            "tables.tex": latex(paper, entries, tables), "index.html": page(paper, entries, kept, tables)}
+
+
+def tally(entries):
+    count = lambda verdict: sum(entry["verdict"] == verdict for entry in entries)
+    return ", ".join(f"{count(verdict)} {verdict if verdict != HOLDS else 'hold'}" for verdict in (HOLDS, FAILS, UNDECIDED, UNMEASURED)
+                     if count(verdict)).replace("does not hold", "do not hold")
+
+
+def by_group(entries):
+    groups = {}
+    for entry in entries:
+        groups.setdefault(entry["group"], []).append(entry)
+    return groups.items()
+
+
+def markdown_table(heading, rows):
+    line = lambda fields: "| " + " | ".join(str(field).replace("|", "\\|") for field in fields) + " |"
+    return "\n".join([line(heading), "|" + "---|" * len(heading), *map(line, rows)]) + "\n"
+
+
+def markdown(paper, entries, kept, tables):
+    text = [f"# {paper.text['author']}: {paper.text['title']}\n", f"{paper.text['published']}. {len(entries)} claims: {tally(entries)}.\n",
+            f"Made by `tools/reproduce.sh {paper.name}` in {kept['minutes']:.0f} minutes on {kept['machine']}\n", HOW]
+    for group, own in by_group(entries):
+        rows = claims_table(own).rows
+        for row, entry in zip(rows, own):
+            row[5] = f"**{entry['verdict']}**"
+        text.append(f"\n## {group}\n\n" + markdown_table(CLAIMS, rows))
+        notes = [f"* {entry['claim']}: {entry['note']}." for entry in own if entry["note"]]
+        if notes:
+            text.append("\n".join(notes) + "\n")
+    text.append("\n## What the paper does not say\n\n" + markdown_table(["what", "chosen here", "how much it matters"], kept["unsaid"]))
+    for table in tables:
+        text.append(f"\n## {table.title}\n\n" + markdown_table(table.heading, table.rows) + (f"\n{table.note}\n" if table.note else ""))
+    if paper.text["seconds"]:
+        text.append(f"\n## The paper's seconds\n\nOn {paper.text['machine']}; ours are compared as ratios only.\n\n"
+                    + markdown_table(["what", "s", "where"], seconds(paper)))
+    text.append("\n## Tolerances and commands\n\n" + markdown_table(
+        ["claim", "holds where ours is", "because of", "minutes", "command"],
+        [[entry["claim"], entry["region"], entry["tolerance_from"], f"{entry['minutes']:.1f}", f"`{entry['command']}`"] for entry in entries]))
+    return "\n".join(text)
+
+
+HOW = ("A claim holds where the 95 % interval (Student's t, one-sided at each end, over seeds or repeats, on a scale of ratios) lies within "
+       "the region of the last table, does not hold where it lies outside, and is undecided between. Counted values are the same on every run. "
+       "Times are CPU times of one thread: median (least–greatest). Factor off: ours over the paper's.\n")
+
+
+def seconds(paper):
+    return [[what, short(paper.number(name)), paper.text["numbers"][name]["where"]] for what, name in paper.text["seconds"]]
+
+
+def comma(entries, tables):
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    for table in [claims_table(entries), *tables]:
+        writer.writerow([f"# {table.title}"])
+        writer.writerow(table.heading)
+        writer.writerows(table.rows)
+    return text.getvalue()
+
+
+def latex(paper, entries, tables):
+    special = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
+               "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "–": "--", "×": r"$\times$", "·": r"$\cdot$", "²": r"$^2$", "µ": r"$\mu$",
+               "°": r"$^\circ$", "<": r"$<$", ">": r"$>$", "≤": r"$\le$", "≥": r"$\ge$"}
+    escape = lambda field: "".join(special.get(letter, letter) for letter in str(field))
+    text = [f"% {paper.text['author']}: {paper.text['title']}; needs booktabs and tabularx"]
+    for table in [claims_table(entries), *tables]:
+        line = lambda fields: " & ".join(map(escape, fields)) + r" \\"
+        columns = "X" + "l" * (len(table.heading) - 1)
+        text += [rf"\begin{{tabularx}}{{\linewidth}}{{{columns}}}", r"\toprule", f"% {table.title}", line(table.heading), r"\midrule",
+                 *map(line, table.rows), r"\bottomrule", r"\end{tabularx}", ""]
+    return "\n".join(text)
+
+
+def page(paper, entries, kept, tables):
+    e = html.escape
+    cells = lambda fields, tag="td": "<tr>" + "".join(f"<{tag}>{e(str(field))}</{tag}>" for field in fields) + "</tr>\n"
+    table = lambda heading, rows, kind="": f"<table class='{kind}'>{cells(heading, 'th')}{''.join(map(cells, rows))}</table>\n"
+    body = [f"<h1>{e(paper.text['title'])}</h1>\n<p>{e(paper.text['author'])}. {e(paper.text['published'])}.</p>\n<p><b>{len(entries)} claims: "
+            f"{tally(entries)}.</b> Made by <code>tools/reproduce.sh {paper.name}</code> in {kept['minutes']:.0f} minutes on {e(kept['machine'])}</p>\n"
+            f"<p class='note'>{e(HOW)}</p>\n<table>{cells(CLAIMS, 'th')}"]
+    for group, own in by_group(entries):
+        body.append(f"<tr class='group'><td colspan='{len(CLAIMS)}'>{e(group)}</td></tr>\n")
+        for row, entry in zip(claims_table(own).rows, own):
+            note = f"<br><span class='note'>{e(entry['note'])}</span>" if entry["note"] else ""
+            verdict = f"<td class='verdict' style='color:{COLOURS[entry['verdict']]}'>{entry['verdict']}</td>"
+            body.append("<tr>" + f"<td>{e(row[0])} <span class='grey'>{e(entry['where'])}</span>{note}</td>"
+                        + "".join(f"<td>{e(field)}</td>" for field in row[1:5]) + verdict + f"<td>{e(row[6])}</td></tr>\n")
+    body.append("</table>\n<h2>What the paper does not say</h2>\n" + table(["what", "chosen here", "how much it matters"], kept["unsaid"]))
+    for each in kept["figures"]:
+        body.append(f"<figure><h3>{e(each['title'])}</h3><img src='figures/{each['name']}.png' alt='{e(each['title'], quote=True)}'>"
+                    f"<figcaption>{e(each['caption'])}</figcaption></figure>\n")
+    for each in tables:
+        body.append(f"<h3>{e(each.title)}</h3>\n{table(each.heading, each.rows)}" + (f"<p class='note'>{e(each.note)}</p>\n" if each.note else ""))
+    if paper.text["seconds"]:
+        body.append(f"<h3 class='grey'>The paper's seconds</h3><p class='grey'>On {e(paper.text['machine'])}; ours are compared as ratios only.</p>\n"
+                    + table(["what", "s", "where"], seconds(paper), "grey"))
+    body.append("<h2>Tolerances and commands</h2>\n<table>" + cells(["claim", "holds where ours is", "because of", "minutes", "command"], "th"))
+    for entry in entries:
+        body.append(f"<tr><td>{e(entry['claim'])}</td><td>{e(entry['region'])}</td><td>{e(entry['tolerance_from'])}</td>"
+                    f"<td>{entry['minutes']:.1f}</td><td><code>{e(entry['command'])}</code></td></tr>\n")
+    body.append("</table>\n")
+    return (f"<!doctype html>\n<html lang='en'><head><meta charset='utf-8'><title>{e(paper.text['title'])}: reproduced</title>"
+            f"<style>{STYLE}</style></head><body>\n{''.join(body)}</body></html>\n")

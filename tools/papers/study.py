@@ -1,0 +1,146 @@
+"""One paper's runs: sweeps and single commands of causticbench, each run once, with what it cost."""
+import csv
+import hashlib
+import json
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+
+from report import exr
+from report.records import RecordsError, canonical
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENES, SWEEPS = (ROOT / "experiments" / "papers" / kind for kind in ("scenes", "sweeps"))
+
+
+class Study:
+    """Runs what a paper's claims ask for; what is there already is taken as it is."""
+
+    def __init__(self, paper, output, program, full):
+        self.paper, self.program, self.full = paper, str(program), full
+        self.output = output.resolve() / paper.name
+        self.scenes, self.sweeps = SCENES, SWEEPS
+        self.costs, self.done = {}, {}
+
+    def log(self, text):
+        print(f"reproduce: {self.paper.name}: {text}", file=sys.stderr, flush=True)
+
+    def run(self, words):
+        done = subprocess.run([self.program, *map(str, words)], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=sys.stderr)
+        if done.returncode != 0:
+            raise ChildProcessError(f"{shlex.join(map(str, words))}: exit code {done.returncode}")
+
+    def sweep(self, name):
+        """The trials of experiments/papers/sweeps/PAPER_NAME.json; in a quick run those that PAPER.json filters."""
+        if name in self.done:
+            return self.done[name]
+        folder = self.output / "trials" / name
+        chosen = [] if self.full else self.paper.text["quick"].get(name, [])
+        filters = [word for each in chosen for word in ("--filter", each)]
+        words = ["sweep", SWEEPS / f"{self.paper.name}_{name}.json", "-o", folder, *filters]
+        self.log(f"sweep {name}")
+        self.run(words)
+        trials = Trials(folder, chosen)
+        self.keep(name, words, sum(trials.column("elapsed_s")))
+        self.done[name] = trials
+        return trials
+
+    def single(self, name, verb, words, *outputs):
+        """A command with `-o` files in trials/NAME; skipped where they are there and the command is the same."""
+        folder = self.output / "trials" / name
+        folder.mkdir(parents=True, exist_ok=True)
+        files = [folder / each for each in outputs]
+        full = [verb, *words, *[word for file in files for word in ("-o", file)]]
+        note = folder / f"{outputs[0]}.json"
+        digest = hashlib.sha256(inputs(words)).hexdigest()
+        kept = json.loads(note.read_text()) if note.is_file() else {}
+        if kept.get("digest") != digest or not all(file.is_file() for file in files):
+            self.log(f"{verb} {name}/{outputs[0]}")
+            start = time.monotonic()
+            self.run(full)
+            kept = {"digest": digest, "seconds": time.monotonic() - start}
+            note.write_text(json.dumps(kept) + "\n")
+        self.keep(name, full, kept["seconds"])
+        return files
+
+    def keep(self, name, words, seconds):
+        """Adds up what the commands of one name cost; the first stands for them."""
+        command, so_far = self.costs.get(name, (None, 0.0))
+        self.costs[name] = (command or shown(words), so_far + seconds)
+
+    def cost(self, names):
+        """(command, minutes) of what a claim is measured from."""
+        found = [self.costs[name] for name in names if name in self.costs]
+        return "; ".join(command for command, _ in found), sum(seconds for _, seconds in found) / 60
+
+    def minutes(self):
+        """Of all commands, whenever they ran."""
+        return sum(seconds for _, seconds in self.costs.values()) / 60
+
+    def copy_records(self):
+        """The sweeps' tables, to be kept."""
+        folder = self.output / "records"
+        folder.mkdir(exist_ok=True)
+        for name, trials in self.done.items():
+            shutil.copyfile(trials.folder / "records.csv", folder / f"{name}.csv")
+
+
+def inputs(words):
+    """What a command depends on: its words, and the files among them."""
+    parts = []
+    for word in map(str, words):
+        parts.append(word.replace(str(ROOT), ""))
+        if os.path.isfile(word):
+            parts.append(pathlib.Path(word).read_text(encoding="utf-8", errors="replace"))
+    return "\0".join(parts).encode()
+
+
+def shown(words):
+    """A command as a reader types it in the project's folder."""
+    return shlex.join(["build/release/bin/causticbench", *[str(word).replace(f"{ROOT}/", "") for word in words]])
+
+
+class Trials:
+    """The trials of one sweep that are done, by the values that tell them apart."""
+
+    def __init__(self, folder, filters=()):
+        self.folder = folder
+        chosen = {}
+        for each in filters:
+            key, value = each.split("=", 1)
+            chosen.setdefault(key, []).append(value)
+        with open(folder / "records.csv", newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if all(row[key] in values for key, values in chosen.items())]
+        unfinished = [row["trial"] for row in rows if row["status"] != "done"]
+        if unfinished:
+            raise RecordsError(f"{folder}: trial {unfinished[0]} is not done (its log.txt says why)")
+        self.rows = sorted(rows, key=lambda row: (int(row["seed"]), int(row["repeat"])))
+
+    def where(self, **wanted):
+        """Rows that hold these values, by seed and repeat."""
+        fits = lambda row: all(canonical(row.get(key, "")) == canonical(str(value)) for key, value in wanted.items())
+        found = [row for row in self.rows if fits(row)]
+        if not found:
+            raise RecordsError(f"{self.folder}: no trial with {wanted}")
+        return found
+
+    def column(self, name, **wanted):
+        return [float(row[name]) for row in self.where(**wanted)]
+
+    def values(self, name):
+        """What a column holds, each once, in the order of numbers."""
+        return sorted({row[name] for row in self.rows if row[name]}, key=lambda text: (len(text), text))
+
+    def record(self, row):
+        return json.loads((self.folder / "trials" / row["trial"] / "record.json").read_text(encoding="utf-8"))
+
+    def picture(self, **wanted):
+        """Layers of the first trial's picture."""
+        return self.pictures(**wanted)[0]
+
+    def pictures(self, **wanted):
+        return [exr.read(self.folder / "trials" / row["trial"] / "image.exr") for row in self.where(**wanted)]
