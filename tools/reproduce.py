@@ -42,6 +42,7 @@ def arguments():
 
 def reproduce(name, chosen):
     from papers.entries import entries
+    from papers.gallery import write_gallery
     from papers.page import tally, write_page
     from papers.part import Part
     from papers.study import Study
@@ -58,6 +59,7 @@ def reproduce(name, chosen):
     where = machine(folders) + (f" {chosen.note}" if chosen.note else "")
     write_page(study.output, paper, found, part, where, study.minutes())
     study.copy_records()
+    write_gallery(chosen.output, map(papers_text.Paper, papers_text.NAMES))
     study.log(f"{tally(found)}; {(time.monotonic() - start) / 60:.1f} minutes; {study.output / 'index.html'}")
 
 

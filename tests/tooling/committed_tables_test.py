@@ -79,6 +79,23 @@ class CommittedTables(unittest.TestCase):
         row = beam_report.counts([cell]).splitlines()[-1]
         self.assert_is_a_row("counts", [field.strip() for field in row.strip("|").split("|")])
 
+    def test_the_reproduced_counts(self):
+        folder = ROOT / "experiments" / "papers" / "sweeps"
+        own = json.loads((folder / "chuang1995_counts.json").read_text(encoding="utf-8"))
+        own["scenes"] = [str((folder / scene).resolve()) for scene in own["scenes"]]
+        own["methods"] = own["methods"][:1]
+        (self.folder / "sweep.json").write_text(json.dumps(own))
+        filters = ("wave_height=1.5", "cells=[75,75]", "reflected=0", "merging=cones")
+        words = [word for each in filters for word in ("--filter", each)]
+        done = subprocess.run([PROGRAM, "sweep", self.folder / "sweep.json", "-o", self.folder / "out", *words], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "out" / "records.csv", newline="", encoding="utf-8") as file:
+            row, = csv.DictReader(file)
+        kept = json.loads((ROOT / "results" / "papers" / "chuang1995" / "tables.json").read_text(encoding="utf-8"))
+        table, = [each for each in kept["tables"] if each["name"] == "counts"]
+        old, = [each for each in table["rows"] if each[:5] == ["pool", "5,625 quads", "1.5", "alone", "cones"]]
+        self.assertEqual([f"{int(float(row[name])):,}" for name in beam_report.COUNTS], [field.split()[0] for field in old[5:8]])
+
     def test_bounds(self):
         for place in ("pool", "ring"):
             cell = self.beams(f"beam_bounds_{place}", bound="sphere_swept")

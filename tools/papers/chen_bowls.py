@@ -20,16 +20,17 @@ def measure(study):
 
 
 def columns(study):
-    trials, beams = study.sweep("bowls"), study.sweep("beams")
+    trials = study.sweep("bowls")
+    beams = {"bowl": study.sweep("beams"), "crystal_bowl": study.sweep("beams_crystal")}
     bare = lambda scene, shadows: trials.picture(scene=scene, method="none", shadows=shadows)[""]
     photons = {scene: trials.picture(scene=scene, method="photonmap") for scene in BOWLS}
-    tree = {scene: beams.picture(scene=scene) for scene in BOWLS}
+    tree = {scene: beams[scene].picture() for scene in BOWLS}
     rows, table = [], []
     for scene, what in BOWLS.items():
         level = white(photons[scene][""])
         rows.append([(f"{what}: opaque shadows", bare(scene, "opaque"), level), ("transparent shadows", bare(scene, "transparent"), level)])
         rows.append([("photons", photons[scene][""], level), ("beams", tree[scene][""], level)])
-        by = {"photons": trials.where(scene=scene, method="photonmap")[0], "beams": beams.where(scene=scene)[0]}
+        by = {"photons": trials.where(scene=scene, method="photonmap")[0], "beams": beams[scene].where()[0]}
         for name, row in by.items():
             layers = photons[scene] if name == "photons" else tree[scene]
             table.append([what, name, f"{int(float(row['photons_stored'] or row['beams'])):,}", f"{float(row['precompute_cpu_s']):.2f}",
@@ -41,7 +42,7 @@ def columns(study):
                                            "the brightest of the direct light, or more")}, [Table(
         "bowls", "The bowls by photons and by beams", ["bowl", "by", "photons or beams", "preprocess [CPU s]", "rendering [CPU s]", "caustic over photons"],
         table, "320 × 240 pixels, 4 rays each. Photons follow up to 64 events, beams 4, so that light that goes round in the glass is missing "
-        "from them; the beams' bowl has 48 sectors, and crystal's light 4 intervals of wavelengths.")], [Figure(
+        "from them; the beams' glass bowl has 48 sectors, the crystal's inside 24, and its light 3 wavelengths.")], [Figure(
             "bowls", "A bowl of glass and one of cut crystal", "Above each: ray tracing only, with opaque shadows, and with light that goes straight "
             "through, weakened. Below: caustics by the photon map and by beams. Each bowl at one exposure.", *strip(rows))])
 

@@ -27,7 +27,7 @@ def entry(study, claim, measured):
     return {
         "id": claim["id"], "group": claim["group"], "claim": claim["claim"], "where": claim["where"],
         "paper": stated(study.paper, claim), "paper_unit": "" if is_ratio else unit_of(study.paper, claim),
-        "paper_ratio": theirs if is_ratio else None,
+        "paper_ratio": theirs if is_ratio else None, "is_ratio": bool(measured.bottom) or is_ratio,
         "ours": ours, "spread": [min(measured.samples), max(measured.samples)] if measured.samples else None,
         "interval": list(ends) if ends else None, "samples": len(measured.samples), "counted": measured.counted,
         "made_of": [{"median": statistics.median(part), "least": min(part), "greatest": max(part)} for part in parts],
@@ -39,10 +39,14 @@ def entry(study, claim, measured):
 
 
 def stated(paper, claim):
-    """What the paper has: words, a number, or which of its seconds are divided (they stand in a table of their own)."""
+    """What the paper has: words, a number, or two that are divided; its seconds stand in a table of their own."""
     if "words" in claim["paper"]:
         return claim["paper"]["words"]
-    return paper.number(claim["paper"]["number"]) if "number" in claim["paper"] else "its seconds, below"
+    if "number" in claim["paper"]:
+        return paper.number(claim["paper"]["number"])
+    if any(paper.text["numbers"][name]["unit"] == "s" for name in claim["paper"]["ratio"]):
+        return "its seconds, below"
+    return " over ".join(short(paper.number(name)) for name in claim["paper"]["ratio"])
 
 
 def unit_of(paper, claim):

@@ -32,7 +32,7 @@ def ours_text(entry):
 
 
 def ratio_text(entry):
-    if entry["ours"] is None:
+    if entry["ours"] is None or not entry["is_ratio"]:
         return ""
     low, high = entry["spread"]
     return short(entry["ours"]) + (f" ({short(low)}–{short(high)})" if low != high else "")

@@ -2,7 +2,10 @@
 import math
 import re
 
-FEW, MANY = "250677", "5036126"
+from report.paper import Paper
+
+JENSEN = Paper("jensen1996")
+FEW, MANY = (str(JENSEN.number(name)) for name in ("figure2_photons", "figure2_reference_photons"))
 MESHES = ("pool33k", "pool524k", "ball65k", "ball261k")
 BEAMS = ("7442", "131072")
 

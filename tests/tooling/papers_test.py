@@ -1,0 +1,204 @@
+"""The papers' reproduction without rendering: numbers typed once and cited, verdicts, and committed pages that follow from their records."""
+import importlib
+import json
+import math
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+
+try:
+    import numpy as np
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+from papers import entries, page, verdict
+from report import exr, paper
+from report.records import RecordsError
+
+RESULTS = ROOT / "results" / "papers"
+PAPERS = {name: paper.Paper(name) for name in paper.NAMES}
+
+
+class Numbers(unittest.TestCase):
+    def test_every_number_has_its_place_and_is_used(self):
+        for name, each in PAPERS.items():
+            used = {number for claim in each.text["claims"] for number in paper.numbers_of(claim)} | {number for _, number in each.text["seconds"]}
+            sources = "".join(file.read_text(encoding="utf-8") for file in [*(ROOT / "tools" / "papers").glob("*.py"), *(ROOT / "tools" / "report").glob("*.py")])
+            for number, entry in each.text["numbers"].items():
+                self.assertRegex(entry["where"], r"sec\. \d|figure \d|Definitions|Tracing Pass", f"{name}: {number}")
+                quoted = number in used or f'"{number}"' in sources or number.startswith("figure1_rendering")
+                documented = name == "chen2011" or number == "spread_threshold"
+                self.assertTrue(quoted or documented, f"{name}: {number} is used nowhere")
+
+    def test_no_tool_types_them_again(self):
+        large = {str(entry["value"]) for each in PAPERS.values() for entry in each.text["numbers"].values() if entry["value"] > 5000}
+        for file in [*(ROOT / "tools").glob("*.py"), *(ROOT / "tools" / "papers").glob("*.py"), *(ROOT / "tools" / "report").glob("*.py")]:
+            typed = set(re.findall(r"\d+", file.read_text(encoding="utf-8").replace("_", "").replace(",", ""))) & large - {"10000"}
+            self.assertFalse(typed, file.name)
+
+    def test_sweeps_render_with_the_papers_numbers(self):
+        jensen = PAPERS["jensen1996"]
+        for name, number in (("figure1", "figure1_photons"), ("figure2", "figure2_photons"), ("figure2", "figure2_reference_photons"),
+                             ("figure3", "figure3_photons")):
+            sweep = json.loads((paper.FOLDER / "sweeps" / f"jensen1996_{name}.json").read_text(encoding="utf-8"))
+            photons = sweep["methods"][0]["param"]["photons"]
+            self.assertIn(jensen.number(number), photons if isinstance(photons, list) else [photons])
+        cells = json.loads((paper.FOLDER / "sweeps" / "chuang1995_counts.json").read_text(encoding="utf-8"))["set"]["cells"]["values"]
+        self.assertIn(PAPERS["chuang1995"].number("polygons"), [a * b for a, b in cells])
+
+    def test_chuangs_sweeps_follow_one_event(self):
+        for file in (paper.FOLDER / "sweeps").glob("chuang1995_*.json"):
+            for method in json.loads(file.read_text(encoding="utf-8"))["methods"]:
+                if method["method"] != "none":
+                    self.assertEqual(method["param"]["max_bounces"], 1, file.name)
+
+    def test_ratios_come_from_the_numbers(self):
+        claims = {claim["id"]: claim for claim in PAPERS["jensen1996"].text["claims"]}
+        value = lambda name: PAPERS["jensen1996"].value(claims[name])
+        self.assertAlmostEqual(value("ball_unbalanced"), 378 / 182)
+        self.assertAlmostEqual(value("photon_cognac"), (900 / 352497) / (58 / 250677))
+        self.assertIsNone(value("ring_fixed"))
+        self.assertEqual(PAPERS["jensen1996"].region(claims["ball_balancing"]), (-math.inf, 60 / 1140))
+
+    def test_a_claim_without_its_number_is_refused(self):
+        broken = paper.Paper("chuang1995")
+        broken.text["claims"][0]["paper"] = {"number": "nowhere"}
+        with self.assertRaisesRegex(RecordsError, 'no number "nowhere"'):
+            paper.check(broken)
+
+    def test_the_dolphin_is_what_its_script_makes(self):
+        make = importlib.import_module("make_dolphin")
+        target = make.TARGET
+        kept = (ROOT / target).read_bytes()
+        vertices = sum(len(own) for own, _ in make.parts())
+        self.assertIn(f"element vertex {vertices}\n".encode(), kept)
+        first = next(make.parts())[0][0]
+        self.assertEqual(struct.unpack("<3f", kept.partition(b"end_header\n")[2][:12]), tuple(np.float32(first)))
+
+
+class Verdicts(unittest.TestCase):
+    def judge(self, samples, region, **more):
+        return verdict.judge(verdict.Measured(samples, **more), region)[0]
+
+    def test_a_trend_needs_three_samples_and_order_at_95_per_cent(self):
+        above = (1, math.inf)
+        self.assertEqual(self.judge([1.2, 1.3], above), verdict.UNDECIDED)
+        self.assertEqual(self.judge([1.2, 1.3, 1.25], above), verdict.HOLDS)
+        self.assertEqual(self.judge([0.8, 0.82, 0.79], above), verdict.FAILS)
+        self.assertEqual(self.judge([0.9, 1.5, 1.0], above), verdict.UNDECIDED)
+        self.assertEqual(self.judge([], above), verdict.UNMEASURED)
+
+    def test_an_interval_is_students(self):
+        low, high = verdict.interval([-1.0, 0.0, 1.0], False)
+        self.assertAlmostEqual(high, 2.919986 / math.sqrt(3), 5)
+        self.assertAlmostEqual(low, -high)
+        low, high = verdict.interval([1.0, 2.0, 4.0], False)
+        self.assertAlmostEqual(low * high, 4)
+
+    def test_counted_values_need_no_repeats(self):
+        self.assertEqual(self.judge([0], (0, 0), counted=True), verdict.HOLDS)
+        self.assertEqual(self.judge([1], (0, 0), counted=True), verdict.FAILS)
+
+    def test_equality_has_to_be_shown(self):
+        region = (0.9, 1.1)
+        self.assertEqual(self.judge([1.0, 1.01, 0.99], region), verdict.HOLDS)
+        self.assertEqual(self.judge([1.0, 1.3, 0.8], region), verdict.UNDECIDED)
+        self.assertEqual(self.judge([1.5, 1.51, 1.49], region), verdict.FAILS)
+
+    def test_pairs_have_to_match(self):
+        self.assertEqual(verdict.ratio([2, 9], [1, 3], "s").samples, [2, 3])
+        with self.assertRaises(ValueError):
+            verdict.ratio([1, 2], [1], "s")
+
+
+class Pictures(unittest.TestCase):
+    def test_what_is_written_is_read_again(self):
+        picture = np.random.default_rng(1).random((37, 23, 3)).astype(np.float16).astype(np.float32)
+        file = pathlib.Path(self.enterContext(__import__("tempfile").TemporaryDirectory())) / "a.exr"
+        file.write_bytes(exr.encode(picture))
+        np.testing.assert_array_equal(exr.read(file)[""], picture)
+
+
+class Pages(unittest.TestCase):
+    """What is committed in results/papers: pages follow from verdicts.json and tables.json, and both from the papers' claims."""
+
+    def committed(self):
+        for name, each in PAPERS.items():
+            folder = RESULTS / name
+            if (folder / "verdicts.json").is_file():
+                read = lambda file: json.loads((folder / file).read_text(encoding="utf-8"))
+                yield each, folder, read("verdicts.json"), read("tables.json")
+
+    def test_all_three_papers_are_there(self):
+        self.assertEqual([folder.name for _, folder, _, _ in self.committed()], list(paper.NAMES))
+
+    def test_verdicts_answer_the_claims(self):
+        for each, folder, found, _ in self.committed():
+            claims = each.text["claims"]
+            self.assertEqual([entry["id"] for entry in found], [claim["id"] for claim in claims], folder)
+            for entry, claim in zip(found, claims):
+                place = f"{folder.name}: {entry['id']}"
+                self.assertEqual(entry["paper"], entries.stated(each, claim), place)
+                theirs = each.value(claim)
+                self.assertEqual(entry["paper_ratio"], theirs if "ratio" in claim["paper"] else None, place)
+                self.assertEqual(entry["region"], entries.shown(each.region(claim)), place)
+                for key in ("group", "claim", "where", "unit", "tolerance_from"):
+                    self.assertEqual(entry[key], claim[key], place)
+
+    def test_verdicts_follow_from_their_intervals(self):
+        for each, folder, found, _ in self.committed():
+            for entry, claim in zip(found, each.text["claims"]):
+                place = f"{folder.name}: {entry['id']}"
+                if entry["verdict"] == verdict.UNMEASURED:
+                    self.assertTrue(entry["note"], place)
+                    continue
+                low, high = each.region(claim)
+                if entry["interval"] is None:
+                    self.assertEqual((entry["verdict"], entry["samples"] < verdict.LEAST_SAMPLES), (verdict.UNDECIDED, True), place)
+                    continue
+                left, right = entry["interval"]
+                inside, outside = low <= left and right <= high, right < low or left > high
+                self.assertEqual(entry["verdict"], verdict.HOLDS if inside else verdict.FAILS if outside else verdict.UNDECIDED, place)
+                self.assertTrue(entry["command"] and "causticbench" in entry["command"], place)
+
+    def test_pages_and_tables_follow_from_them(self):
+        for each, folder, found, kept in self.committed():
+            for name, text in page.rendered(each, found, kept).items():
+                self.assertEqual((folder / name).read_text(encoding="utf-8"), text, f"{folder.name}/{name}")
+
+    def test_every_figure_is_there_and_in_the_gallery(self):
+        gallery = (RESULTS / "README.md").read_text(encoding="utf-8")
+        for _, folder, _, kept in self.committed():
+            for figure in kept["figures"]:
+                self.assertTrue((folder / "figures" / f"{figure['name']}.png").is_file(), figure["name"])
+                self.assertIn(f"{folder.name}/figures/{figure['name']}.png", gallery)
+
+    def test_no_page_names_a_path_of_a_machine(self):
+        for _, folder, _, _ in self.committed():
+            for name in ("index.html", "tables.md", "verdicts.json"):
+                self.assertNotIn(str(ROOT), (folder / name).read_text(encoding="utf-8"))
+
+
+class CommandLine(unittest.TestCase):
+    def run_tool(self, *words):
+        return subprocess.run([sys.executable, ROOT / "tools" / "reproduce.py", *words], capture_output=True, text=True)
+
+    def test_unknown_papers_and_missing_programs_are_named(self):
+        done = self.run_tool("jensen1995")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("known: jensen1996, chuang1995, chen2011", done.stderr)
+        done = self.run_tool("jensen1996", "--program", "/nowhere/causticbench")
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
+        self.assertEqual(self.run_tool("--quick", "--full").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
