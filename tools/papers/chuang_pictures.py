@@ -33,13 +33,13 @@ def same_as_watt(study):
     differences, rows, notes = {}, [], {}
     for polygons in ("quads", "triangles"):
         for scene, what in SCENES.items():
-            beams, watt = (small.picture(scene=scene, method=method, polygons=polygons)["caustic"] for method in ("beamtree", "causticpolygons"))
+            beams, watt = (small.picture(scene=scene, method=method, with_polygons=polygons)["caustic"] for method in ("beamtree", "causticpolygons"))
             difference, scale = beams - watt, float(beams.max())
             largest = float(np.abs(difference).max()) / scale
             differences.setdefault(polygons, []).append(largest)
             notes.setdefault(polygons, []).append(f"{what}: {int((np.abs(difference).max(axis=2) > 1e-6 * scale).sum())} pixels")
             level = white(beams)
-            rows.append([(f"{what}, {polygons}: beams", enlarged(beams), level), ("Watt's polygons", enlarged(watt), level),
+            rows.append([(f"{scene.partition('_')[2]}, {polygons}: beams", enlarged(beams), level), ("Watt's polygons", enlarged(watt), level),
                          (f"difference, {largest:.1g} at most", enlarged(signed(difference, 1e-6 * scale)), 1.0)])
     figure = Figure("watt", "The caustic component, by beams and by Watt's method",
                     "100 x 100 pixels, the size of the paper's pictures, one ray each. The third column shows the difference, red and blue from "

@@ -121,12 +121,17 @@ class Trials:
         self.rows = sorted(rows, key=lambda row: (int(row["seed"]), int(row["repeat"])))
 
     def where(self, **wanted):
-        """Rows that hold these values, by seed and repeat."""
-        fits = lambda row: all(canonical(row.get(key, "")) == canonical(str(value)) for key, value in wanted.items())
+        """Rows that hold these values, by seed and repeat; with_NAME is a parameter of the method that shares its name with a column."""
+        fits = lambda row: all(canonical(self.value(row, key)) == canonical(str(value)) for key, value in wanted.items())
         found = [row for row in self.rows if fits(row)]
         if not found:
             raise RecordsError(f"{self.folder}: no trial with {wanted}")
         return found
+
+    def value(self, row, key):
+        if key.startswith("with_"):
+            return str(self.record(row)["method"]["parameters"].get(key[len("with_"):], ""))
+        return row.get(key, "")
 
     def column(self, name, **wanted):
         return [float(row[name]) for row in self.where(**wanted)]
