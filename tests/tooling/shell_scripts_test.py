@@ -103,6 +103,23 @@ class FreshDebian(Sandbox):
         self.assertEqual((done.returncode, done.stderr), (69, "fresh_debian: needs the Debian package debootstrap\n"))
 
 
+class Reproduce(Sandbox):
+    """tools/reproduce.sh with a build and a tool that only say what they are asked."""
+
+    def reproduced(self, *words, **environment):
+        self.copy("tools/reproduce.sh")
+        self.write("tools/build.sh", 'echo "build $*"')
+        (self.folder / "tools/reproduce.py").write_text("import sys\nprint(*sys.argv[1:])\n")
+        return self.run_script("tools/reproduce.sh", *words, **environment).stdout.splitlines()
+
+    def test_builds_and_hands_its_words_on(self):
+        self.assertEqual(self.reproduced("jensen1996", "--quick", CAUSTICS_BENCH=""),
+                         ["build release causticbench", "--program build/release/bin/causticbench jensen1996 --quick"])
+
+    def test_takes_a_program_that_is_there(self):
+        self.assertEqual(self.reproduced(CAUSTICS_BENCH="/a/program"), ["--program /a/program"])
+
+
 class ContinuousIntegration(Sandbox):
     """.ci/run over scripts that end with given exit codes."""
 

@@ -41,7 +41,7 @@ def columns(study):
     return Part({"caustics_added": counted(brighter, "mean radiance, photons over ray tracing", f"the caustic's brightest pixel is {light:.1f} times "
                                            "the brightest of the direct light, or more")}, [Table(
         "bowls", "The bowls by photons and by beams", ["bowl", "by", "photons or beams", "preprocess [CPU s]", "rendering [CPU s]", "caustic over photons"],
-        table, "320 × 240 pixels, 4 rays each. Photons follow up to 64 events, beams 4, so that light that goes round in the glass is missing "
+        table, "320 × 240 pixels, 25 rays each with photons, 4 with beams. Photons follow up to 64 events, beams 4, so that light that goes round in the glass is missing "
         "from them; the beams' glass bowl has 48 sectors, the crystal's inside 24, and its light 3 wavelengths.")], [Figure(
             "bowls", "A bowl of glass and one of cut crystal", "Above each: ray tracing only, with opaque shadows, and with light that goes straight "
             "through, weakened. Below: caustics by the photon map and by beams. Each bowl at one exposure.", *strip(rows))])
@@ -73,7 +73,7 @@ def lights(study):
 def views(study):
     """Three views of the crystal bowl by one map."""
     scene = "experiments/scenes/crystal_bowl.json"
-    words = [scene, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--spp", "4", "--threads", "1", "--method", "photonmap",
+    words = [scene, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--spp", "16", "--threads", "1", "--method", "photonmap",
              "--param", "nearest=100", "--param", "tree=packed"]
     photons = ["--param", "photons=300000", "--param", "max_bounces=64"]
     kept = study.output / "trials" / "views" / "crystal.photons"

@@ -93,6 +93,6 @@ def maps(study):
     rows = [["the map, paths end at the second diffuse surface", spread(mean(two))], ["the map, paths end by roulette", spread(mean(whole))],
             ["final gathering, 8 rays", spread(mean(gathered))]]
     return Part({"four_parts": counted(adds, "of the brightest pixel"), "second_hit": ratio(mean(two), mean(whole), "mean indirect light")}, [Table(
-        "maps", "Light between diffuse surfaces", ["by", "mean of the layer [W/(m² sr)]"], rows, f"{len(rows_of(8, 0))} seeds, 200 × 200 pixels.")], [Figure(
+        "maps", "Light between diffuse surfaces", ["by", "mean of the layer [W/(m² sr)]"], rows, f"{len(rows_of(8, 0))} seeds, 160 × 160 pixels.")], [Figure(
             "maps", "Four parts of the light in a room", "Direct light, specular, caustic (its own map) and multiple diffuse reflections (the global map), "
             "and their sum.", *pictures)])

@@ -123,7 +123,7 @@ def shape(study):
         "ball_bends": Measured([a - b for a, b in zip(size("0.1"), size("1"))], note=note)}, [], [
         Figure("figure2", "Figure 2: the caustic of a glass ball on glossy stone",
                f"alpha = 0.1, {study.paper.number('figure2_photons'):,} photons, N = 100, 4 rays a pixel. The lamp stands 30 degrees high, at "
-               "the left; the eye looks across its light.", *strip([[("alpha = 0.1", whole)]])),
+               "the right; the eye looks across its light.", *strip([[("alpha = 0.1", whole)]])),
         Figure("figure2_shape", "Figure 2: oval at alpha 1, curved at alpha 0.1",
                "The caustic alone on the floor, each at its own exposure. The index in the table fits a parabola to the spot, on the "
                "floor, not in the picture: perspective does not bend it.", *pictures)])
