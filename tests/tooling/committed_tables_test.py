@@ -55,10 +55,10 @@ class CommittedTables(unittest.TestCase):
         own["repeats"] = 1
         (self.folder / "sweep.json").write_text(json.dumps(own))
         words = [word for key, value in filters.items() for word in ("--filter", f"{key}={value}")]
-        done = subprocess.run([PROGRAM, "sweep", self.folder / "sweep.json", "-o", self.folder / "out", *words],
-                              capture_output=True, text=True)
+        out = tempfile.mkdtemp(dir=self.folder)  # a folder keeps what other filters of the same sweep chose
+        done = subprocess.run([PROGRAM, "sweep", self.folder / "sweep.json", "-o", out, *words], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        return str(self.folder / "out")
+        return out
 
     def beams(self, name, **filters):
         cell, = beam_trials.read(self.sweep(name, **filters))
