@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Makes README's table and strip of the methods from records: results/quickstart-2026-11/records.csv and strip.csv.
+"""Makes README's table and strip of the methods from records: results/quickstart-2026-11/records.csv and strip/records.csv.
 
 Without options it writes the table between README.md's two marks. --check only says whether the table there is what the
 records say. --strip sweeps experiments/sweeps/readme_strip.json into results/quickstart/strip (only what is missing; a
-quarter of an hour in all), keeps its records as strip.csv and draws results/pictures/duel.png: needs build/release or
+quarter of an hour in all), keeps its records as strip/records.csv and draws results/pictures/duel.png: needs build/release or
 --bench, and Debian's python3-matplotlib. Exit codes: 0 done, 1 the table differs or the sweep failed, 2 bad input or usage.
 """
 import argparse
 import json
+import math
 import pathlib
 import shutil
 import sys
@@ -26,7 +27,7 @@ PICTURE = ROOT / "results" / "pictures" / "duel.png"
 MARKS = ("<!-- duel: tools/make_readme.py -->\n", "<!-- end of duel -->\n")
 NAMES = {"ring": "mirror ring", "ball_area": "glass ball, area light", "pool": "folded pool"}
 SHOWN = ("photonmap", "beamtree")
-INSETS = ((0.32, 0.44), (0.62, 0.62))  # left upper corners, as shares of the picture
+INSETS = ((0.32, 0.44), (0.08, 0.68))  # left upper corners, as shares of the picture
 SIDE = 0.16  # of an inset, as a share of the picture's width
 
 
@@ -43,6 +44,11 @@ def number(value):
     return f"{value:.3g}"
 
 
+def with_interval(error, half):
+    """0.00382 ± 0.00004: the interval to one digit, without a power of ten."""
+    return number(error) + (f" ± {half:.{max(0, -math.floor(math.log10(half)))}f}" if half else "")
+
+
 def seconds(cell):
     """Build + query; light paths that go straight to the camera build nothing."""
     build, query = cell.cost("build_s"), cell.cost("query_s")
@@ -54,7 +60,7 @@ def field(scene, contest, method):
     allowed, picks, best = contest
     if method in picks:
         error, half = picks[method].error("rmse")
-        text = number(error) + (f" ± {half:.1g}" if half else "")
+        text = with_interval(error, half)
         return (f"**{text}**" if picks[method] in best else text) + f" ({seconds(picks[method])})"
     own = [cell for cell in scene.scored() if cell.method == method]
     if own:
@@ -75,10 +81,23 @@ def table(folder):
     lines = ["| method | " + " | ".join(heads) + " |", "|---|" + "---|" * len(heads)]
     for method in methods:
         lines.append(f"| `{method}` | " + " | ".join(field(*pair, method) for pair in zip(found, contests)) + " |")
-    own = [scene.cells[0].rows[0] for scene in found]
     lines.append("| standard error of the reference | " + " | ".join(
-        number(float(row["reference_stderr"]) * float(row["reference_mean"])) for row in own) + " |")
-    return "\n".join(lines) + "\n\n" + machine(sweep) + "\n"
+        number(reference_error(scene.cells[0].rows[0])) for scene in found) + " |")
+    return "\n".join(lines) + f"\n\n{machine(sweep)}\n{strip_line(folder)}\n"
+
+
+def strip_line(folder):
+    """What the picture shows, in words."""
+    scene, = scenes.scenes_of([scenes.Sweep(str(folder / "strip"))])
+    cells = strip_cells(scene)
+    row = cells[0].rows[0]
+    told = "; ".join(f"`{cell.method}` ({cell.settings()}) rmse {with_interval(*cell.error('rmse'))} in {seconds(cell)}" for cell in cells)
+    return (f"The picture: {row['width']} × {row['height']} pixels, {row['spp']} samples each; {told}; {len(cells[0].seeds())} seeds; the "
+            f"reference's standard error is {number(reference_error(row))}.")
+
+
+def reference_error(row):
+    return float(row["reference_stderr"]) * float(row["reference_mean"])
 
 
 def machine(sweep):
@@ -101,7 +120,8 @@ def with_block(text, block):
 
 def make_strip(bench):
     Program("make_readme", bench).sweep("readme_strip", STRIP, True)
-    shutil.copyfile(STRIP / "records.csv", RECORDS / "strip.csv")
+    (RECORDS / "strip").mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(STRIP / "records.csv", RECORDS / "strip" / "records.csv")
     draw_strip()
 
 
@@ -110,7 +130,7 @@ def strip_cells(scene):
     for _, picks, _ in scene.contests():
         if all(method in picks for method in SHOWN):
             return [picks[method] for method in SHOWN]
-    raise RecordsError(f"{STRIP}: lacks a picture of {' or '.join(SHOWN)}")
+    raise RecordsError(f"readme_strip: no records of {' and '.join(SHOWN)}")
 
 
 def draw_strip():
@@ -131,7 +151,7 @@ def draw_strip():
         layers, _ = pictures.read(STRIP / "trials" / cell.rows[0]["trial"] / "image.exr")
         error, half = cell.error("rmse")
         title = {"photonmap": "photon map", "beamtree": "beam tree"}[cell.method]
-        shown.append((layers, title, f"{cell.cost('work_s'):.2g} CPU s, rmse {number(error)} ± {half:.1g}"))
+        shown.append((layers, title, f"{cell.cost('work_s'):.2g} CPU s, rmse {with_interval(error, half)}"))
     rest = shown[0][0]["rest"]
     whole = [numpy.moveaxis(numpy.maximum(layers["caustic"] + rest, 0), 0, 2) for layers, _, _ in shown]
     luminance = whole[0] @ numpy.array([0.2126, 0.7152, 0.0722])
