@@ -91,7 +91,8 @@ def strip_line(folder):
     scene, = scenes.scenes_of([scenes.Sweep(str(folder / "strip"))])
     cells = strip_cells(scene)
     row = cells[0].rows[0]
-    told = "; ".join(f"`{cell.method}` ({cell.settings()}) rmse {with_interval(*cell.error('rmse'))} in {seconds(cell)}" for cell in cells)
+    named = lambda cell: f"`{cell.method}`" + (f" ({cell.settings()})" if cell.settings() != "–" else "")
+    told = "; ".join(f"{named(cell)} rmse {with_interval(*cell.error('rmse'))} in {seconds(cell)}" for cell in cells)
     return (f"The picture: {row['width']} × {row['height']} pixels, {row['spp']} samples each; {told}; {len(cells[0].seeds())} seeds; the "
             f"reference's standard error is {number(reference_error(row))}.")
 
@@ -105,8 +106,9 @@ def machine(sweep):
     loads = sorted(float(row["load_average"]) for row in done)
     several = lambda name: ", ".join(sorted({row[name] for row in done}))
     seeds = len({row["seed"] for row in done})
+    built = json.loads((RECORDS / "environment.json").read_text(encoding="utf-8"))
     return (f"{seeds} seeds; {several('cpu')}, {several('isa')}, {several('threads')} threads a trial, load average "
-            f"{loads[0]:.0f} to {loads[-1]:.0f} by other work, causticbench {several('code_version')}.")
+            f"{loads[0]:.0f} to {loads[-1]:.0f} by other work; causticbench {several('code_version')}, {built['compiler']}, {built['flags']}.")
 
 
 def with_block(text, block):
