@@ -108,7 +108,8 @@ def machine(sweep):
     seeds = len({row["seed"] for row in done})
     built = json.loads((RECORDS / "environment.json").read_text(encoding="utf-8"))
     return (f"{seeds} seeds; {several('cpu')}, {several('isa')}, {several('threads')} threads a trial, load average "
-            f"{loads[0]:.0f} to {loads[-1]:.0f} by other work; causticbench {several('code_version')}, {built['compiler']}, {built['flags']}.")
+            f"{loads[0]:.0f} to {loads[-1]:.0f} by other work; causticbench {several('code_version')}, {built['compiler']}, {built['flags']}"
+            + ("." if "NDEBUG" in built["flags"] else ", assertions on."))
 
 
 def with_block(text, block):
