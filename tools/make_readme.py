@@ -143,7 +143,8 @@ def draw_strip():
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy
-    from report_page import exr, pictures
+    from report import exr
+    from report_page import pictures
 
     scene, = scenes.scenes_of([scenes.Sweep(str(STRIP))])
     key = scene.reference.partition(":")[2]

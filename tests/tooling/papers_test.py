@@ -124,7 +124,7 @@ class Pictures(unittest.TestCase):
         picture = np.random.default_rng(1).random((37, 23, 3)).astype(np.float16).astype(np.float32)
         file = pathlib.Path(self.enterContext(__import__("tempfile").TemporaryDirectory())) / "a.exr"
         file.write_bytes(exr.encode(picture))
-        np.testing.assert_array_equal(exr.read(file)[""], picture)
+        np.testing.assert_array_equal(exr.read_layers(file)[""], picture)
 
 
 class Pages(unittest.TestCase):

@@ -26,7 +26,8 @@ except ImportError as error:
     sys.exit(77)
 
 import report_sweep as sweep
-from report_page import exr, pictures
+from report import exr
+from report_page import pictures
 
 TOOL = ROOT / "tools" / "make_report.py"
 

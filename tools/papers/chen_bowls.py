@@ -83,11 +83,11 @@ def views(study):
     files += [study.single("views", "render", [*words, *view(origin), "--param", f"load={kept}"], f"view{number}.exr")[0]
               for number, origin in enumerate(VIEWS[1:], 2)]
     again, = study.single("views", "render", [*words, *view(VIEWS[2]), *photons], "again.exr")
-    read, traced = exr.read(files[2]), exr.read(again)
+    read, traced = exr.read_layers(files[2]), exr.read_layers(again)
     largest = max(float(np.abs(read[layer] - traced[layer]).max()) for layer in read)
     return Part({"one_map": counted(largest, "W/(m² sr)", "largest difference in any layer")}, [], [Figure(
         "overview", "Crystal glass: three views by one photon map", "The cut bowl of n = 1.7 that disperses light, under a small lamp. The photons are "
-        "traced once; the second and third view read the map.", *strip([[("", exr.read(file)[""]) for file in files]]))])
+        "traced once; the second and third view read the map.", *strip([[("", exr.read_layers(file)[""]) for file in files]]))])
 
 
 def difference(study):

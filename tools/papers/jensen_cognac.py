@@ -103,6 +103,6 @@ def one_map(study):
     read, = study.single("views", "render", [scene, *small, *other, *method, "--param", f"load={kept}"], "read.exr")
     traced, = study.single("views", "render", [scene, *small, *other, *method, *photons], "traced.exr")
     from report import exr
-    ours, theirs = exr.read(read), exr.read(traced)
+    ours, theirs = exr.read_layers(read), exr.read_layers(traced)
     largest = max(float(np.abs(ours[layer] - theirs[layer]).max()) for layer in ours)
     return Part({"view_independent": counted(largest, "W/(m² sr)", "largest difference in any layer")})

@@ -148,4 +148,4 @@ class Trials:
         return self.pictures(**wanted)[0]
 
     def pictures(self, **wanted):
-        return [exr.read(self.folder / "trials" / row["trial"] / "image.exr") for row in self.where(**wanted)]
+        return [exr.read_layers(self.folder / "trials" / row["trial"] / "image.exr") for row in self.where(**wanted)]

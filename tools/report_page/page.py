@@ -5,7 +5,8 @@ import pathlib
 
 from report.intervals import student
 from report.records import FORMULAS
-from report_page import exr, pictures
+from report import exr
+from report_page import pictures
 from report_page.scenes import COSTS, ERRORS, best_of, rank
 
 HERE = pathlib.Path(__file__).resolve().parent

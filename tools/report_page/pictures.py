@@ -9,7 +9,7 @@ import zlib
 
 import numpy
 
-from report_page import exr
+from report import exr
 
 LARGEST = 14  # exponent above the largest half that is stored
 
