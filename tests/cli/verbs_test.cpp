@@ -255,7 +255,8 @@ TEST(Verify, TheGalleryHolds) {
     const ProgramResult result = causticbench({"verify", "--gallery"});
     EXPECT_EQ(result.exit_code, 0) << result.out;
     for (const std::string method :
-         {"photonmap", "lighttrace", "pathtrace", "beamtree", "causticpolygons", "illuminationmap"})
+         {"photonmap", "lighttrace", "pathtrace", "beamtree", "causticpolygons", "illuminationmap",
+          "lighttrace, indirect", "pathtrace, indirect"})
         EXPECT_NE(result.out.find("| " + method + " |"), std::string::npos) << method;
 }
 
