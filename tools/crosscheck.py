@@ -33,14 +33,14 @@ BUDGET = {
     "pathtrace": {"ring": 4096, "ball": 2560, "pool": 2560, "room": 1024},
     "globalphotonmap": {"room": 100_000},
     "ptracer": {"ring": 1500, "ball_point": 6000, "ball_area": 2500, "pool_point": 5000, "pool_area": 2500, "plain": 2400,
-                "room": 1000},
-    "path": {"ring": 1200, "ball": 2400, "pool": 2400, "plain": 200, "room": 1000},
+                "room": 400},
+    "path": {"ring": 1200, "ball": 2400, "pool": 2400, "plain": 200, "room": 400},
 }
 # POV-Ray: photons aimed at, and a fixed radius [m] to gather them in. Its default, the nearest 20 to 100,
 # gains light where a caustic is folded; results/crosscheck says how much.
 POVRAY = {"ball_point": ("200000", "0.01"), "pool_point": ("1000000", "0.02")}
 CELL = 6  # pixels
-ROOM_DEPTH = 80  # events of Mitsuba's paths in a room: less than 1e-11 of its light makes more
+ROOM_DEPTH = 30  # events of a path in a room by Mitsuba: what is cut off is below 1e-5 of the light
 GATHER = 64
 
 
