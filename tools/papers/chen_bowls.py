@@ -40,9 +40,10 @@ def columns(study):
     brighter = min(float(photons[scene][""].mean()) / shadow[scene] for scene in BOWLS)
     return Part({"caustics_added": counted(brighter, "mean radiance, photons over ray tracing", f"the caustic's brightest pixel is {light:.1f} times "
                                            "the brightest of the direct light, or more")}, [Table(
-        "bowls", "The bowls by photons and by beams", ["bowl", "by", "photons or beams", "preprocess [CPU s]", "rendering [CPU s]", "caustic over photons"],
-        table, "320 × 240 pixels, 25 rays each with photons, 4 with beams. Photons follow up to 64 events, beams 4, so that light that goes round in the glass is missing "
-        "from them; the beams' glass bowl has 48 sectors, the crystal's inside 24, and its light 3 wavelengths.")], [Figure(
+        "bowls", "The bowls by photons and by beams",
+        ["bowl", "by", "photons or beams", "preprocess [CPU s]", "rendering [CPU s]", "caustic over photons"], table,
+        "320 × 240 pixels, 25 rays each with photons, 4 with beams. Photons follow up to 64 events, beams 4, so that light that goes round in "
+        "the glass is missing from them; the beams' glass bowl has 48 sectors, the crystal's inside 24, and its light 3 wavelengths.")], [Figure(
             "bowls", "A bowl of glass and one of cut crystal", "Above each: ray tracing only, with opaque shadows, and with light that goes straight "
             "through, weakened. Below: caustics by the photon map and by beams. Each bowl at one exposure.", *strip(rows))])
 
@@ -64,10 +65,10 @@ def lights(study):
     pictures = strip([[(name, trials.picture(lamp=lamp, seed=1)[""]) for name, lamp in zip(LAMPS, lamps)]])
     return Part({"soft_area": ratio(soft[lamps[1]], soft[lamps[0]], "of the table in half-shadow"),
                  "softer": ratio(soft[lamps[2]], soft[lamps[1]], "of the table in half-shadow")}, [Table(
-        "lights", "Hard and soft shadows", ["lamp", "share of the table in half-shadow"], rows, "Direct light alone, 9 rays a pixel; half-shadow: between "
-        "5 % and 60 % of the way from the darkest to the lit table.")], [Figure(
-            "lights", "Point and area lights", "The bowl under lamps of one power: a point, discs of 2 and 6 cm radius. Shadow and caustic soften together.",
-            *pictures)])
+        "lights", "Hard and soft shadows", ["lamp", "share of the table in half-shadow"], rows,
+        "Direct light alone, 9 rays a pixel; half-shadow: between 5 % and 60 % of the way from the darkest to the lit table.")], [Figure(
+            "lights", "Point and area lights",
+            "The bowl under lamps of one power: a point, discs of 2 and 6 cm radius. Shadow and caustic soften together.", *pictures)])
 
 
 def views(study):
@@ -86,8 +87,9 @@ def views(study):
     read, traced = exr.read_layers(files[2]), exr.read_layers(again)
     largest = max(float(np.abs(read[layer] - traced[layer]).max()) for layer in read)
     return Part({"one_map": counted(largest, "W/(m² sr)", "largest difference in any layer")}, [], [Figure(
-        "overview", "Crystal glass: three views by one photon map", "The cut bowl of n = 1.7 that disperses light, under a small lamp. The photons are "
-        "traced once; the second and third view read the map.", *strip([[("", exr.read_layers(file)[""]) for file in files]]))])
+        "overview", "Crystal glass: three views by one photon map",
+        "The cut bowl of n = 1.7 that disperses light, under a small lamp. The photons are traced once; the second and third view "
+        "read the map.", *strip([[("", exr.read_layers(file)[""]) for file in files]]))])
 
 
 def difference(study):

@@ -32,18 +32,21 @@ def moire(layers, level):
 def sampling(study):
     trials = study.sweep("sampling")
     counts = sorted(trials.values("samples"), key=int)
-    found = {(count, jitter): [moire(layers, 0.5) for layers in trials.pictures(samples=count, jitter=jitter)] for count in counts for jitter in ("false", "true")}
-    rows = [[f"{round(int(count) ** 0.5)}", count, spread([100 * each for each in found[count, "false"]], "%"), spread([100 * each for each in found[count, "true"]], "%")]
-            for count in counts]
+    found = {(count, jitter): [moire(layers, 0.5) for layers in trials.pictures(samples=count, jitter=jitter)]
+             for count in counts for jitter in ("false", "true")}
+    per_cent = lambda *key: spread([100 * each for each in found[key]], "%")
+    rows = [[f"{round(int(count) ** 0.5)}", count, per_cent(count, "false"), per_cent(count, "true")] for count in counts]
     shown = lambda count, jitter: trials.picture(samples=count, jitter=jitter, seed=1)[""]
-    pictures = strip([[(f"n² = {count}, regular", shown(count, "false")), (f"n² = {count}, jittered", shown(count, "true"))] for count in (counts[0], counts[1])], 1.0)
+    pictures = strip([[(f"n² = {count}, regular", shown(count, "false")), (f"n² = {count}, jittered", shown(count, "true"))]
+                      for count in counts[:2]], 1.0)
     regular = [statistics.fmean(found[count, "false"]) for count in counts]
     return Part({"moire": ratio(found["4", "false"], found["4", "true"], "moiré"),
-                 "oversampling": counted(regular[-1] / regular[0], "", f"regular, {short(regular[0] * 100)} % at one sample, {short(regular[-1] * 100)} % at {counts[-1]}")}, [
+                 "oversampling": counted(regular[-1] / regular[0], "", f"regular, {short(regular[0] * 100)} % at one sample, "
+                                                                       f"{short(regular[-1] * 100)} % at {counts[-1]}")}, [
         Table("sampling", "n² samples a pixel", ["n", "samples", "moiré, regular", "moiré, jittered"], rows,
               f"A checkerboard far finer than a pixel, which has to be even grey: deviation of means over {BLOCK} x {BLOCK} pixels.")], [
-        Figure("sampling", "Regular and jittered samples", "A fine checkerboard to the horizon. Regular samples make patterns of their own (moiré) where "
-               "jittered ones make noise.", *pictures)])
+        Figure("sampling", "Regular and jittered samples", "A fine checkerboard to the horizon. Regular samples make patterns of their own "
+               "(moiré) where jittered ones make noise.", *pictures)])
 
 
 def interaction(study):
@@ -52,7 +55,7 @@ def interaction(study):
     stack = {how: np.array([layers["caustic"] for layers in trials.pictures(interaction=how)]) for how in mean}
     noise = {how: float(np.sqrt(values.var(axis=0, ddof=1).mean())) for how, values in stack.items()}
     column = lambda name, how: trials.column(name, interaction=how)
-    rows = [[how, spread(column("photons_emitted", how)), spread(column("photons_stored", how)), spread(column("precompute_cpu_s", how)), f"{noise[how]:.3g}"]
+    rows = [[how, *[spread(column(name, how)) for name in ("photons_emitted", "photons_stored", "precompute_cpu_s")], f"{noise[how]:.3g}"]
             for how in mean]
     return Part({"split_same": ratio(mean["split"], mean["roulette"], "mean caustic", note="pairs of seeds")}, [Table(
         "interaction", "Roulette and split", ["interaction", "light paths", "photons", "tracing [CPU s]", "noise of a pixel [W/(m² sr)]"], rows,
@@ -65,7 +68,8 @@ def search(study):
     seconds = {count: trials.column("render_cpu_s", photons=count) for count in counts}
     rows = [[f"{int(count):,}", spread(seconds[count]), spread(ratio(seconds[count], seconds[counts[0]], "").samples)] for count in counts]
     return Part({"logarithmic": ratio(seconds[counts[-1]], seconds[counts[0]], "CPU s")}, [Table(
-        "tree", "Searching among more photons", ["photons", "rendering [CPU s]", "over the first"], rows, "160 × 120 pixels, N = 50, three repeats.")])
+        "tree", "Searching among more photons", ["photons", "rendering [CPU s]", "over the first"], rows,
+        f"160 × 120 pixels, N = 50, {len(seconds[counts[0]])} repeats.")])
 
 
 def filters(study):
@@ -80,7 +84,6 @@ def filters(study):
 
 def maps(study):
     trials = study.sweep("maps")
-    rows_of = lambda gather, diffuse: trials.where(indirect_gather=gather, indirect_diffuse_bounces=diffuse)
     picture = lambda gather, diffuse: trials.pictures(indirect_gather=gather, indirect_diffuse_bounces=diffuse)
     two, whole, gathered = picture(0, 2), picture(0, 0), picture(8, 0)
     adds = max(float(np.abs(layers[""] - sum(layers[name] for name in ("direct", "specular", "caustic", "indirect"))).max() / layers[""].max())
@@ -89,10 +92,11 @@ def maps(study):
     first = gathered[0]
     level = float(np.percentile(luminance(first[""]), 97))
     pictures = strip([[("direct", first["direct"]), ("specular", first["specular"]), ("caustic", first["caustic"])],
-                      [("multiple diffuse, gathered", first["indirect"]), ("the global map itself", whole[0]["indirect"]), ("all", first[""])]], level)
+                      [("multiple diffuse, gathered", first["indirect"]), ("the global map", whole[0]["indirect"]), ("all", first[""])]], level)
     rows = [["the map, paths end at the second diffuse surface", spread(mean(two))], ["the map, paths end by roulette", spread(mean(whole))],
             ["final gathering, 8 rays", spread(mean(gathered))]]
     return Part({"four_parts": counted(adds, "of the brightest pixel"), "second_hit": ratio(mean(two), mean(whole), "mean indirect light")}, [Table(
-        "maps", "Light between diffuse surfaces", ["by", "mean of the layer [W/(m² sr)]"], rows, f"{len(rows_of(8, 0))} seeds, 160 × 160 pixels.")], [Figure(
-            "maps", "Four parts of the light in a room", "Direct light, specular, caustic (its own map) and multiple diffuse reflections (the global map), "
-            "and their sum.", *pictures)])
+        "maps", "Light between diffuse surfaces", ["by", "mean of the layer [W/(m² sr)]"], rows,
+        f"{len(gathered)} seeds, 160 × 160 pixels.")], [Figure(
+            "maps", "Four parts of the light in a room", "Direct light, specular, caustic (its own map) and multiple diffuse reflections (the "
+            "global map), and their sum.", *pictures)])

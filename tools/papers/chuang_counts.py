@@ -71,11 +71,13 @@ def polygons(cells, name):
 def watt(study):
     trials = study.sweep("watt")
     rows, powers = [], {}
-    for row in sorted(trials.where(method="causticpolygons"), key=lambda row: [natural(row[key]) for key in ("cells", "receiver_resolution", "light_samples")]):
+    numbers = lambda row: [natural(row[key]) for key in ("cells", "receiver_resolution", "light_samples")]
+    for row in sorted(trials.where(method="causticpolygons"), key=numbers):
         own = trials.record(row)["counters"]
         beams = counters(trials, method="beamtree", cells=row["cells"], light_samples=row["light_samples"])
-        rows.append([f"{own['beams'] // int(row['light_samples']):,}", f"{own['receiver_polygons']:,}", row["light_samples"], f"{own['beam_polygon_tests']:,}",
-                     f"{own['beam_polygon_tests'] / own['beams'] / own['receiver_polygons']:g}", f"{beams['cone_point_tests'] + beams['beam_point_tests']:,}"])
+        rows.append([f"{own['beams'] // int(row['light_samples']):,}", f"{own['receiver_polygons']:,}", row["light_samples"],
+                     f"{own['beam_polygon_tests']:,}", f"{own['beam_polygon_tests'] / own['beams'] / own['receiver_polygons']:g}",
+                     f"{beams['cone_point_tests'] + beams['beam_point_tests']:,}"])
     get = lambda **wanted: counters(trials, method="causticpolygons", **{"cells": 32, "receiver_resolution": 8, "light_samples": 1, **wanted})
     first = get()
     for name, more in (("n_s", get(cells=64)), ("n_d", get(receiver_resolution=16)), ("n_l", get(light_samples=4))):
@@ -90,11 +92,12 @@ def watt(study):
 
 def bounds(study):
     trials = study.sweep("bounds")
-    own = {(bound, merging): counters(trials, bound=bound, merging=merging) for bound in ("single", "double", "hybrid") for merging in ("cones", "rays")}
+    own = {(bound, merging): counters(trials, bound=bound, merging=merging)
+           for bound in ("single", "double", "hybrid") for merging in ("cones", "rays")}
+    over = lambda merging: own["single", merging]["beam_point_tests"] / own["double", merging]["beam_point_tests"]
     rows = [[bound, merging, *[f"{found[count]:,}" for count in COUNTS]] for (bound, merging), found in own.items()]
-    return Part({"double_tighter": counted(own["single", "cones"]["beam_point_tests"] / own["double", "cones"]["beam_point_tests"],
-                                           "beam-point tests, single over double", f"with merging of rays "
-                                           f"{short(own['single', 'rays']['beam_point_tests'] / own['double', 'rays']['beam_point_tests'])}")}, [Table(
+    return Part({"double_tighter": counted(over("cones"), "beam-point tests, single over double",
+                                           f"with merging of rays {short(over('rays'))}")}, [Table(
         "bounds", "Single and double cones", ["bound", "merging", "cone-point tests", "beam-point tests", "successes"], rows,
         "The pool, 75 x 101 quads, waves x 1.5, refraction alone. hybrid: single up to a spread of 10 degrees, double above.")])
 
@@ -113,7 +116,8 @@ def heights(study):
         steps[merging] = [b - a for a, b in zip(tests, tests[1:])]
         measured[f"height_{merging}"] = counted(exponent(levels, tests), "", "power of the height; one more level costs "
                                                 + ", ".join(f"{step:.1f}" for step in steps[merging]) + " tests a point, from the coarsest mesh on")
-        measured[f"height_polygons_{merging}"] = counted(exponent([cells * cells for cells, _ in group], tests), "", "power of the number of polygons")
+        measured[f"height_polygons_{merging}"] = counted(exponent([cells * cells for cells, _ in group], tests), "",
+                                                         "power of the number of polygons")
 
     def draw(ax):
         for merging, group in found.items():
@@ -124,8 +128,8 @@ def heights(study):
         ax.set_ylim(0)
         ax.legend()
 
-    return Part(measured, [Table("height", "Cost a point over the tree's height", ["merging", "polygons", "height", "cone-point tests a point", "over the height",
-                                                                                   "beam-point tests a point"], rows,
+    heading = ["merging", "polygons", "height", "cone-point tests a point", "over the height", "beam-point tests a point"]
+    return Part(measured, [Table("height", "Cost a point over the tree's height", heading, rows,
                                  "The pool in quads, waves x 1.5, refraction alone: one tree.")],
                 [Figure("height", "Cost a point over the height of the tree", "The paper: the cost is proportional to the sum of the heights, a line "
                         "through the origin. Each further level has four times the polygons.", plot(draw, 5.2, 3))])

@@ -2,7 +2,7 @@
 import math
 import statistics
 
-from papers.verdict import UNMEASURED, judge, unmeasured
+from papers.verdict import UNMEASURED, judge
 from papers.words import short
 
 
@@ -60,8 +60,3 @@ def shown(region):
     if math.isinf(low):
         return f"at most {short(high)}"
     return f"at least {short(low)}" if math.isinf(high) else f"{short(low)} to {short(high)}"
-
-
-def nothing(claims, why):
-    """Measurements for claims that cannot be made here."""
-    return {claim: unmeasured(why) for claim in claims}

@@ -50,7 +50,8 @@ def strip(rows, level=None):
     level = level or (white(*shared) if shared else 1.0)
     heights = [max(picture.shape[0] for _, picture, _ in row) for row in rows]
     width = max(sum(picture.shape[1] for _, picture, _ in row) + GAP * (len(row) - 1) for row in rows)
-    height = sum(heights) + TITLE * len(rows) + GAP * (len(rows) - 1)
+    title_of = TITLE if any(title for row in rows for title, _, _ in row) else 0
+    height = sum(heights) + title_of * len(rows) + GAP * (len(rows) - 1)
     figure = plt.figure(figsize=(width / DPI, height / DPI), dpi=DPI)
     linear = np.zeros((sum(heights) + GAP * (len(rows) - 1), width, 3), np.float32)
     top = below = 0
@@ -58,13 +59,13 @@ def strip(rows, level=None):
         left = 0
         for title, picture, own in row:
             high, wide = picture.shape[:2]
-            figure.text(left / width, 1 - (top + TITLE * 0.75) / height, title, fontsize=8.5, va="baseline")
-            ax = figure.add_axes([left / width, 1 - (top + TITLE + high) / height, wide / width, high / height])
+            figure.text(left / width, 1 - (top + title_of * 0.75) / height, title, fontsize=8.5, va="baseline")
+            ax = figure.add_axes([left / width, 1 - (top + title_of + high) / height, wide / width, high / height])
             ax.imshow(srgb(picture / (own or level)), interpolation="none", aspect="auto")
             ax.axis("off")
             linear[below:below + high, left:left + wide] = picture
             left += wide + GAP
-        top += TITLE + tall + GAP
+        top += title_of + tall + GAP
         below += tall + GAP
     return png(figure), exr.encode(linear)
 

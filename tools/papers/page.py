@@ -95,7 +95,7 @@ def markdown(paper, entries, kept, tables):
         for row, entry in zip(rows, own):
             row[5] = f"**{entry['verdict']}**"
         text.append(f"\n## {group}\n\n" + markdown_table(CLAIMS, rows))
-        notes = [f"* {entry['claim']}: {entry['note']}." for entry in own if entry["note"]]
+        notes = [f"* {entry['claim']}: {entry['note'].rstrip('.')}." for entry in own if entry["note"]]
         if notes:
             text.append("\n".join(notes) + "\n")
     text.append("\n## What the paper does not say\n\n" + markdown_table(["what", "chosen here", "how much it matters"], kept["unsaid"]))
