@@ -373,6 +373,7 @@ class Report(unittest.TestCase):
                 self.assertEqual(root.tag, "{http://www.w3.org/2000/svg}svg")
                 self.assertEqual("var(" in text, False)
                 self.assertGreater(len(root.findall(".//{*}text")), 5)
+        self.assertTrue(all(name in kept[1][1] for name in (">photonmap<", ">beamtree<")), "the curves' file has its legend")
         images = xml.etree.ElementTree.fromstring(kept[0][1]).findall(".//{*}image")
         self.assertEqual(len(images), 3 * 3)
         self.assertTrue(all(image.get("href").startswith("data:image/png") for image in images))

@@ -59,9 +59,7 @@ function legend(lines) {
   const drawn = new Map(lines.map((line) => [line.name, line]));
   return cellLines().map((line) => {
     const slope = drawn.has(line.name) ? fittedSlope(drawn.get(line.name).points) : null;
-    const svg = make("svg", {width: 44, height: 14, viewBox: "0 0 44 14", class: "plot"},
-      make("path", {d: "M1,7H43", class: "line", style: `stroke:${methodColour(line.method)}`, "stroke-dasharray": DASHES[line.index % DASHES.length]}),
-      make("path", {d: MARKER_PATHS[METHODS.indexOf(line.method) % 7], transform: "translate(22 7)", class: "mark", style: `stroke:${methodColour(line.method)};fill:${line.index % 2 ? "var(--paper)" : methodColour(line.method)}`}));
+    const svg = make("svg", {width: 44, height: 14, viewBox: "0 0 44 14", class: "plot"}, lineSign(line));
     const text = slope ? ` slope ${short(slope.slope, 3)}${slope.error === null ? "" : ` ± ${short(slope.error, 2)}`}` : "";
     return make("button", {type: "button", class: "line-switch", "aria-pressed": String(!line.hidden), "data-line": line.name, title: "show or hide this line",
       onclick: () => toggleLine(line.name)}, svg, make("span", {}, line.name), make("small", {}, text));

@@ -72,7 +72,26 @@ function plot(lines, options) {
       make("text", {x: width - box.right, y: toY(level.y) - 4, "text-anchor": "end", class: "level-name"}, level.name));
   }
   for (const line of lines) drawLine(svg, line, toX, toY, options);
+  svg.lines = lines; // for the legend of a file
   return svg;
+}
+
+/** The sign of a line: its colour, dash and marker. */
+function lineSign(line) {
+  const colour = line.colour ?? methodColour(line.method);
+  return [make("path", {d: "M1,7H43", class: "line", style: `stroke:${colour}`, "stroke-dasharray": DASHES[(line.index ?? 0) % DASHES.length]}),
+    make("path", {d: MARKER_PATHS[METHODS.indexOf(line.method) % 7], transform: "translate(22 7)", class: "mark",
+      style: `stroke:${colour};fill:${(line.index ?? 0) % 2 ? "var(--paper)" : colour}`})];
+}
+
+/** Puts a legend in two columns under a plot. */
+function addLegend(svg, lines) {
+  const [width, height] = [Number(svg.getAttribute("width")), Number(svg.getAttribute("height"))];
+  lines.forEach((line, i) => svg.append(make("g", {transform: `translate(${68 + (i % 2) * (width - 68) / 2} ${height + 4 + 18 * Math.floor(i / 2)})`},
+    lineSign(line), make("text", {x: 50, y: 11, class: "tick"}, line.name))));
+  const tall = height + 10 + 18 * Math.ceil(lines.length / 2);
+  svg.setAttribute("height", tall);
+  svg.setAttribute("viewBox", `0 0 ${width} ${tall}`);
 }
 
 function frame(svg, x, y, toX, toY, box, width, height, options) {
@@ -113,7 +132,9 @@ function hover(text) { byId("status").textContent = text; }
 function svgText(svg) {
   const theme = document.documentElement.dataset.theme;
   document.documentElement.dataset.theme = "light";
-  const host = make("div", {style: "position:absolute;left:-10000px"}, svg.cloneNode(true));
+  const copied = svg.cloneNode(true);
+  if (svg.lines) addLegend(copied, svg.lines);
+  const host = make("div", {style: "position:absolute;left:-10000px"}, copied);
   document.body.append(host);
   const clone = host.firstChild;
   clone.setAttribute("xmlns", "http://www.w3.org/2000/svg");
