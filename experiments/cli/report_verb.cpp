@@ -61,23 +61,24 @@ Verb add_report(CLI::App& app) {
     CLI::App* const verb =
         app.add_subcommand("report", "Make one HTML file of the records and pictures of sweeps");
     verb->add_option("DIR", options->folders, "Folders of results")->required();
-    const auto handed_on = [&](const std::string& flags, const char* name, const char* what) {
+    const auto handed_on = [&](const char* flags, const char* type, const char* what) {
+        const std::string flag = std::string(flags).substr(std::string(flags).rfind("--"));
         return verb
             ->add_option_function<std::string>(
                 flags,
-                [options, name](const std::string& value) {
-                    options->values.insert(options->values.end(), {name, value});
+                [options, flag](const std::string& value) {
+                    options->values.insert(options->values.end(), {flag, value});
                 },
                 what)
-            ->type_name("");
+            ->type_name(type);
     };
-    handed_on("-o,--output", "--output", "FILE  The page to write: report.html")->required();
-    handed_on("--tables", "--tables", "FOLDER  Writes every table there, as CSV and LaTeX");
-    handed_on("--columns", "--columns", "NAMES  Columns of the LaTeX tables: rmse,work_s");
-    handed_on("--references", "--references", "FOLDER  Where references are kept as well");
+    handed_on("-o,--output", "FILE", "The page to write: report.html")->required();
+    handed_on("--tables", "FOLDER", "Writes every table there, as CSV and LaTeX (booktabs)");
+    handed_on("--columns", "NAMES", "Columns of the LaTeX tables (default: rmse,work_s)");
+    handed_on("--references", "FOLDER", "Where references are kept as well");
     handed_on(
-        "--megabytes", "--megabytes",
-        "NUMBER  Most that the pictures may take (default 30); the rest are left out by name");
+        "--megabytes", "NUMBER",
+        "Most that the pictures may take; what does not fit is left out by name (default: 30)");
     verb->footer(
         "The page opens without a network and holds all it shows. It is made by "
         "tools/make_report.py "
