@@ -298,6 +298,22 @@ class Page(unittest.TestCase):
         sweep.write_table(self.sweep, self.rows)
         self.refuses("line 5", 'column rmse is "nan"')
 
+    def test_names_that_lead_elsewhere_are_refused(self):
+        for name in ("trial", "reference"):
+            rows = [dict(row) for row in self.rows]
+            rows[2][name] = "../../elsewhere"
+            sweep.write_table(self.sweep, rows)
+            self.refuses('"../../elsewhere" is no plain name')
+
+    def test_a_pictures_command_is_words_for_a_shell(self):
+        caustic, rest, _ = sweep.reference_planes()
+        for command, wanted in (("causticbench render a; rm b $(c)", "causticbench render 'a;' rm b '$(c)' --threads 1"),
+                                ("causticbench --set '/a={\"b\": 1}'", "causticbench --set '/a={\"b\": 1}' --threads 1"),
+                                ("causticbench 'open", "# the picture's command is broken")):
+            sweep.write_exr(self.sweep / "trials" / self.rows[15]["trial"] / "image.exr", sweep.planes_of(caustic, rest),
+                            texts=[("causticbench.command", command)])
+            self.assertTrue(self.page()["scenes"][0]["cells"][0]["pictures"][0]["command"].startswith(wanted))
+
     def test_another_version_is_refused(self):
         (self.sweep / "plan.json").write_text('{"version": 2}')
         self.refuses("plan.json", "version 2", "reads version 1")

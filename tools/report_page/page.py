@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import shlex
 
 from report.intervals import student
 from report.records import FORMULAS
@@ -138,8 +139,8 @@ class SceneData:
         if self.rest is None:
             self.rest = self.album.keep(layers["rest"])
         if command := texts.get("causticbench.command"):
-            options = "".join(f" --{name} {row[name]}" for name in ("threads", "isa") if row.get(name))
-            found["command"] = f"{command}{options} -o {row['trial']}.exr"
+            options = [word for name in ("threads", "isa") if row.get(name) for word in (f"--{name}", row[name])]
+            found["command"] = one_command(command, *options, "-o", f"{row['trial']}.exr")
         kept = self.album.keep(layers["caustic"])
         if isinstance(kept, dict):
             return {**found, **kept}
@@ -177,6 +178,14 @@ def cell_data(cell):
             "references_error": reference_error(cell.rows), "pictures": []}
 
 
+def one_command(command, *words):
+    """The command with further words, each one word for a shell: a picture may come from anywhere."""
+    try:
+        return shlex.join([*shlex.split(command), *words])
+    except ValueError as error:  # an open quote
+        return f"# the picture's command is broken ({error})"
+
+
 def reference_error(rows):
     """The standard error of a pixel of the reference [W m⁻² sr⁻¹], or None."""
     row = rows[0]
@@ -205,8 +214,8 @@ def assembled(data, texts):
     blobs = "\n".join(f'<script type="text/plain" id="p{i}">{blob}</script>' for i, blob in enumerate(texts))
     read = lambda name: (HERE / name).read_text(encoding="utf-8")
     script = "\n".join(read(f"{name}.js") for name in SCRIPTS)
-    parts = {"STYLE": read("style.css"), "DATA": f'<script type="application/json" id="data">{text}</script>\n{blobs}',
-             "SCRIPT": script}
+    parts = {"STYLE": read("style.css"), "DATA": f'<script type="application/json" id="data">{text}</script>',
+             "SCRIPT": script, "PICTURES": blobs}
     page = read("template.html")
     for name, part in parts.items():
         page = page.replace(f"<!-- {name} -->", part)

@@ -19,9 +19,21 @@ function picture(id) {
   return decodedPictures.get(id);
 }
 
+/** The text of a picture, as soon as the file is read that far: pictures are the last of it, those shown first before the others. */
+function textOf(id) {
+  return new Promise((done) => {
+    const look = () => {
+      const element = byId(`p${id}`);
+      if (element && (element.nextElementSibling || document.readyState !== "loading")) done(element.textContent);
+      else setTimeout(look, 10);
+    };
+    look();
+  });
+}
+
 async function decode(id) {
   const about = page.pictures[id];
-  const text = byId(`p${id}`).textContent;
+  const text = await textOf(id);
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());

@@ -34,6 +34,10 @@ class Sweep:
         self.place = {row["trial"]: i for i, row in enumerate(self.rows)}
         self.records = records.read(self.path)
         self.left_out = [row for row in self.rows if row["status"] != "done"]
+        for row in self.rows:  # both become names of files
+            for name in (row["trial"], row.get("reference", "")):
+                if "/" in name or name.startswith("."):
+                    raise RecordsError(f'{self.path}: "{name}" is no plain name (of a trial, or of a reference)')
 
 
 def check_plan(folder):
