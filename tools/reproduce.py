@@ -57,7 +57,7 @@ def reproduce(name, chosen):
     found = entries(study, part)
     folders = [folder.parent for folder in sorted((study.output / "trials").glob("*/environment.json"))]
     where = machine(folders) + (f" {chosen.note}" if chosen.note else "")
-    write_page(study.output, paper, found, part, where, study.minutes())
+    write_page(study.output, study, found, part, where)
     study.copy_records()
     write_gallery(chosen.output, map(papers_text.Paper, papers_text.NAMES))
     study.log(f"{tally(found)}; {(time.monotonic() - start) / 60:.1f} minutes; {study.output / 'index.html'}")

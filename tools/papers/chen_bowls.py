@@ -5,6 +5,7 @@ import subprocess
 import numpy as np
 
 from papers.figures import luminance, strip, white
+from papers.jensen_ball import Floor
 from papers.part import Figure, Part, Table
 from papers.verdict import counted, ratio, unmeasured
 from papers.words import spread
@@ -53,12 +54,11 @@ def lights(study):
     trials = study.sweep("lights")
     lamps = sorted({row["lamp"] for row in trials.rows}, key=lambda text: json.loads(text).get("to_world", [{"scale": [0]}])[0]["scale"][0])
 
+    scene = json.loads((study.scenes.parents[1] / "scenes" / "bowl.json").read_text(encoding="utf-8"))
+
     def half_lit(layers):
-        light = luminance(layers["direct"]) / np.maximum(luminance(layers["albedo"]), 1e-6)
-        table = (layers["albedo"] < 0.7).all(axis=2) & (layers["albedo"] > 0).all(axis=2)
-        level, dark = np.percentile(light[table], 95), light[table].min()
-        share = (light - dark) / (level - dark)
-        return float(((share > 0.05) & (share < 0.6) & table).sum() / table.sum())
+        share = seen_share(layers, scene)
+        return float(((share > 0.1) & (share < 0.9)).sum() / np.isfinite(share).sum())
 
     soft = {lamp: [half_lit(layers) for layers in trials.pictures(lamp=lamp)] for lamp in lamps}
     rows = [[name, spread([100 * each for each in soft[lamp]], "%")] for name, lamp in zip(LAMPS, lamps)]
@@ -66,9 +66,19 @@ def lights(study):
     return Part({"soft_area": ratio(soft[lamps[1]], soft[lamps[0]], "of the table in half-shadow"),
                  "softer": ratio(soft[lamps[2]], soft[lamps[1]], "of the table in half-shadow")}, [Table(
         "lights", "Hard and soft shadows", ["lamp", "share of the table in half-shadow"], rows,
-        "Direct light alone, 9 rays a pixel; half-shadow: between 5 % and 60 % of the way from the darkest to the lit table.")], [Figure(
+        "Direct light alone, 9 rays a pixel; half-shadow: between 10 % and 90 % of what a point lamp sends there (in closed form).")], [Figure(
             "lights", "Point and area lights",
             "The bowl under lamps of one power: a point, discs of 2 and 6 cm radius. Shadow and caustic soften together.", *pictures)])
+
+
+def seen_share(layers, scene):
+    """How much of the lamp each pixel of the table sees: its light over a point lamp's; NaN elsewhere."""
+    table = (layers["albedo"] < 0.7).all(axis=2) & (layers["albedo"] > 0).all(axis=2)
+    light = luminance(layers["direct"]) / np.maximum(luminance(layers["albedo"]), 1e-6)
+    x, y, z = scene["sun"]["position"]
+    points = Floor(layers, scene).points
+    distance = np.sqrt((points[..., 0] - x) ** 2 + (points[..., 1] - y) ** 2 + z * z)
+    return np.where(table, light * np.pi * distance**3 / (scene["sun"]["intensity"] * z), np.nan)
 
 
 def views(study):

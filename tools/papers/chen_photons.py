@@ -5,8 +5,9 @@ import numpy as np
 
 from papers.figures import luminance, strip
 from papers.part import Figure, Part, Table
-from papers.verdict import counted, ratio, unmeasured
+from papers.verdict import Measured, counted, ratio, unmeasured
 from papers.words import short, spread
+from report import exr
 from report.records import natural
 
 BLOCK = 8  # pixels
@@ -21,30 +22,43 @@ def measure(study):
     return part
 
 
-def moire(layers, level):
+def errors(layers, level):
     """Deviation, from what it should be, of means over blocks in which the checks are finer than a pixel, over that."""
     light = luminance(layers[""])
-    rows = light[72:112, :]  # below the horizon, where a pixel covers several checks
-    blocks = rows.reshape(rows.shape[0] // BLOCK, BLOCK, -1, BLOCK).mean(axis=(1, 3))
-    return float(np.sqrt(np.mean((blocks / level - 1) ** 2)))
+    rows = light[64:112, :]  # below the horizon, where a pixel covers several checks
+    return rows.reshape(rows.shape[0] // BLOCK, BLOCK, -1, BLOCK).mean(axis=(1, 3)) / level - 1
+
+
+def patterns(some):
+    """The error that pictures of two seeds share, squared: a pattern stays, noise does not."""
+    return [float((a * b).mean()) for a, b in zip(some, [*some[1:], some[0]])]
 
 
 def sampling(study):
-    trials = study.sweep("sampling")
-    counts = sorted(trials.values("samples"), key=int)
-    found = {(count, jitter): [moire(layers, 0.5) for layers in trials.pictures(samples=count, jitter=jitter)]
-             for count in counts for jitter in ("false", "true")}
-    per_cent = lambda *key: spread([100 * each for each in found[key]], "%")
-    rows = [[f"{round(int(count) ** 0.5)}", count, per_cent(count, "false"), per_cent(count, "true")] for count in counts]
-    shown = lambda count, jitter: trials.picture(samples=count, jitter=jitter, seed=1)[""]
-    pictures = strip([[(f"n² = {count}, regular", shown(count, "false")), (f"n² = {count}, jittered", shown(count, "true"))]
-                      for count in counts[:2]], 1.0)
-    regular = [statistics.fmean(found[count, "false"]) for count in counts]
-    return Part({"moire": ratio(found["4", "false"], found["4", "true"], "moiré"),
-                 "oversampling": counted(regular[-1] / regular[0], "", f"regular, {short(regular[0] * 100)} % at one sample, "
-                                                                       f"{short(regular[-1] * 100)} % at {counts[-1]}")}, [
-        Table("sampling", "n² samples a pixel", ["n", "samples", "moiré, regular", "moiré, jittered"], rows,
-              f"A checkerboard far finer than a pixel, which has to be even grey: deviation of means over {BLOCK} x {BLOCK} pixels.")], [
+    found, shown = {}, {}
+    for n in (1, 2, 3, 4):
+        for jitter in ("false", "true"):
+            for seed in (1, 2, 3):
+                file, = study.single("sampling", "render", [
+                    "experiments/papers/scenes/chen_checker.json", "--set", f"/sensor/sampler/jitter={jitter}", "--method", "none", "--spp",
+                    str(n * n), "--seed", str(seed), "--threads", "1"], f"n{n}-{jitter}-s{seed}.exr")
+                layers = exr.read(file)
+                found.setdefault((n, jitter), []).append(errors(layers, 0.5))
+                shown.setdefault((n, jitter), layers[""])
+    whole = {key: [float(np.sqrt((each**2).mean())) for each in some] for key, some in found.items()}
+    shared = {key: patterns(some) for key, some in found.items()}
+    per_cent = lambda values: spread([100 * each for each in values])
+    rows = [[str(n), str(n * n), *[text for jitter in ("false", "true") for text in (
+        per_cent(whole[n, jitter]), spread([1e4 * each for each in shared[n, jitter]]))]] for n in (1, 2, 3, 4)]
+    pictures = strip([[(f"n² = {n * n}, regular", shown[n, "false"]), (f"n² = {n * n}, jittered", shown[n, "true"])] for n in (1, 2, 4)], 1.0)
+    once, often = (statistics.fmean(whole[n, "false"]) for n in (1, 4))
+    return Part({"moire": Measured([a - b for a, b in zip(shared[2, "false"], shared[2, "true"])],
+                                   note="squared error that two seeds share, at n = 2: regular "
+                                        f"{spread(shared[2, 'false'])}, jittered {spread(shared[2, 'true'])}"),
+                 "oversampling": counted(often / once, "", f"regular: {short(100 * once)} % at n = 1, {short(100 * often)} % at n = 4")}, [
+        Table("sampling", "n² samples a pixel", ["n", "samples", "error, regular [%]", "shared [10⁻⁴]", "error, jittered [%]", "shared [10⁻⁴]"], rows,
+              f"A checkerboard far finer than a pixel, which has to be even grey: deviation of means over {BLOCK} x {BLOCK} pixels, and the "
+              "part of its square that two seeds share: moiré is there again with every seed, noise is not.")], [
         Figure("sampling", "Regular and jittered samples", "A fine checkerboard to the horizon. Regular samples make patterns of their own "
                "(moiré) where jittered ones make noise.", *pictures)])
 
@@ -97,6 +111,6 @@ def maps(study):
             ["final gathering, 8 rays", spread(mean(gathered))]]
     return Part({"four_parts": counted(adds, "of the brightest pixel"), "second_hit": ratio(mean(two), mean(whole), "mean indirect light")}, [Table(
         "maps", "Light between diffuse surfaces", ["by", "mean of the layer [W/(m² sr)]"], rows,
-        f"{len(gathered)} seeds, 160 × 160 pixels.")], [Figure(
+        f"{len(gathered)} seeds, 240 × 240 pixels.")], [Figure(
             "maps", "Four parts of the light in a room", "Direct light, specular, caustic (its own map) and multiple diffuse reflections (the "
             "global map), and their sum.", *pictures)])

@@ -6,6 +6,7 @@ import matplotlib
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from PIL import Image  # matplotlib needs it, too
 
 from report import exr
 
@@ -79,7 +80,8 @@ def plot(draw, width=6.4, height=3.2, columns=1):
 
 
 def png(figure):
-    data = io.BytesIO()
-    figure.savefig(data, format="png", metadata={"Software": None}, pil_kwargs={"optimize": True})
+    drawn, data = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, format="png", metadata={"Software": None})
     plt.close(figure)
+    Image.open(drawn).convert("RGB").save(data, format="png", optimize=True)
     return data.getvalue()

@@ -1,7 +1,7 @@
 """results/papers/README.md: what each paper's page says in one line, and all figures with a paragraph each."""
 import json
 
-from papers.page import markdown_table, tally
+from papers.page import markdown_table, tally, took
 from report.report_files import write
 
 HEAD = """# The papers, reproduced
@@ -21,9 +21,9 @@ def write_gallery(folder, papers):
         if not (folder / paper.name / "tables.json").is_file():
             continue
         entries, kept = (json.loads((folder / paper.name / name).read_text(encoding="utf-8")) for name in ("verdicts.json", "tables.json"))
-        rows.append([f"[{paper.text['author']}: {paper.text['title']}]({paper.name}/tables.md)", tally(entries), f"{kept['minutes']:.0f}",
+        rows.append([f"[{paper.text['author']}: {paper.text['title']}]({paper.name}/tables.md)", tally(entries), took(kept),
                      f"`tools/reproduce.sh {paper.name}`"])
         figures.append(f"\n## {paper.text['author']}: {paper.text['title']}\n")
         figures += [f"\n### {each['title']}\n\n![{each['title']}]({paper.name}/figures/{each['name']}.png)\n\n{each['caption']}\n" for each in kept["figures"]]
         figures.append(f"\nTaken on {kept['machine']}\n")
-    write(folder / "README.md", HEAD + markdown_table(["paper", "claims", "minutes", "command"], rows) + "".join(figures))
+    write(folder / "README.md", HEAD + markdown_table(["paper", "claims", "took", "command"], rows) + "".join(figures))

@@ -44,8 +44,9 @@ def claims_table(entries):
     return Table("claims", "Claims", CLAIMS, rows)
 
 
-def write_page(folder, paper, entries, part, machine, minutes):
+def write_page(folder, study, entries, part, machine):
     """All files of a paper; the tables' texts go to tables.json, from which a test makes the others again."""
+    paper = study.paper
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "figures").mkdir(exist_ok=True)
     for figure in part.figures:
@@ -53,7 +54,7 @@ def write_page(folder, paper, entries, part, machine, minutes):
         if figure.exr:
             (folder / "figures" / f"{figure.name}.exr").write_bytes(figure.exr)
     unsaid = [[each["what"], each["chosen"], each["matters"].format_map(part.facts)] for each in paper.text["unsaid"]]
-    kept = {"machine": machine, "minutes": minutes, "unsaid": unsaid,
+    kept = {"machine": machine, "minutes": round(study.minutes(), 1), "cpu_minutes": round(study.cpu_minutes(), 1), "unsaid": unsaid,
             "tables": [vars(table) for table in part.tables],
             "figures": [{"name": figure.name, "title": figure.title, "caption": figure.caption} for figure in part.figures]}
     write(folder / "verdicts.json", json.dumps(entries, indent=1, ensure_ascii=False) + "\n")
@@ -67,6 +68,10 @@ def rendered(paper, entries, kept):
     tables = [Table(**each) for each in kept["tables"]]
     return {"tables.md": markdown(paper, entries, kept, tables), "tables.csv": comma(entries, tables),
             "tables.tex": latex(paper, entries, tables), "index.html": page(paper, entries, kept, tables)}
+
+
+def took(kept):
+    return f"{kept['minutes']:.0f} minutes ({kept['cpu_minutes']:.0f} of CPU time)"
 
 
 def tally(entries):
@@ -89,7 +94,7 @@ def markdown_table(heading, rows):
 
 def markdown(paper, entries, kept, tables):
     text = [f"# {paper.text['author']}: {paper.text['title']}\n", f"{paper.text['published']}. {len(entries)} claims: {tally(entries)}.\n",
-            f"Made by `tools/reproduce.sh {paper.name}` in {kept['minutes']:.0f} minutes on {kept['machine']}\n", HOW]
+            f"Made by `tools/reproduce.sh {paper.name}` in {took(kept)} on {kept['machine']}\n", HOW]
     for group, own in by_group(entries):
         rows = claims_table(own).rows
         for row, entry in zip(rows, own):
@@ -148,7 +153,7 @@ def page(paper, entries, kept, tables):
     cells = lambda fields, tag="td": "<tr>" + "".join(f"<{tag}>{e(str(field))}</{tag}>" for field in fields) + "</tr>\n"
     table = lambda heading, rows, kind="": f"<table class='{kind}'>{cells(heading, 'th')}{''.join(map(cells, rows))}</table>\n"
     body = [f"<h1>{e(paper.text['title'])}</h1>\n<p>{e(paper.text['author'])}. {e(paper.text['published'])}.</p>\n<p><b>{len(entries)} claims: "
-            f"{tally(entries)}.</b> Made by <code>tools/reproduce.sh {paper.name}</code> in {kept['minutes']:.0f} minutes on {e(kept['machine'])}</p>\n"
+            f"{tally(entries)}.</b> Made by <code>tools/reproduce.sh {paper.name}</code> in {took(kept)} on {e(kept['machine'])}</p>\n"
             f"<p class='note'>{e(HOW)}</p>\n<table>{cells(CLAIMS, 'th')}"]
     for group, own in by_group(entries):
         body.append(f"<tr class='group'><td colspan='{len(CLAIMS)}'>{e(group)}</td></tr>\n")

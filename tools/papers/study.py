@@ -81,6 +81,10 @@ class Study:
         """Of all commands, whenever they ran."""
         return sum(seconds for _, seconds in self.costs.values()) / 60
 
+    def cpu_minutes(self):
+        """Of the sweeps' renderings, on however many processors."""
+        return sum(sum(trials.column("cpu_s")) for trials in self.done.values()) / 60
+
     def copy_records(self):
         """The sweeps' tables, to be kept."""
         folder = self.output / "records"
