@@ -178,8 +178,9 @@ def ours_of(program, folder, mitsuba, room):
     mask = off_the_lamp([layers for layers, _ in made])
     of_paths = variance([not_direct(layers) for layers, _ in made], mask)
     truth, _ = render("truth", "--seed", "9", *paths(TRUTH_PATHS))
-    mapped, mapped_s = render("mapped", "--method", "photonmap", "--param", "photons=200000", "--param", "tree=packed",
-                              "--indirect", "globalphotonmap", "--indirect-param", "gather=16")
+    caustic = () if room == DULL else ("--param", "photons=200000", "--param", "tree=packed")
+    mapped, mapped_s = render("mapped", "--method", "photonmap" if caustic else "none", *caustic, "--indirect",
+                              "globalphotonmap", "--indirect-param", "gather=16")
     of_map = float(numpy.mean((not_direct(mapped) - not_direct(truth))[mask] ** 2)) - of_paths * PATHS / TRUTH_PATHS
     return {"`pathtrace`": (of_paths, statistics.median(seconds for _, seconds in made) - without),
             "`photonmap`, `globalphotonmap`": (of_map, mapped_s - without)}, mask

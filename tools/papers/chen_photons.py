@@ -42,7 +42,7 @@ def sampling(study):
                 file, = study.single("sampling", "render", [
                     "experiments/papers/scenes/chen_checker.json", "--set", f"/sensor/sampler/jitter={jitter}", "--method", "none", "--spp",
                     str(n * n), "--seed", str(seed), "--threads", "1"], f"n{n}-{jitter}-s{seed}.exr")
-                layers = exr.read(file)
+                layers = exr.read_layers(file)
                 found.setdefault((n, jitter), []).append(errors(layers, 0.5))
                 shown.setdefault((n, jitter), layers[""])
     whole = {key: [float(np.sqrt((each**2).mean())) for each in some] for key, some in found.items()}
