@@ -70,7 +70,8 @@ def fringe(study):
     width = 1000 * abs(theirs[0] - theirs[2])
     rows = [[name, f"{1000 * theirs[k]:.2f}", spread([1000 * each[k] for each in ours])] for k, name in enumerate(("red", "green", "blue"))]
     rows.append(["red to blue", f"{width:.2f}", spread(widths)])
-    picture = strip([[("", trials.picture(seed=1)[""])]])
+    shown = trials.picture(seed=1)[""]
+    picture = strip([[("", shown)]], 0.5 * float(np.percentile(luminance(shown), 99.9)))
     return Part({"fringe": Measured([each / width for each in widths], note=f"{spread(widths, 'mm')} from the middle of the red to that of the blue; "
                                     f"in closed form {width:.2f} mm")}, [Table(
         "prism", "The fringe of a prism of SF10", ["channel", "middle in closed form [mm]", "middle in the picture [mm]"], rows,

@@ -12,6 +12,7 @@ from report import exr
 
 DPI = 100
 GAP, TITLE = 6, 20  # pixels
+LARGE = 300_000  # bytes of a PNG
 STYLE = {"font.family": "DejaVu Sans", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7,
          "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 1.3, "lines.markersize": 4}
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -83,5 +84,10 @@ def png(figure):
     drawn, data = io.BytesIO(), io.BytesIO()
     figure.savefig(drawn, format="png", metadata={"Software": None})
     plt.close(figure)
-    Image.open(drawn).convert("RGB").save(data, format="png", optimize=True)
+    picture = Image.open(drawn).convert("RGB")
+    picture.save(data, format="png", optimize=True)
+    if len(data.getvalue()) > LARGE:  # noise does not compress: 256 colours of its own, dithered
+        data = io.BytesIO()
+        palette = picture.quantize(256)
+        picture.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG).save(data, format="png", optimize=True)
     return data.getvalue()
