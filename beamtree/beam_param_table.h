@@ -28,6 +28,20 @@ std::vector<Parameter<Params>> beam_param_table() {
                  "Polygons along each parameter of exact casters; meshes are taken as they are.",
              .unit = "polygons"}),
         parameter::max_bounces<Params>(),
+        parameter::number<Params>(
+            &BeamParams::prune, 0, 1,
+            {.key = "prune",
+             .meaning = "Beams with less than this of the light of the first events' beams on "
+                        "average are not followed."})
+            .only_if([](const Params& params) { return params.prune != BeamParams{}.prune; }),
+        parameter::whole_number<Params>(
+            &BeamParams::max_beams, 1, 1'000'000'000,
+            {.key = "max_beams",
+             .meaning = "Most beams of several events, those with the most light; each takes about "
+                        "half a kilobyte while they are traced.",
+             .unit = "beams"})
+            .only_if(
+                [](const Params& params) { return params.max_beams != BeamParams{}.max_beams; }),
         parameter::whole_number<Params>(
             &BeamParams::wavelengths, 1, 4096,
             {.key = "wavelengths",

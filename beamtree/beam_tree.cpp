@@ -1,6 +1,7 @@
 #include "beamtree/beam_tree.h"
 
 #include "beamtree/forest.h"
+#include "beamtree/sampled_beams.h"
 
 namespace caustics::beamtree {
 
@@ -42,7 +43,9 @@ private:
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
-    TracedScene traced = trace_scene(scene, "beamtree", params, options, params.intensity);
+    if (params.sampled) return sampled_beams(scene, "beamtree", params, options);
+    TracedScene traced =
+        trace_scene(scene, "beamtree", params, options, params.intensity, params.footprint);
     options.phase("tree");
     Forest forest(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));

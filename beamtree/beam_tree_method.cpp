@@ -105,7 +105,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
                  settle_bound(node, params);
                  settle_tree(node, params);
              },
-         .take_least_work = [](P& params) { params.light_samples = 1; }});
+         .take_least_work = [](P& params) { params.sampled = true; }});
     return method;
 }
 

@@ -7,6 +7,7 @@
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/light/find_in_beam.h"
 #include "beamtree/receiver_polygons.h"
+#include "beamtree/sampled_beams.h"
 #include "core/base/parallel.h"
 
 namespace caustics::beamtree {
@@ -147,16 +148,14 @@ const DescribedMethod<CausticPolygonsParams>& causticpolygons_method() {
                       "are.",
                   .unit = "polygons",
                   .source = "[Watt 1990]"})}),
-         .take_least_work = [](P& params) {
-             params.light_samples = 1;
-             params.receiver_resolution = 2;
-         }});
+         .take_least_work = [](P& params) { params.sampled = true; }});
     return method;
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene,
                                               const CausticPolygonsParams& params,
                                               const RunOptions& options) {
+    if (params.sampled) return sampled_beams(scene, "causticpolygons", params, options);
     TracedScene traced = trace_scene(scene, "causticpolygons", params, options);
     options.phase("polygons");
     ReceiverPolygons receivers(scene, params.receiver_resolution);

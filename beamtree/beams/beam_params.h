@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "beamtree/beams/caster_mesh.h"
 #include "beamtree/beams/light_sample.h"
 
@@ -11,8 +13,12 @@ struct BeamParams {
     int light_samples = 16;    ///< for each area light
     int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
     int max_bounces = 16;      ///< specular events between light and receiver
-    int wavelengths = 16;      ///< that white light is divided into where glass disperses it
+    double prune = 1e-3;       ///< least light of a beam to be followed, of the first events' mean
+    std::int64_t max_beams = 1'000'000;  ///< of several events
+    int wavelengths = 16;  ///< that white light is divided into where glass disperses it
     Dispersion dispersion = Dispersion::bins;
+    /// Only a sample of the polygons is traced, to tell whether beams can serve the scene: no parameter.
+    bool sampled = false;
 };
 
 }  // namespace caustics::beamtree

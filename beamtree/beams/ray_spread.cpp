@@ -175,15 +175,24 @@ std::vector<std::uint32_t> find_partners(const BeamSet& set, std::span<const Ray
     return partners;
 }
 
+std::vector<bool> rays_of(const BeamSet& set, const std::vector<bool>& kept) {
+    std::vector<bool> rays(set.rays.size(), false);
+    for (std::size_t i = 0; i < set.beams.size(); ++i)
+        for (const std::uint32_t corner : set.beams[i].corners)
+            if (kept[i] && corner != Beam::none) rays[corner] = true;
+    return rays;
+}
+
 }  // namespace
 
 void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
-            const ProgressPart& part) {
+            const std::vector<bool>& kept, const ProgressPart& part) {
+    const std::vector<bool> asked = rays_of(set, kept);
     SpreadFit fit(set, origins, neighbours);
     set.spreads.clear();
     ProgressSteps steps(part, set.rays.size());
     for (std::uint32_t ray = 0; ray < set.rays.size(); ++ray) {
-        set.spreads.push_back(fit.spread(ray));
+        set.spreads.push_back(asked[ray] ? fit.spread(ray) : RaySpread{});
         steps.step();
     }
     set.partners = find_partners(set, origins, neighbours);

@@ -3,14 +3,14 @@
 #include <algorithm>
 
 #include "beamtree/beams/ray_spread.h"
+#include "beamtree/tracing/kept_beams.h"
 #include "beamtree/tracing/next_bounce.h"
 
 namespace caustics::beamtree {
 namespace {
 
-// Of the flux of all first events, and of one of their beams on average: less is not followed.
-constexpr double least_set_share = 1e-4;
-constexpr double least_beam_share = 1e-3;
+// What a set must have of the light of all first events, over what a beam must have of their mean.
+constexpr double set_over_beam = 0.1;
 // Of the work on a level and all after it, that on the level itself.
 constexpr double own = 0.3;
 
@@ -26,47 +26,34 @@ double count_of(const std::vector<Level>& levels) {
     return sum;
 }
 
-/// Leaves out beams for queries.
-void keep_only(BeamSet& set, const std::vector<bool>& kept) {
-    std::vector<std::uint32_t> number(set.beams.size(), Beam::none);
-    std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < set.beams.size(); ++i) {
-        if (!kept[i]) continue;
-        number[i] = count;
-        set.beams[count] = set.beams[i];
-        if (!set.partners.empty()) set.partners[count] = set.partners[i];
-        ++count;
-    }
-    set.beams.resize(count);
-    if (set.partners.empty()) return;
-    set.partners.resize(count);
-    for (std::uint32_t& partner : set.partners)
-        if (partner != Beam::none) partner = number[partner];
-}
-
 /// Follows one level after the other, as far as it is worth it.
 class Follower {
 public:
     Follower(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-             const BeamExtras& extras, std::size_t max_bounces, TracedBeams& traced)
+             const BeamExtras& extras, const TraceSettings& settings, BeamBudget& budget,
+             TracedBeams& traced)
         : scene_(scene),
           boxes_(boxes),
           surface_(surface),
           extras_(extras),
-          max_bounces_(max_bounces),
+          settings_(settings),
+          budget_(budget),
           traced_(traced) {}
 
     void follow(Level& level, double first_flux, double mean_flux, const ProgressPart& part) {
         BeamSet& set = level.traced.set;
         const std::size_t place = traced_.sets.size();
         traced_.sets.emplace_back();
-        if (level.bounces() < max_bounces_) {
-            NextSets next = next_sets(scene_, boxes_, surface_, level, least_beam_share * mean_flux,
-                                      traced_.balance, part.of(own));
+        std::vector<bool> kept(set.beams.size(), true);
+        const bool goes_on = level.bounces() < static_cast<std::size_t>(settings_.max_bounces);
+        if (goes_on) {
+            NextSets next =
+                next_sets(scene_, boxes_, surface_, level, {settings_.prune * mean_flux, budget_},
+                          traced_.balance, part.of(own));
             const double beams = count_of(next.sets);
             for (Level& one : next.sets) {
                 const double flux = flux_of(one.traced.set);
-                if (one.worth < least_set_share * first_flux) {
+                if (one.worth < set_over_beam * settings_.prune * first_flux) {
                     traced_.balance.lost += flux;
                     traced_.balance.pruned += flux;
                 } else {
@@ -75,22 +62,27 @@ public:
                                    beams));
                 }
             }
-            if (extras_.neighbours != nullptr)
-                refine(set, level.traced.origins, *extras_.neighbours, part.of(0));
-            std::vector<bool> kept = std::move(next.stays);
+            kept = std::move(next.stays);
             for (std::size_t i = 0; i < kept.size(); ++i)
                 kept[i] = kept[i] || comes_near_a_receiver(level, set.beams[i]);
-            add_drifts(level, kept);
-            keep_only(set, kept);
-        } else {
-            if (extras_.neighbours != nullptr)
-                refine(set, level.traced.origins, *extras_.neighbours, part.of(1));
-            add_drifts(level, std::vector<bool>(set.beams.size(), true));
         }
+        if (budget_.is_over()) {
+            forget();
+            return;
+        }
+        add_drifts(level, kept);
+        traced_.unreceived += leave_out_unreceived(kept, set, boxes_, settings_);
+        if (extras_.neighbours != nullptr)
+            refine(set, level.traced.origins, *extras_.neighbours, kept, part.of(goes_on ? 0 : 1));
+        keep_only(set, kept);
         traced_.sets[place] = std::move(set);
     }
 
 private:
+    void forget() {
+        for (BeamSet& set : traced_.sets) set = {};
+    }
+
     void add_drifts(Level& level, const std::vector<bool>& kept) {
         if (extras_.drift != nullptr) traced_.drift.add(extras_.drift->add_to(level, kept));
     }
@@ -113,15 +105,22 @@ private:
     const SceneBoxes& boxes_;
     const LitCaster& surface_;
     BeamExtras extras_;
-    std::size_t max_bounces_;
+    const TraceSettings& settings_;
+    BeamBudget& budget_;
     TracedBeams& traced_;
 };
 
 }  // namespace
 
 BeamBounces::BeamBounces(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                         const BeamExtras& extras, int max_bounces)
-    : scene_(scene), boxes_(boxes), surface_(surface), extras_(extras), max_bounces_(max_bounces) {}
+                         const BeamExtras& extras, const TraceSettings& settings,
+                         BeamBudget& budget)
+    : scene_(scene),
+      boxes_(boxes),
+      surface_(surface),
+      extras_(extras),
+      settings_(settings),
+      budget_(budget) {}
 
 void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& part) {
     double flux = 0;
@@ -136,7 +135,7 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
         level.event = event;
         level.traced = std::move(first[event]);
         level.departures = first_departures(level.traced);
-        Follower(scene_, boxes_, surface_, extras_, static_cast<std::size_t>(max_bounces_), traced_)
+        Follower(scene_, boxes_, surface_, extras_, settings_, budget_, traced_)
             .follow(level, flux, flux / static_cast<double>(beams),
                     part.of(static_cast<double>(level.traced.set.beams.size()) /
                             static_cast<double>(beams)));

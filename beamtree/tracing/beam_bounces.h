@@ -12,6 +12,7 @@
 #include "beamtree/tracing/beam_drift.h"
 #include "beamtree/tracing/ray_arrival.h"
 #include "beamtree/tracing/scene_boxes.h"
+#include "beamtree/tracing/trace_settings.h"
 
 namespace caustics::beamtree {
 
@@ -20,6 +21,8 @@ struct TracedBeams {
     std::vector<BeamSet> sets;
     FluxBalance balance;
     DriftAccount drift;
+    double least_light = 0;  ///< of a beam that the budget has room for [W]; 0: it has for all
+    std::uint64_t unreceived = 0;  ///< beams left out because they meet no receiver
 };
 
 /// What sets get beside their rays; each may be null.
@@ -38,17 +41,18 @@ struct BeamExtras {
 /// along its edges, and three different things quarter it. What lies between corners that do one
 /// thing is taken to do the same: an obstacle smaller than a polygon does not interrupt a beam on its
 /// way. The last leg, from the last event to a receiver, is left to the shadow ray of a query; all
-/// beams stay for that, but those which no receiver can come near before their light leaves.
+/// beams stay for that, but those which no receiver can come near before their light leaves, or ever.
 ///
-/// Sets with less than 1e-4 of the first events' flux, and beams with less than 1e-3 of those of the
-/// first events on average, are not kept; `balance` counts them. What media absorb counts for neither:
+/// Sets with less than a tenth of `prune` of the first events' flux, and beams with less than `prune` of those of
+/// the first events on average, are not kept, nor beams below the budget's least; `balance` counts them. What media absorb counts for neither:
 /// light that comes through dark glass is weak, and all there is.
 class BeamBounces {
 public:
     BeamBounces(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                const BeamExtras& extras, int max_bounces);
+                const BeamExtras& extras, const TraceSettings& settings, BeamBudget& budget);
 
-    /// Keeps the sets of the first events and those of all events after them.
+    /// Keeps the sets of the first events and those of all events after them; none once beams are more than the
+    /// budget, which then only counts them, to say what those that fit have at least.
     void follow(std::array<TracedSet, 2> first, const ProgressPart& part);
     /// Sets in the order of their light: each before those that its light reaches.
     TracedBeams take() { return std::move(traced_); }
@@ -60,7 +64,8 @@ private:
     const SceneBoxes& boxes_;
     const LitCaster& surface_;
     BeamExtras extras_;
-    int max_bounces_;
+    TraceSettings settings_;
+    BeamBudget& budget_;
     TracedBeams traced_;
 };
 

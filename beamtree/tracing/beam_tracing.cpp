@@ -1,257 +1,34 @@
 #include "beamtree/tracing/beam_tracing.h"
 
 #include <algorithm>
-#include <optional>
-#include <span>
+#include <numeric>
 
-#include "beamtree/beams/lit_caster.h"
-#include "beamtree/beams/near_light.h"
-#include "beamtree/beams/ray_spread.h"
-#include "beamtree/beams/trace_progress.h"
-#include "beamtree/tracing/beam_bounces.h"
-#include "beamtree/tracing/beam_drift.h"
-#include "beamtree/tracing/cut_piece.h"
+#include "beamtree/tracing/expected_least.h"
 #include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 namespace {
 
-// How often a triangle is quartered whose corners do not tell what it does.
-constexpr int most_splits = 5;
-// How often an edge is halved to find where light stops going on.
-constexpr int bisections = 20;
-// The rays of a polygon's beam part by less than 60 degrees, those of a quartered one's by less
-// than 30.
-constexpr float widest_cosine = 0.5F;
-constexpr float widest_cosine_of_parts = 0.866F;
-
-/// What a piece of the mesh is part of, and what happens there.
-struct Origin {
-    std::uint32_t triangle;  ///< the first, of a quad
-    std::uint32_t triangle_count;
-    const Facing& facing;
-    Event event;
-};
-
-using Corners = std::span<const MeshPoint* const>;
-
-bool part_widely(Corners corners, Event event, bool whole) {
-    const float widest = whole ? widest_cosine : widest_cosine_of_parts;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        for (std::size_t j = i + 1; j < corners.size(); ++j)
-            if (corners[i]->bent.direction[event].dot(corners[j]->bent.direction[event]) < widest)
-                return true;
-    return false;
+// One light and caster may need more than its even share, but all together are not counted much more often than
+// there are beams in the end.
+BeamBudget part_of_budget(std::uint64_t most, std::size_t parts, double least) {
+    return BeamBudget(parts <= 2 ? most : std::max<std::uint64_t>(1, 2 * (most / parts)), least);
 }
 
-class BeamTracer {
-public:
-    explicit BeamTracer(const LitCaster& surface)
-        : surface_(surface),
-          bender_(surface.bender()),
-          caster_(surface.caster()),
-          mesh_(surface.caster().mesh),
-          near_light_(surface) {
-        for (const Event event : events) {
-            BeamSet& set = traced_[event].set;
-            set.light = surface.light();
-            set.caster = caster_.shape;
-            set.refracted = event == refraction;
-            set.path = {{caster_.shape, set.refracted}};
-            if (const auto* medium = std::get_if<Dielectric>(&surface.bsdf().model))
-                set.absorption = {medium->ext_absorption, medium->absorption};
-            ray_of_vertex_[event].assign(mesh_.positions.size(), Beam::none);
-        }
+// Where beams are too many: the parts that have some that do not fit, with budgets of those that do.
+std::vector<std::size_t> fit_to_budget(std::vector<BeamBudget>& budgets, std::uint64_t most) {
+    BeamBudget all(most);
+    for (const BeamBudget& budget : budgets) all.add(budget);
+    std::vector<std::size_t> again;
+    for (std::size_t i = 0; i < budgets.size(); ++i) {
+        if (!budgets[i].is_over() && budgets[i].all_have(all.least())) continue;
+        budgets[i] = BeamBudget(BeamBudget::no_limit, std::max(all.least(), budgets[i].least()));
+        again.push_back(i);
     }
-
-    std::array<TracedSet, 2> run(const ProgressPart& part) {
-        vertices_.reserve(mesh_.positions.size());
-        for (std::uint32_t i = 0; i < mesh_.positions.size(); ++i) {
-            vertices_.push_back(bender_.at(mesh_.positions[i], mesh_.normals[i]));
-            vertices_.back().vertex = i;
-        }
-        auto quad = caster_.quads.begin();
-        ProgressSteps steps(part, mesh_.triangles.size());
-        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
-            steps.step();
-            if (quad != caster_.quads.end() && quad->triangle == i) {
-                trace_quad(*quad++);
-                ++i;
-                steps.step();
-            } else if (!caster_.left_out[i]) {
-                const Facing facing = surface_.facing(i);
-                for (const Event event : events) trace_triangle({i, 1, facing, event});
-            }
-        }
-        return std::move(traced_);
-    }
-
-private:
-    void trace_triangle(const Origin& origin) {
-        if (origin.facing.hidden) return;
-        const auto& [i, j, k] = mesh_.triangles[origin.triangle];
-        const MeshPoint& a = vertices_[i];
-        const MeshPoint& b = vertices_[j];
-        const MeshPoint& c = vertices_[k];
-        const std::array<const MeshPoint*, 3> corners = {&a, &b, &c};
-        if (near_light_.is_near(corners)) {
-            for (const MeshPiece& piece : near_light_.pieces({a, b, c}))
-                trace_piece(piece, origin, most_splits);
-            return;
-        }
-        const bool plain =
-            sends_on(a, origin.facing, origin.event) && sends_on(b, origin.facing, origin.event) &&
-            sends_on(c, origin.facing, origin.event) && !part_widely(corners, origin.event, true) &&
-            !weights_differ(corners, origin.event);
-        if (plain)
-            add_beam(corners, origin);
-        else
-            trace_piece({a, b, c}, origin, most_splits);
-    }
-
-    // One polygon where both of its triangles send all of their light on, else they go by
-    // themselves.
-    void trace_quad(const CellQuad& quad) {
-        const std::array<Facing, 2> sides = {surface_.facing(quad.triangle),
-                                             surface_.facing(quad.triangle + 1)};
-        const bool alike = sides[0].front == sides[1].front && !sides[0].hidden && !sides[1].hidden;
-        const auto& [a, b, c, d] = quad.corners;
-        const std::array<const MeshPoint*, 4> corners = {&vertices_[a], &vertices_[b],
-                                                         &vertices_[c], &vertices_[d]};
-        const bool near_light = near_light_.is_near({corners[0], corners[1], corners[2]}) ||
-                                near_light_.is_near({corners[0], corners[2], corners[3]});
-        for (const Event event : events) {
-            const Origin whole{quad.triangle, 2, sides[0], event};
-            bool is_whole = alike && !near_light && !part_widely(corners, event, true);
-            for (const std::size_t i : {0U, 1U, 2U})
-                is_whole = is_whole && sends_on(*corners[i], sides[0], event);
-            for (const std::size_t i : {0U, 2U, 3U})
-                is_whole = is_whole && sends_on(*corners[i], sides[1], event);
-            if (is_whole) {
-                add_beam(corners, whole);
-            } else {
-                trace_triangle({quad.triangle, 1, sides[0], event});
-                trace_triangle({quad.triangle + 1, 1, sides[1], event});
-            }
-        }
-    }
-
-    void trace_piece(const MeshPiece& piece, const Origin& origin, int splits) {
-        const auto between = [&](const MeshPoint& p, const MeshPoint& q, float t) {
-            return bender_.between(p, q, t);
-        };
-        const CutPiece<MeshPoint> lit = cut_piece(
-            piece, bisections,
-            [&](const MeshPoint& p) { return sends_on(p, origin.facing, origin.event); }, between);
-        std::array<const MeshPoint*, 4> all;
-        for (std::size_t i = 0; i < lit.count; ++i) all[i] = &lit.corners[i];
-        const Corners corners(all.data(), lit.count);
-        if (splits > 0 && (part_widely(corners, origin.event, splits == most_splits) ||
-                           deceives(piece, origin))) {
-            for (const MeshPiece& part : quarters(piece, between))
-                trace_piece(part, origin, splits - 1);
-        } else if (!corners.empty()) {
-            add_beam(corners, origin);
-        }
-    }
-
-    // Whether corners that are all lit or all dark do not tell what the piece does: inside it, or
-    // straight below the light, it is another thing.
-    bool deceives(const MeshPiece& piece, const Origin& origin) const {
-        const auto& [a, b, c] = piece;
-        const auto sends = [&](const MeshPoint& p) {
-            return sends_on(p, origin.facing, origin.event);
-        };
-        const auto middle = [&] { return sends(bender_.inside(piece, Vec3::Constant(1.0F / 3))); };
-        const int lit = sends(a) + sends(b) + sends(c);
-        const std::array<const MeshPoint*, 3> corners = {&a, &b, &c};
-        if (lit > 0) return lit == 3 && weights_differ(corners, origin.event) && !middle();
-        if (origin.event == refraction &&
-            !std::holds_alternative<Dielectric>(surface_.bsdf().model))
-            return false;
-        return middle() || sends(bender_.nearest_to_light(piece)) ||
-               sends(bender_.between(a, b, 0.5F)) || sends(bender_.between(b, c, 0.5F)) ||
-               sends(bender_.between(c, a, 0.5F));
-    }
-
-    void add_beam(Corners corners, const Origin& origin) {
-        BeamSet& set = traced_[origin.event].set;
-        Beam beam;
-        std::array<Spectrum, 2> flux = {black(), black()};
-        for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
-            const std::array<const MeshPoint*, 3> piece = {corners[0], corners[1 + i],
-                                                           corners[2 + i]};
-            flux[i] = bender_.flux(piece, origin.event);
-        }
-        beam.flux = flux[0] + flux[1];
-        if (!(beam.flux.mean() > 0)) return;
-        beam.first_share = flux[0].mean() / beam.flux.mean();
-        beam.triangle = origin.triangle;
-        beam.inside = origin.facing.front == (origin.event == refraction);
-        for (std::uint32_t i = 0; i < origin.triangle_count; ++i)
-            beam.offset = std::max(beam.offset, surface_.offset(beam.triangle + i));
-        beam.corners.fill(Beam::none);
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            beam.corners[i] = ray_of(*corners[i], origin.event);
-        set.beams.push_back(beam);
-    }
-
-    // Beams that meet in a vertex share its ray.
-    std::uint32_t ray_of(const MeshPoint& point, Event event) {
-        const bool shared = point.vertex != MeshPoint::no_vertex;
-        if (shared && ray_of_vertex_[event][point.vertex] != Beam::none)
-            return ray_of_vertex_[event][point.vertex];
-        auto& [set, origins] = traced_[event];
-        set.rays.push_back({point.position, point.bent.direction[event]});
-        origins.push_back({point.position, point.normal, point.bent.weight[event], point.vertex});
-        const auto ray = static_cast<std::uint32_t>(set.rays.size() - 1);
-        if (shared) ray_of_vertex_[event][point.vertex] = ray;
-        return ray;
-    }
-
-    const LitCaster& surface_;
-    const LightBender& bender_;
-    const CasterMesh& caster_;
-    const TriangleMesh& mesh_;
-    NearLight near_light_;
-    std::vector<MeshPoint> vertices_;
-    std::array<std::vector<std::uint32_t>, 2> ray_of_vertex_;
-    std::array<TracedSet, 2> traced_;
-};
-
-TracedBeams trace_one(const Scene& scene, const SceneBoxes& boxes, const CasterMesh& caster,
-                      const MeshNeighbours* neighbours, const LightSample& light, int max_bounces,
-                      const ProgressPart& part) {
-    const LitCaster surface(scene, caster, light);
-    std::optional<BeamDrift> drift;
-    if (light.drifts) drift.emplace(scene, caster, light);
-    const bool follows = max_bounces > 1 || drift;
-    std::array<TracedSet, 2> first = BeamTracer(surface).run(part.of(follows ? 0.1 : 0.9));
-    TracedBeams traced;
-    if (follows) {
-        BeamBounces follower(scene, boxes, surface, {neighbours, drift ? &*drift : nullptr},
-                             max_bounces);
-        follower.follow(std::move(first), part.of(0.9));
-        traced = follower.take();
-    } else {
-        for (auto& [set, origins] : first) {
-            if (neighbours != nullptr) refine(set, origins, *neighbours, part.of(0.05));
-            traced.sets.push_back(std::move(set));
-        }
-    }
-    return traced;
+    return again;
 }
 
 }  // namespace
-
-std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
-                                   const LightSample& light) {
-    const RunOptions options;
-    TraceProgress progress(options);
-    std::array<TracedSet, 2> traced =
-        BeamTracer(LitCaster(scene, caster, light)).run({progress, 1});
-    return {std::move(traced[0].set), std::move(traced[1].set)};
-}
 
 TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
                             const std::vector<LightSample>& lights, const TraceSettings& settings,
@@ -259,20 +36,34 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
     std::vector<MeshNeighbours> neighbours;
     if (settings.intensity == Intensity::refined)
         for (const CasterMesh& caster : casters) neighbours.emplace_back(caster);
-    const SceneBoxes boxes = settings.max_bounces > 1 ? scene_boxes(scene) : SceneBoxes{};
+    const bool asks_boxes = settings.max_bounces > 1 || settings.receiver_margin;
+    const SceneBoxes boxes = asks_boxes ? scene_boxes(scene) : SceneBoxes{};
     std::vector<TracedBeams> parts(lights.size() * casters.size());
-    TraceProgress progress(options);
-    const ProgressPart one{progress, 1 / static_cast<double>(parts.size())};
-    parallel_for(options.threads, parts.size(), [&](std::size_t i, std::size_t) {
-        const std::size_t caster = i % casters.size();
-        parts[i] = trace_one(scene, boxes, casters[caster],
-                             neighbours.empty() ? nullptr : &neighbours[caster],
-                             lights[i / casters.size()], settings.max_bounces, one);
-    });
+    const double least = expected_least(scene, boxes, casters, lights, settings, options);
+    std::vector<BeamBudget> budgets(parts.size(),
+                                    part_of_budget(settings.max_beams, parts.size(), least));
+    const auto trace = [&](const std::vector<std::size_t>& which) {
+        TraceProgress progress(options);
+        const ProgressPart one{progress, 1 / static_cast<double>(which.size())};
+        parallel_for(options.threads, which.size(), [&](std::size_t k, std::size_t) {
+            const std::size_t i = which[k];
+            const std::size_t caster = i % casters.size();
+            parts[i] = trace_beams(scene, boxes, casters[caster],
+                                   neighbours.empty() ? nullptr : &neighbours[caster],
+                                   lights[i / casters.size()], settings, budgets[i], one);
+        });
+    };
+    std::vector<std::size_t> every(parts.size());
+    std::iota(every.begin(), every.end(), std::size_t{0});
+    trace(every);
+    trace(fit_to_budget(budgets, settings.max_beams));
     TracedBeams all;
+    for (const BeamBudget& budget : budgets)
+        all.least_light = std::max(all.least_light, budget.least());
     for (TracedBeams& part : parts) {
         all.balance.add(part.balance);
         all.drift.add(part.drift);
+        all.unreceived += part.unreceived;
         for (BeamSet& set : part.sets)
             if (!set.beams.empty()) all.sets.push_back(std::move(set));
     }

@@ -53,13 +53,13 @@ std::uint32_t ray_of(Level& level, const BeamCorner& corner, Event event) {
 
 }  // namespace
 
-NextBeams::NextBeams(const Scene& scene, const LitCaster& surface, Level& level, double least_flux,
-                     FluxBalance& balance)
+NextBeams::NextBeams(const Scene& scene, const LitCaster& surface, Level& level,
+                     const LeastLight& least, FluxBalance& balance)
     : scene_(scene),
       surface_(surface),
       level_(level),
       set_(level.traced.set),
-      least_flux_(least_flux),
+      least_(least),
       balance_(balance) {}
 
 double NextBeams::flux(const Piece& piece) const {
@@ -67,6 +67,20 @@ double NextBeams::flux(const Piece& piece) const {
     const Spectrum weight = (a.origin.weight + b.origin.weight + c.origin.weight) / 3;
     return static_cast<double>(weight.mean()) *
            measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
+}
+
+// Its corners' light is a bound to a few times: between them a surface may reflect less.
+bool NextBeams::is_too_weak(const Piece& piece) const {
+    constexpr double slack = 4;
+    if (least_.budget.least() == 0) return false;
+    double strength = 0;
+    for (const PathPoint& corner : piece)
+        strength = std::max(strength, static_cast<double>(corner.origin.weight.mean()) /
+                                          static_cast<double>(corner.origin.left));
+    const auto& [a, b, c] = piece;
+    return slack * strength *
+               measure(set_.light, a.origin.position, b.origin.position, c.origin.position) <
+           least_.budget.least();
 }
 
 // As LightBender::flux: by the corners' weights where they are alike; near total reflection the way is
@@ -104,12 +118,14 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
     beam.flux = flux(parent, corners, event);
     const auto mean = static_cast<double>(beam.flux.mean());
     if (!(mean > 0)) return;
-    const double worth = mean / left_of(corners) / static_cast<double>(share);
-    if (worth < least_flux_) {
+    const double clear = mean / left_of(corners);
+    const double worth = clear / static_cast<double>(share);
+    if (worth < least_.of_polygon || clear < least_.budget.least()) {
         balance_.lost += mean;
-        balance_.pruned += mean;
+        (worth < least_.of_polygon ? balance_.pruned : balance_.over_budget) += mean;
         return;
     }
+    least_.budget.count(clear);
     Level& level = level_of(first.shape, event);
     beam.triangle = set_.beams[parent].triangle;
     beam.inside = first.front == (event == refraction);

@@ -19,7 +19,7 @@ constexpr float widest_cosine = 0.5F;
 class NextBounce {
 public:
     NextBounce(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface, Level& level,
-               double least_flux, FluxBalance& balance, const ProgressPart& part)
+               const LeastLight& least, FluxBalance& balance, const ProgressPart& part)
         : scene_(scene),
           boxes_(boxes),
           surface_(surface),
@@ -28,7 +28,7 @@ public:
           balance_(balance),
           part_(part),
           stays_(set_.beams.size(), false),
-          next_(scene, surface, level, least_flux, balance) {
+          next_(scene, surface, level, least, balance) {
         land_all();
     }
 
@@ -185,6 +185,10 @@ private:
     // What becomes of a piece whose corners do different things. It has `share` of its polygon.
     void cut(std::uint32_t beam, const Path& path, const Piece& piece, float share, int splits) {
         const auto& [a, b, c] = piece;
+        if (next_.is_too_weak(piece)) {
+            leave_out(piece);
+            return;
+        }
         if (!goes_on(a) && !goes_on(b) && !goes_on(c)) {
             cut_dark(beam, path, piece, share, splits);
             return;
@@ -217,6 +221,14 @@ private:
         }
         const double carried = add_parts(beam, piece, edges, share);
         if (more) balance_.lost += std::max(0.0, next_.flux(piece) - carried);
+    }
+
+    // Light of a piece that goes on, as far as its corners tell, and is not followed.
+    void leave_out(const Piece& piece) {
+        const auto on = std::ranges::count_if(piece, goes_on);
+        const double flux = next_.flux(piece) * static_cast<double>(on) / 3;
+        balance_.lost += flux;
+        balance_.over_budget += flux;
     }
 
     // A piece none of whose corners goes on.
@@ -285,9 +297,9 @@ private:
 }  // namespace
 
 NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                   Level& level, double least_flux, FluxBalance& balance,
+                   Level& level, const LeastLight& least, FluxBalance& balance,
                    const ProgressPart& part) {
-    return NextBounce(scene, boxes, surface, level, least_flux, balance, part).run();
+    return NextBounce(scene, boxes, surface, level, least, balance, part).run();
 }
 
 }  // namespace caustics::beamtree

@@ -5,6 +5,7 @@
 #include "beamtree/beams/flux_balance.h"
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/tracing/beam_path.h"
+#include "beamtree/tracing/next_beams.h"
 #include "beamtree/tracing/scene_boxes.h"
 
 namespace caustics::beamtree {
@@ -18,8 +19,9 @@ struct NextSets {
 };
 
 /// Follows a level's rays to the next surfaces (its `arrivals`) and makes the beams that go on from there;
-/// those that had less than `least_flux` if media were clear are left out and counted by `balance`.
+/// those with less than `least` are left out and counted by `balance`.
 NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                   Level& level, double least_flux, FluxBalance& balance, const ProgressPart& part);
+                   Level& level, const LeastLight& least, FluxBalance& balance,
+                   const ProgressPart& part);
 
 }  // namespace caustics::beamtree

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "beamtree/beams/beam.h"
 #include "core/scene/scene.h"
 
 namespace caustics::beamtree {
@@ -15,5 +16,9 @@ struct SceneBoxes {
 };
 
 SceneBoxes scene_boxes(const Scene& scene);
+
+/// Whether a beam, however far it goes, may come within `margin` [m] of a receiver's bounds; where it says no, no
+/// point there is inside the beam on any plane.
+bool may_meet_receiver(const SceneBoxes& boxes, const BeamSet& set, const Beam& beam, float margin);
 
 }  // namespace caustics::beamtree

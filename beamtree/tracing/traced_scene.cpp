@@ -1,38 +1,15 @@
 #include "beamtree/tracing/traced_scene.h"
 
 #include <algorithm>
-#include <cmath>
+#include <stdexcept>
 
-#include "core/base/error.h"
+#include "beamtree/tracing/beam_lights.h"
 
 namespace caustics::beamtree {
 namespace {
 
-// With most of the light missing it would be another picture.
-constexpr double least_captured = 0.5;
-
-void refuse_what_is_lost(const std::string& method, const FluxBalance& balance) {
-    if (balance.captured() >= least_captured) return;
-    const auto percent = std::to_string(std::lround(100 * (1 - balance.captured())));
-    throw UnsupportedScene(
-        method + ": beams lose " + percent +
-        " % of the light between specular surfaces, where polygons are too coarse for them (refine "
-        "the casters' meshes, give max_bounces=1 for the paths with one event alone, or use "
-        "photonmap)");
-}
-
-Ior most_dispersive_glass(const Scene& scene) {
-    const auto spread = [](const Ior& ior) {
-        return std::abs(ior.at(static_cast<float>(shortest_wavelength)) -
-                        ior.at(static_cast<float>(longest_wavelength)));
-    };
-    Ior most = 1;
-    for (const Shape& shape : scene.shapes())
-        if (const auto* glass = std::get_if<Dielectric>(&shape.bsdf.model))
-            for (const Ior& ior : {glass->int_ior, glass->ext_ior})
-                if (spread(ior) > spread(most)) most = ior;
-    return most;
-}
+// How far a point may lie off a receiver's bounds, of the scene's diameter.
+constexpr float near_receiver = 1e-3F;
 
 }  // namespace
 
@@ -43,6 +20,7 @@ BuildReport TracedScene::report() const {
         beams += set.beams.size();
         report.bytes += set.bytes();
     }
+    report.counters["beams_unreceived"] = unreceived;
     double flat = 0;
     double tessellated = 0;
     double closed = 0;
@@ -62,6 +40,9 @@ BuildReport TracedScene::report() const {
     report.resolved["quads"] = quads;
     report.resolved["flux_share_captured"] = balance.captured();
     report.resolved["flux_share_pruned"] = balance.lit > 0 ? balance.pruned / balance.lit : 0;
+    report.resolved["flux_share_over_budget"] =
+        balance.lit > 0 ? balance.over_budget / balance.lit : 0;
+    if (least_light > 0) report.resolved["least_light"] = least_light;
     double bounces = 0;
     for (const BeamSet& set : sets)
         bounces = std::max(bounces, static_cast<double>(set.path.size()));
@@ -81,28 +62,24 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 }
 
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
-                        const RunOptions& options, Intensity intensity) {
-    for (const Light& light : scene.lights())
-        if (surrounds(light))
-            throw UnsupportedScene(
-                method + ": beams start from points or directions, and a " + type_of(light) +
-                " light shines from everywhere (photonmap and the references take it)");
+                        const RunOptions& options, Intensity intensity, float footprint) {
+    const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
     options.phase("beams");
     TracedScene traced;
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);
-    std::vector<LightSample> lights = sample_lights(scene, params.light_samples, options.seed);
-    if (disperses(scene)) {
-        lights = params.dispersion == Dispersion::intervals
-                     ? drifting(lights, params.wavelengths, most_dispersive_glass(scene))
-                     : dispersed(lights, params.wavelengths);
-        traced.wavelengths = params.wavelengths;
-    }
-    TracedBeams beams =
-        trace_all_beams(scene, traced.casters, lights, {intensity, params.max_bounces}, options);
+    if (disperses(scene)) traced.wavelengths = params.wavelengths;
+    const TraceSettings settings{.intensity = intensity,
+                                 .max_bounces = params.max_bounces,
+                                 .prune = params.prune,
+                                 .max_beams = static_cast<std::uint64_t>(params.max_beams),
+                                 .receiver_margin = near_receiver * scene.diameter() + footprint};
+    TracedBeams beams = trace_all_beams(scene, traced.casters, lights, settings, options);
     traced.sets = std::move(beams.sets);
     traced.balance = beams.balance;
     traced.drift = beams.drift;
-    refuse_what_is_lost(method, traced.balance);
+    traced.unreceived = beams.unreceived;
+    traced.least_light = beams.least_light;
+    require_most_light(traced.balance, method, "");
     return traced;
 }
 

@@ -15,7 +15,10 @@ struct TracedScene {
     std::vector<BeamSet> sets;
     FluxBalance balance;
     DriftAccount drift;
-    int wavelengths = 0;  ///< of each light; 0: nothing disperses it
+    double least_light =
+        0;  ///< of beams of several events that the budget has room for [W]; 0: it has for all
+    std::uint64_t unreceived = 0;  ///< beams that pass all receivers' bounds: not kept
+    int wavelengths = 0;           ///< of each light; 0: nothing disperses it
 
     /// polygons, beams, their bytes and what was left out; how normals and meshes were come by.
     BuildReport report() const;
@@ -23,9 +26,11 @@ struct TracedScene {
     const CasterMesh& caster(std::uint32_t shape) const;
 };
 
-/// Phase "beams". Throws UnsupportedScene, in the name of `method`, where beams lose more than half of
+/// Phase "beams". Beams that pass all receivers, squares of a side `footprint` [m] round their points too, are not
+/// kept. Throws UnsupportedScene, in the name of `method`, where beams lose more than half of
 /// the light on its way to further events.
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
-                        const RunOptions& options, Intensity intensity = Intensity::area);
+                        const RunOptions& options, Intensity intensity = Intensity::area,
+                        float footprint = 0);
 
 }  // namespace caustics::beamtree

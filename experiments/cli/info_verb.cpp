@@ -29,6 +29,14 @@ std::string sampling_name(const PixelSampling& sampling) {
     return sampling.jitter ? "stratified" : "regular";
 }
 
+// Of how much of its work, where that is not all.
+std::string judged_by(const BuildReport& report) {
+    const auto sampled = report.counters.find("polygons_sampled");
+    if (sampled == report.counters.end()) return "";
+    return fmt::format(", by a sample of {} polygons of {}", sampled->second,
+                       report.counters.at("polygons"));
+}
+
 std::string describe_scene(const SceneOptions& options, const SceneFile& file, const Scene& scene) {
     std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
     for (const auto& [name, hash] : file.assets)
@@ -55,8 +63,10 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
                         rgb(emission.empty() ? black() : emission.total_power()));
     text += "methods\n";
     for (const std::string& name : method_names()) {
-        const auto reason = why_unsupported(scene, parse_method(name, parameters_node({})));
-        text += fmt::format("  {:<16} {}\n", name, reason ? "no: " + *reason : "yes");
+        const Serving serving = try_serving(scene, parse_method(name, parameters_node({})));
+        text += fmt::format(
+            "  {:<16} {}\n", name,
+            serving.why_not ? "no: " + *serving.why_not : "yes" + judged_by(serving.report));
     }
     for (const std::string& note : notes_on(scene)) text += "note     " + note + "\n";
     return text;

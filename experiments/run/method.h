@@ -68,15 +68,26 @@ int pass_count(const Method& method);
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const Method& method,
                                               const RunOptions& options, int pass = 0);
 
+/// What the least work tells of how a method does in a scene.
+struct Serving {
+    std::optional<std::string> why_not;  ///< it cannot serve the scene
+    BuildReport report = {};             ///< else
+};
+template <class Estimator>
+Serving try_serving(const Scene& scene, const MethodOf<Estimator>& method) {
+    try {
+        return {
+            {},
+            method.configured->with_least_work()->build(scene, RunOptions{}, 0)->build_report()};
+    } catch (const UnsupportedScene& unsupported) {
+        return {unsupported.what()};
+    }
+}
+
 /// Why the method cannot serve the scene; empty when it can.
 template <class Estimator>
 std::optional<std::string> why_unsupported(const Scene& scene, const MethodOf<Estimator>& method) {
-    try {
-        method.configured->with_least_work()->build(scene, RunOptions{}, 0);
-        return {};
-    } catch (const UnsupportedScene& unsupported) {
-        return unsupported.what();
-    }
+    return try_serving(scene, method).why_not;
 }
 
 }  // namespace caustics::experiments

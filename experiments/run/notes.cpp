@@ -154,6 +154,20 @@ void note_photons(const BuildReport& report, std::vector<std::string>& all) {
             *version));
 }
 
+std::string lost_light(const Method& method, const BuildReport& report, double lost) {
+    const double pruned = resolved(report, "flux_share_pruned").value_or(0);
+    const double over_budget = resolved(report, "flux_share_over_budget").value_or(0);
+    const std::string beyond =
+        over_budget > 0
+            ? fmt::format(", {:.1f} % in beams that max_beams has no room for", 100 * over_budget)
+            : "";
+    return fmt::format(
+        "{} loses {:.1f} % of the light between specular surfaces, {:.1f} % in paths too weak to "
+        "be followed{} and the rest where polygons are too coarse for what they meet (photonmap "
+        "follows it; max_bounces=1 asks for the paths with one event alone)",
+        method.name, 100 * lost, 100 * pruned, beyond);
+}
+
 }  // namespace
 
 std::vector<std::string> notes_on(const Scene& scene) {
@@ -182,14 +196,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
         all.push_back(*far);
     if (!captured) return all;
-    if (*captured < 1 - least_share_told)
-        all.push_back(fmt::format(
-            "{} loses {:.1f} % of the light between specular surfaces, {:.1f} % in paths too weak "
-            "to "
-            "be followed and the rest where polygons are too coarse for what they meet (photonmap "
-            "follows it; max_bounces=1 asks for the paths with one event alone)",
-            method.name, 100 * (1 - *captured),
-            100 * resolved(report, "flux_share_pruned").value_or(0)));
+    if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));
 
     const SetParameters parameters(method);
     const auto add = [&](const char* name, bool useless, const char* why) {

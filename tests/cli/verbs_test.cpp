@@ -153,8 +153,9 @@ TEST(Render, TellsItsCountsAndWhyACausticIsEmpty) {
 TEST(Info, TellsWhatTheSceneHolds) {
     const ProgramResult result = causticbench({"info", scene});
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    for (const char* word : {"exact sphere", "caster", "receiver", "point at", "16 x 12",
-                             "photonmap        yes", "pathtrace        no: "})
+    for (const char* word :
+         {"exact sphere", "caster", "receiver", "point at", "16 x 12", "photonmap        yes",
+          "pathtrace        no: ", "beamtree         yes, by a sample of "})
         EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
 }
 

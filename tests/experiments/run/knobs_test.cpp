@@ -161,6 +161,19 @@ TEST(Knobs, OfTheBeamTree) {
     EXPECT_EQ(2 * count(beams({"polygons=quads"}), "beams"), count(usual, "beams"));
 }
 
+// A slab sends light to and fro between its sides, each time weaker.
+TEST(Knobs, OfBeamsOfSeveralEvents) {
+    const Answer usual = beams({"mesh_resolution=8"}, "slab");
+    const Answer strong = beams({"mesh_resolution=8", "prune=0.1"}, "slab");
+    EXPECT_LT(4 * count(strong, "beams"), 3 * count(usual, "beams"));
+    EXPECT_LT(strong.mean(), usual.mean() - 1e-3);
+    EXPECT_GT(strong.mean(), 0.95 * usual.mean());
+    const Answer few = beams({"mesh_resolution=8", "max_beams=200"}, "slab");
+    EXPECT_LT(count(few, "beams"), count(usual, "beams"));
+    EXPECT_LT(few.mean(), usual.mean());
+    EXPECT_EQ(beams({"mesh_resolution=8", "max_beams=900000"}, "slab").mean(), usual.mean());
+}
+
 TEST(Knobs, OfTheBeamTreeUnderALargeLight) {
     const Answer few =
         ask("furnace", "beamtree", {"mesh_resolution=4", "light_samples=1", "max_bounces=1"});
@@ -220,11 +233,11 @@ TEST(Knobs, AreAllTurnedAbove) {
           "load"}},  // these three: photonmap/progressive_test, kept_photons_test
         {"beamtree",
          {"bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity", "footprint",
-          "polygons", "light_samples", "mesh_resolution", "max_bounces", "wavelengths",
-          "dispersion"}},  // the last two: agreement/dispersion_test
+          "polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
+          "wavelengths", "dispersion"}},  // the last two: agreement/dispersion_test
         {"causticpolygons",
-         {"polygons", "light_samples", "mesh_resolution", "max_bounces", "wavelengths",
-          "receiver_resolution"}},
+         {"polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
+          "wavelengths", "receiver_resolution"}},
         {"illuminationmap", {"emitted", "resolution", "max_bounces"}},
         {"lighttrace", {"paths", "radius", "max_bounces"}},
         {"pathtrace", {"spp", "max_bounces"}},

@@ -38,6 +38,8 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
         {"beamtree", {"spread_threshold=22.5"}},
         {"illuminationmap", {"emitted=1000", "resolution=12", "max_bounces=3"}},
         {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
+        {"causticpolygons", {"prune=0.05", "max_beams=1000"}},
+        {"beamtree", {"max_beams=20000"}},
         {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}},
         {"photonmap", {"adaptive=true", "nearest=120", "filter=gaussian"}},
         {"photonmap",

@@ -1,0 +1,116 @@
+#include "beamtree/tracing/expected_least.h"
+
+#include <algorithm>
+
+#include "beamtree/beams/caster_sample.h"
+#include "core/math/rng.h"
+
+namespace caustics::beamtree {
+namespace {
+
+// Polygons of one caster in one light that are traced together, and of all draws.
+constexpr std::size_t together = 4;
+constexpr double fewest_polygons = 64;
+constexpr double most_polygons = 2'000;
+// Beams of the sample by which the least is told.
+constexpr double enough = 4'000;
+// A little room, so that a sample that tells too little seldom makes all be traced again.
+constexpr double filling = 0.9;
+// From light to light that is tried, of the first events' mean.
+constexpr double first_try = 0.1;
+constexpr double step = 0.25;
+constexpr double last_try = 1e-5;
+
+/// Polygons drawn from all casters alike, each lot with its light.
+class Draws {
+public:
+    Draws(const Scene& scene, const SceneBoxes& boxes, const std::vector<CasterMesh>& casters,
+          const std::vector<LightSample>& lights, const RunOptions& options)
+        : scene_(scene), boxes_(boxes), lights_(lights), progress_(options) {
+        for (const CasterMesh& caster : casters) {
+            polygons_ += static_cast<double>(caster.mesh.triangles.size());
+            up_to_.push_back(polygons_);
+        }
+        polygons_ *= static_cast<double>(lights.size());
+    }
+
+    /// Of all casters, once a light.
+    double polygons() const { return polygons_; }
+
+    void draw(const std::vector<CasterMesh>& casters, std::size_t count, Rng& rng) {
+        for (std::size_t i = 0; i < count; i += together) {
+            const double at = rng.next_fine() * up_to_.back();
+            const auto caster = static_cast<std::size_t>(
+                std::upper_bound(up_to_.begin(), up_to_.end(), at) - up_to_.begin());
+            const auto light =
+                static_cast<std::size_t>(rng.next_fine() * static_cast<double>(lights_.size()));
+            drawn_.push_back({draw_polygons(casters[caster], together, rng), light});
+        }
+    }
+
+    /// Of the first events' beams on average [W].
+    double mean_light() {
+        double light = 0;
+        double count = 0;
+        BeamBudget all;
+        for (const Lot& lot : drawn_)
+            for (const BeamSet& set : trace(lot, {}, all).sets)
+                for (const Beam& beam : set.beams) {
+                    light += static_cast<double>(beam.flux.mean());
+                    ++count;
+                }
+        return count > 0 ? light / count : 0;
+    }
+    void count(const TraceSettings& settings, BeamBudget& budget) {
+        for (const Lot& lot : drawn_) trace(lot, settings, budget);
+    }
+
+private:
+    struct Lot {
+        CasterMesh polygons;
+        std::size_t light;
+    };
+
+    TracedBeams trace(const Lot& lot, const TraceSettings& settings, BeamBudget& budget) {
+        return trace_beams(scene_, boxes_, lot.polygons, nullptr, lights_[lot.light], settings,
+                           budget, {progress_, 0});
+    }
+
+    const Scene& scene_;
+    const SceneBoxes& boxes_;
+    const std::vector<LightSample>& lights_;
+    TraceProgress progress_;
+    std::vector<double> up_to_;  ///< polygons of a caster and those before it
+    double polygons_ = 0;
+    std::vector<Lot> drawn_;
+};
+
+}  // namespace
+
+double expected_least(const Scene& scene, const SceneBoxes& boxes,
+                      const std::vector<CasterMesh>& casters,
+                      const std::vector<LightSample>& lights, const TraceSettings& settings,
+                      const RunOptions& options) {
+    Draws draws(scene, boxes, casters, lights, options);
+    if (settings.max_bounces == 1 || settings.max_beams == BeamBudget::no_limit ||
+        draws.polygons() == 0)
+        return 0;
+    const double a_polygon = filling * static_cast<double>(settings.max_beams) / draws.polygons();
+    const auto count =
+        static_cast<std::size_t>(std::clamp(enough / a_polygon, fewest_polygons, most_polygons));
+    Rng rng(options.seed, Stage::beams, lights.size());
+    draws.draw(casters, count, rng);
+    const TraceSettings alone{.max_bounces = settings.max_bounces, .prune = settings.prune};
+    const auto most = static_cast<std::uint64_t>(a_polygon * static_cast<double>(count)) + 1;
+    const double mean = draws.mean_light();
+    for (double share = first_try; share > last_try; share *= step) {
+        BeamBudget budget(most, share * mean);
+        draws.count(alone, budget);
+        if (budget.is_over()) return budget.least();
+    }
+    BeamBudget budget(most);
+    draws.count(alone, budget);
+    return budget.least();
+}
+
+}  // namespace caustics::beamtree

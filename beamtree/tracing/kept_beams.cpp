@@ -1,0 +1,35 @@
+#include "beamtree/tracing/kept_beams.h"
+
+namespace caustics::beamtree {
+
+std::uint64_t leave_out_unreceived(std::vector<bool>& kept, const BeamSet& set,
+                                   const SceneBoxes& boxes, const TraceSettings& settings) {
+    std::uint64_t count = 0;
+    if (!settings.receiver_margin) return count;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        if (!kept[i] || may_meet_receiver(boxes, set, set.beams[i], *settings.receiver_margin))
+            continue;
+        kept[i] = false;
+        ++count;
+    }
+    return count;
+}
+
+void keep_only(BeamSet& set, const std::vector<bool>& kept) {
+    std::vector<std::uint32_t> number(set.beams.size(), Beam::none);
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < set.beams.size(); ++i) {
+        if (!kept[i]) continue;
+        number[i] = count;
+        set.beams[count] = set.beams[i];
+        if (!set.partners.empty()) set.partners[count] = set.partners[i];
+        ++count;
+    }
+    set.beams.resize(count);
+    if (set.partners.empty()) return;
+    set.partners.resize(count);
+    for (std::uint32_t& partner : set.partners)
+        if (partner != Beam::none) partner = number[partner];
+}
+
+}  // namespace caustics::beamtree

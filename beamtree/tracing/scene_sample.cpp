@@ -1,0 +1,120 @@
+#include "beamtree/tracing/scene_sample.h"
+
+#include <map>
+
+#include "beamtree/beams/caster_sample.h"
+#include "beamtree/tracing/beam_lights.h"
+#include "beamtree/tracing/caster_beams.h"
+#include "core/math/rng.h"
+
+namespace caustics::beamtree {
+namespace {
+
+// Polygons of one caster in one light that are traced together, and how often at most.
+constexpr std::size_t together = 4;
+constexpr int most_draws = 512;
+// Beams that are enough to judge by.
+constexpr std::size_t enough = 2'000;
+// Of a first event's light: less tells little, and costs most.
+constexpr double least_share = 0.03;
+
+/// The casters of a scene, each made ready when it is drawn first.
+class Casters {
+public:
+    Casters(const Scene& scene, int resolution) : scene_(scene), resolution_(resolution) {}
+
+    const CasterMesh& of(std::uint32_t shape) {
+        const auto made = made_.find(shape);
+        if (made != made_.end()) return made->second;
+        return made_.emplace(shape, undivided_caster(scene_, shape, resolution_)).first->second;
+    }
+
+private:
+    const Scene& scene_;
+    int resolution_;
+    std::map<std::uint32_t, CasterMesh> made_;
+};
+
+std::uint64_t count_polygons(const Scene& scene, Casters& casters) {
+    std::uint64_t count = 0;
+    for (const std::uint32_t shape : scene.casters())
+        count += scene.shapes()[shape].primitive == Primitive::mesh
+                     ? scene.shapes()[shape].mesh.triangles.size()
+                     : casters.of(shape).mesh.triangles.size();
+    return count;
+}
+
+std::size_t pick(std::size_t count, Rng& rng) {
+    return static_cast<std::size_t>(rng.next_fine() * static_cast<double>(count));
+}
+
+/// Beams of one draw.
+class Draw {
+public:
+    Draw(const Scene& scene, const SceneBoxes& boxes, const CasterMesh& caster,
+         const LightSample& light, const ProgressPart& part)
+        : scene_(scene), boxes_(boxes), caster_(caster), light_(light), part_(part) {}
+
+    TracedBeams run(int max_bounces) const {
+        BeamBudget all;
+        const TracedBeams first = trace(1, all);
+        double light = 0;
+        for (const BeamSet& set : first.sets)
+            for (const Beam& beam : set.beams) light += static_cast<double>(beam.flux.mean());
+        BeamBudget bright(BeamBudget::no_limit, least_share * light / together);
+        return trace(max_bounces, bright);
+    }
+
+private:
+    TracedBeams trace(int max_bounces, BeamBudget& budget) const {
+        return trace_beams(scene_, boxes_, caster_, nullptr, light_, {Intensity::area, max_bounces},
+                           budget, part_);
+    }
+
+    const Scene& scene_;
+    const SceneBoxes& boxes_;
+    const CasterMesh& caster_;
+    const LightSample& light_;
+    ProgressPart part_;
+};
+
+}  // namespace
+
+BuildReport SceneSample::report() const {
+    BuildReport report;
+    report.counters["polygons_sampled"] = polygons_sampled;
+    report.counters["polygons"] = polygons;
+    report.resolved["flux_share_captured"] = balance.captured();
+    return report;
+}
+
+SceneSample sample_scene(const Scene& scene, const std::string& method, const BeamParams& params,
+                         const RunOptions& options) {
+    const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
+    SceneSample sample;
+    Casters casters(scene, params.mesh_resolution);
+    sample.polygons = count_polygons(scene, casters);
+    if (lights.empty() || sample.polygons == 0) return sample;
+    const SceneBoxes boxes = scene_boxes(scene);
+    Rng rng(options.seed, Stage::beams, lights.size());
+    TraceProgress progress(options);
+    std::size_t made = 0;
+    for (int draws = 0; draws < most_draws && made < enough; ++draws) {
+        const CasterMesh& caster = casters.of(scene.casters()[pick(scene.casters().size(), rng)]);
+        const LightSample& light = lights[pick(lights.size(), rng)];
+        if (caster.mesh.triangles.empty()) continue;
+        const CasterMesh drawn = draw_polygons(caster, together, rng);
+        const TracedBeams traced =
+            Draw(scene, boxes, drawn, light, {progress, 0}).run(params.max_bounces);
+        for (const BeamSet& set : traced.sets) made += set.beams.size();
+        FluxBalance balance = traced.balance;
+        balance.lost -= balance.over_budget;
+        sample.balance.add(balance, static_cast<double>(caster.mesh.triangles.size()));
+        sample.polygons_sampled += together;
+    }
+    require_most_light(sample.balance, method,
+                       " in a sample of " + std::to_string(sample.polygons_sampled) + " polygons");
+    return sample;
+}
+
+}  // namespace caustics::beamtree

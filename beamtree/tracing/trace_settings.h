@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "beamtree/tracing/beam_budget.h"
+
+namespace caustics::beamtree {
+
+/// How a beam's light is computed at a point (row B8, and beyond the paper row B13).
+enum class Intensity {
+    area,    ///< flux / area of the caustic polygon [CC95 (11)]: right to first order at a point
+    refined  ///< by the rays' spreads: right to second order where the light is smooth
+};
+
+/// How a scene's beams are traced.
+struct TraceSettings {
+    Intensity intensity = Intensity::area;
+    int max_bounces = 1;
+    /// Of the light of the first events' beams on average: beams with less, were media clear, are not followed.
+    double prune = 1e-3;
+    /// Beams of several events, of all lights and casters: those with the most light.
+    std::uint64_t max_beams = BeamBudget::no_limit;
+    /// Beams that pass all receivers' bounds by more than this [m] are left out; none: no beams are.
+    std::optional<float> receiver_margin = {};
+};
+
+}  // namespace caustics::beamtree

@@ -1,0 +1,151 @@
+#include "beamtree/tracing/beam_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "beamtree/tracing/traced_scene.h"
+#include "tests/beamtree/beam_scenes.h"
+
+namespace caustics::beamtree {
+namespace {
+
+std::vector<double> random_lights(int count) {
+    Rng rng(3, Stage::test, 0);
+    std::vector<double> lights;
+    for (int i = 0; i < count; ++i) lights.push_back(std::exp2(-20 * rng.next_fine()));
+    return lights;
+}
+
+std::uint64_t count_from(const std::vector<double>& lights, double least) {
+    return static_cast<std::uint64_t>(
+        std::ranges::count_if(lights, [&](double light) { return light >= least; }));
+}
+
+// As many as fit, but for one step of light; and what has more than the least always fits.
+TEST(BeamBudget, TellsWhatTheBrightestHaveAtLeast) {
+    std::vector<double> lights = random_lights(5'000);
+    for (const std::uint64_t most : {1U, 50U, 700U, 4'999U}) {
+        BeamBudget budget(most);
+        for (const double light : lights) budget.count(light);
+        EXPECT_TRUE(budget.is_over());
+        EXPECT_LE(count_from(lights, budget.least()), most);
+        EXPECT_GT(count_from(lights, budget.least() / (1 + 2.0 / 16)), most);
+        EXPECT_TRUE(budget.all_have(budget.least()));
+    }
+    BeamBudget roomy(5'000);
+    for (const double light : lights) roomy.count(light);
+    EXPECT_FALSE(roomy.is_over());
+    EXPECT_EQ(roomy.least(), 0);
+}
+
+TEST(BeamBudget, DoesNotKnowAnOrder) {
+    std::vector<double> lights = random_lights(3'000);
+    BeamBudget forward(400), backward(400), joined(400), one(400), other(400);
+    for (const double light : lights) forward.count(light);
+    std::ranges::reverse(lights);
+    for (const double light : lights) backward.count(light);
+    for (std::size_t i = 0; i < lights.size(); ++i) (i % 3 == 0 ? one : other).count(lights[i]);
+    joined.add(one);
+    joined.add(other);
+    EXPECT_EQ(forward.least(), backward.least());
+    EXPECT_EQ(forward.least(), joined.least());
+}
+
+SceneDesc glass_ball() {
+    SceneDesc desc = ball_desc(16);
+    desc.shapes[0].bsdf = support::glass(1.5F);
+    return desc;
+}
+
+double light_of(const TracedScene& traced) {
+    double sum = 0;
+    for (const BeamSet& set : traced.sets)
+        for (const Beam& beam : set.beams)
+            if (set.path.size() > 1) sum += static_cast<double>(beam.flux.mean());
+    return sum;
+}
+
+std::uint64_t count_of(const TracedScene& traced) {
+    std::uint64_t count = traced.unreceived;
+    for (const BeamSet& set : traced.sets)
+        if (set.path.size() > 1) count += set.beams.size();
+    return count;
+}
+
+BeamParams with_most(std::int64_t most) {
+    BeamParams params;
+    params.max_beams = most;
+    return params;
+}
+
+TEST(BeamBudget, KeepsTheBeamsWithTheMostLight) {
+    const Scene scene(glass_ball());
+    const TracedScene all = trace_scene(scene, "beams", {}, {});
+    EXPECT_EQ(all.balance.over_budget, 0);
+    EXPECT_EQ(all.least_light, 0);
+    double before = 0;
+    for (const std::int64_t most : {500, 1'000, 2'000}) {
+        const TracedScene some = trace_scene(scene, "beams", with_most(most), {});
+        EXPECT_LE(count_of(some), static_cast<std::uint64_t>(most) + some.unreceived);
+        EXPECT_GT(some.least_light, 0);
+        EXPECT_GT(some.balance.over_budget, 0);
+        EXPECT_GT(light_of(some), before);
+        before = light_of(some);
+        // Those that are kept, and no others, have so much light.
+        std::size_t bright = 0, kept = 0;
+        for (const BeamSet& set : all.sets)
+            if (set.path.size() > 1)
+                for (const Beam& beam : set.beams)
+                    bright += static_cast<double>(beam.flux.mean()) >= some.least_light ? 1 : 0;
+        for (const BeamSet& set : some.sets)
+            if (set.path.size() > 1)
+                for (const Beam& beam : set.beams) {
+                    EXPECT_GE(static_cast<double>(beam.flux.mean()), 0.999 * some.least_light);
+                    ++kept;
+                }
+        EXPECT_NEAR(static_cast<double>(kept) / static_cast<double>(bright), 1, 0.02);
+    }
+    const TracedScene roomy = trace_scene(scene, "beams", with_most(1'000'000), {});
+    EXPECT_EQ(light_of(roomy), light_of(all));
+}
+
+// Lights and casters share the budget by their light; who traces them changes nothing.
+TEST(BeamBudget, IsSharedByLightsTheSameWithAnyThreads) {
+    SceneDesc desc = glass_ball();
+    desc.lights.push_back(support::point_light({-1, 0.3, 2}, 0.5F));
+    desc.lights.push_back(support::point_light({-1, -0.8, 1.4}, 2));
+    const Scene scene(std::move(desc));
+    RunOptions two;
+    two.threads = 2;
+    const TracedScene one = trace_scene(scene, "beams", with_most(1'500), {});
+    const TracedScene other = trace_scene(scene, "beams", with_most(1'500), two);
+    EXPECT_EQ(one.least_light, other.least_light);
+    ASSERT_EQ(one.sets.size(), other.sets.size());
+    for (std::size_t i = 0; i < one.sets.size(); ++i) {
+        ASSERT_EQ(one.sets[i].beams.size(), other.sets[i].beams.size());
+        for (std::size_t k = 0; k < one.sets[i].beams.size(); ++k)
+            EXPECT_TRUE((one.sets[i].beams[k].flux == other.sets[i].beams[k].flux).all());
+    }
+}
+
+// What is left out is told: prune and budget each by its share.
+TEST(BeamBudget, TellsWhatIsLeftOut) {
+    const Scene scene(glass_ball());
+    const auto share = [&](const BeamParams& params, const char* name) {
+        return trace_scene(scene, "beams", params, {}).report().resolved.at(name);
+    };
+    BeamParams weak;
+    weak.prune = 0.2;
+    EXPECT_EQ(share({}, "flux_share_over_budget"), 0);
+    EXPECT_GT(share(weak, "flux_share_pruned"), 10 * share({}, "flux_share_pruned"));
+    EXPECT_EQ(share(weak, "flux_share_over_budget"), 0);
+    const BeamParams few = with_most(700);
+    EXPECT_GT(share(few, "flux_share_over_budget"), 0.02);
+    EXPECT_NEAR(share(few, "flux_share_captured") + share(few, "flux_share_over_budget"),
+                share({}, "flux_share_captured"), 0.03);
+}
+
+}  // namespace
+}  // namespace caustics::beamtree

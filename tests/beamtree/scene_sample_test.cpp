@@ -1,0 +1,78 @@
+#include "beamtree/tracing/scene_sample.h"
+
+#include <gtest/gtest.h>
+
+#include "beamtree/beam_tree_method.h"
+#include "beamtree/caustic_polygons.h"
+#include "beamtree/tracing/traced_scene.h"
+#include "core/base/error.h"
+#include "tests/beamtree/beam_scenes.h"
+
+namespace caustics::beamtree {
+namespace {
+
+SceneDesc glass_ball(int resolution) {
+    SceneDesc desc = ball_desc(resolution);
+    desc.shapes[0].bsdf = support::glass(1.5F);
+    return desc;
+}
+
+// Some hundred polygons: their scatter is a few percent of what all have.
+TEST(SceneSample, TellsOfAllBeams) {
+    const Scene scene(glass_ball(24));
+    const TracedScene all = trace_scene(scene, "beams", {}, {});
+    const SceneSample sample = sample_scene(scene, "beams", {}, {});
+    EXPECT_EQ(sample.polygons, all.report().counters.at("polygons"));
+    EXPECT_GT(sample.polygons_sampled, 100U);
+    EXPECT_NEAR(sample.balance.captured(), all.balance.captured(), 0.02);
+}
+
+TEST(SceneSample, DoesNotGrowWithTheScene) {
+    const SceneSample few = sample_scene(Scene(glass_ball(16)), "beams", {}, {});
+    const SceneSample many = sample_scene(Scene(glass_ball(200)), "beams", {}, {});
+    EXPECT_GT(many.polygons, 100 * few.polygons);
+    EXPECT_LT(many.polygons_sampled, 2 * few.polygons_sampled);
+}
+
+TEST(SceneSample, OfNothingIsNothing) {
+    SceneDesc dark = glass_ball(8);
+    dark.lights.clear();
+    EXPECT_EQ(sample_scene(Scene(dark), "beams", {}, {}).polygons_sampled, 0U);
+    SceneDesc bare = glass_ball(8);
+    bare.shapes.erase(bare.shapes.begin());
+    EXPECT_EQ(sample_scene(Scene(bare), "beams", {}, {}).polygons, 0U);
+}
+
+// Where only is asked what a method can serve, both take it, and bring no light.
+template <typename Params>
+void expect_sample(const DescribedMethod<Params>& method) {
+    const Scene scene(glass_ball(24));
+    const auto least = method.configure(JsonNode::parse_text("{}", "test"))->with_least_work();
+    const auto built = least->build(scene, {}, 0);
+    EXPECT_GT(built->build_report().counters.at("polygons_sampled"), 0U);
+    const auto context = built->make_context();
+    EXPECT_THROW(built->irradiance({}, {}, *context), std::logic_error);
+    EXPECT_THROW(built->radiance({}, {}, *context), std::logic_error);
+}
+
+TEST(SceneSample, IsTheLeastWorkOfBothMethods) {
+    expect_sample(beamtree_method());
+    expect_sample(causticpolygons_method());
+}
+
+TEST(FluxBalance, RefusesToLoseMostLight) {
+    require_most_light({.lit = 2, .lost = 0.99}, "beams", "");
+    try {
+        require_most_light({.lit = 2, .lost = 1.2}, "beams", " in a sample of 8 polygons");
+        FAIL() << "not refused";
+    } catch (const UnsupportedScene& error) {
+        EXPECT_EQ(
+            std::string(error.what())
+                .find("beams: beams lose 60 % of the light between specular surfaces in a sample "
+                      "of 8 polygons, "),
+            0U);
+    }
+}
+
+}  // namespace
+}  // namespace caustics::beamtree
