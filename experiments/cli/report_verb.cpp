@@ -4,9 +4,12 @@
 #include <cerrno>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 #include "core/base/error.h"
+#include "experiments/base/csv.h"
+#include "experiments/base/number_option.h"
 #include "experiments/cli/verbs.h"
 
 namespace caustics::experiments {
@@ -20,6 +23,7 @@ constexpr const char* python = "/usr/bin/python3";  // Debian's, which sees Debi
 struct ReportOptions {
     std::vector<std::string> folders;
     std::vector<std::string> values;  ///< "--option", "value", ...
+    std::optional<double> megabytes;
 };
 
 /// The tool beside the program: in a folder above a build, or where it was installed.
@@ -42,6 +46,10 @@ fs::path report_tool() {
 int run_tool(const ReportOptions& options) {
     std::vector<std::string> words = {python, report_tool().string()};
     words.insert(words.end(), options.values.begin(), options.values.end());
+    if (options.megabytes) {
+        words.emplace_back("--megabytes");
+        words.push_back(shortest(*options.megabytes));
+    }
     words.emplace_back("--");
     words.insert(words.end(), options.folders.begin(), options.folders.end());
     std::vector<char*> arguments;
@@ -76,9 +84,8 @@ Verb add_report(CLI::App& app) {
     handed_on("--tables", "FOLDER", "Writes every table there, as CSV and LaTeX (booktabs)");
     handed_on("--columns", "NAMES", "Columns of the LaTeX tables (default: rmse,work_s)");
     handed_on("--references", "FOLDER", "Where references are kept as well");
-    handed_on(
-        "--megabytes", "NUMBER",
-        "Most that the pictures may take; what does not fit is left out by name (default: 30)");
+    add_number(*verb, "--megabytes", options->megabytes, 0.001, 10'000.0,
+               "Most that the pictures may take (default 30); the rest are left out by name");
     verb->footer(
         "The page opens without a network and holds all it shows. It is made by "
         "tools/make_report.py "

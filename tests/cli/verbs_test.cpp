@@ -188,7 +188,7 @@ TEST(PhotonMaps, AreSavedLoadedDescribedAndDrawn) {
     const std::string drawing = folder / "photons.png";
     const ProgramResult info = causticbench({"info", map, "--scene", scene, "-o", drawing});
     EXPECT_EQ(info.exit_code, 0) << info.err;
-    for (const char* word : {"format version 3", "1000 stored", "seed 1", "param photons=1000"})
+    for (const char* word : {"format version 4", "1000 stored", "seed 1", "param photons=1000"})
         EXPECT_NE(info.out.find(word), std::string::npos) << word << "\n" << info.out;
     EXPECT_TRUE(fs::exists(drawing));
 }
