@@ -11,6 +11,13 @@ using Merging = ConeTreeSettings::Merging;
 
 std::vector<Parameter<P>> tree_parameters() {
     return {
+        parameter::preset<P>(
+            &P::preset, {{"chuang1995", P::chuang1995}},
+            {.key = "preset",
+             .meaning =
+                 "Takes the paper's settings in place of the defaults: hybrid, cones, quadtree, "
+                 "receiver, area.",
+             .source = "[CC95]"}),
         parameter::choice<P>(&P::bound,
                              {{"single", Bound::single},
                               {"double", Bound::double_cone},
@@ -18,7 +25,8 @@ std::vector<Parameter<P>> tree_parameters() {
                               {"sphere_swept", Bound::sphere_swept},
                               {"two_slice", Bound::two_slice}},
                              {.key = "bound",
-                              .meaning = "What bounds the beams below a node of the tree.",
+                              .meaning = "What bounds the beams below a node of the tree. Where a "
+                                         "parameter of cones is given, usually hybrid.",
                               .source = "[CC95 (1)-(3)]"}),
         parameter::number<P>(
             &P::spread_threshold, 0, 90,
@@ -35,13 +43,13 @@ std::vector<Parameter<P>> tree_parameters() {
         parameter::choice<P>(
             &P::hierarchy, {{"quadtree", P::Tree::quadtree}, {"binned", P::Tree::binned}},
             {.key = "hierarchy",
-             .meaning = "The caster's own subdivision, or a tree of any polygons; with two_slice "
-                        "usually binned.",
+             .meaning =
+                 "The caster's own subdivision (usual with cones), or a tree of any polygons.",
              .source = "[CC95 sec. 3.1]"}),
         parameter::choice<P>(&P::leaf, {{"receiver", P::Leaf::n, "n"}, {"fixed", P::Leaf::k, "k"}},
                              {.key = "leaf",
                               .meaning = "Plane of the caustic polygons: across the receiver's "
-                                         "normal, or (always with two_slice) fixed.",
+                                         "normal (usual with cones), or fixed.",
                               .source = "[CC95 3.2.2]"}),
         parameter::choice<P>(
             &P::intensity, {{"area", Intensity::area}, {"refined", Intensity::refined}},
@@ -63,12 +71,17 @@ std::vector<Parameter<P>> tree_parameters() {
             .only_if([](const P& p) { return p.dispersion != Dispersion::bins; })};
 }
 
-void settle_bound(const JsonNode& node, const P& params) {
+// Cones are what the parameters ask for that belong to them alone.
+bool asks_for_cones(const JsonNode& node, const P& params) {
+    return node.has("spread_threshold") || (node.has("leaf") && params.leaf == P::Leaf::n) ||
+           (node.has("merging") && params.merging == Merging::cones);
+}
+
+void settle_bound(const JsonNode& node, P& params) {
+    if (!node.has("bound") && asks_for_cones(node, params)) params.bound = Bound::hybrid;
     if (const auto threshold = node.find("spread_threshold"))
         if (params.bound != Bound::hybrid)
             threshold->fail("only the bound \"hybrid\" has a spread threshold");
-    if (params.bound == Bound::two_slice && params.merging == Merging::cones)
-        node.at("merging").fail("the bound \"two_slice\" has no cones to merge (take \"rays\")");
     if (const auto footprint = node.find("footprint"))
         if (params.bound != Bound::two_slice)
             footprint->fail("only the bound \"two_slice\" averages over squares of its planes");
@@ -76,16 +89,20 @@ void settle_bound(const JsonNode& node, const P& params) {
         node.at("dispersion").fail("intervals are of points, not of squares (leave out footprint)");
 }
 
-// What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, and do
-// best with the hierarchy that is split by them.
+// What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, have no
+// cones to merge, and do best with the hierarchy that is split by them.
 void settle_tree(const JsonNode& node, P& params) {
-    if (params.bound != Bound::two_slice) return;
-    if (!node.has("hierarchy")) params.hierarchy = P::Tree::binned;
-    if (const auto leaf = node.find("leaf"); leaf && params.leaf == P::Leaf::n)
+    const bool has_cones = params.bound != Bound::two_slice;
+    if (const auto merging = node.find("merging");
+        merging && !has_cones && params.merging == Merging::cones)
+        merging->fail("the bound \"two_slice\" has no cones to merge (take \"rays\")");
+    if (const auto leaf = node.find("leaf"); leaf && !has_cones && params.leaf == P::Leaf::n)
         leaf->fail(
             "the bound \"two_slice\" would lose light with \"receiver\": it holds beams only on "
             "planes across a fixed normal (take \"fixed\", or another bound)");
-    params.leaf = P::Leaf::k;
+    if (!has_cones) params.merging = Merging::rays;
+    if (!node.has("hierarchy")) params.hierarchy = has_cones ? P::Tree::quadtree : P::Tree::binned;
+    if (!node.has("leaf")) params.leaf = has_cones ? P::Leaf::n : P::Leaf::k;
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "beamtree/beams/beam_params.h"
 #include "beamtree/cones/cone_tree.h"
 #include "beamtree/tracing/beam_tracing.h"
@@ -7,7 +9,8 @@
 namespace caustics::beamtree {
 
 /// `beamtree` [CC95]: the light that each specular polygon sends on is a beam; the beams of each
-/// light are found from a receiver point through a tree of cones.
+/// light are found from a receiver point through a tree of cones. The defaults are what is nearest to
+/// the truth in a given time; `chuang1995` is what the paper says.
 struct BeamTreeParams : BeamParams {
     enum class Tree {
         quadtree,  ///< of a regular subdivision; casters that have none get `binned`, and the report
@@ -18,16 +21,29 @@ struct BeamTreeParams : BeamParams {
         n,  ///< caustic polygons on the plane across the receiver's normal, as the paper says
         k   ///< on planes across a normal fixed for the tree
     };
-    Bound bound = Bound::hybrid;
+    std::string preset = {};  ///< name of the settings that were taken in place of the defaults
+    Bound bound = Bound::two_slice;
     double spread_threshold = 10;  ///< of `hybrid` [degrees]
     ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
-    Tree hierarchy = Tree::quadtree;  ///< where the bound is two_slice and nothing is said: binned
-    Leaf leaf = Leaf::n;              ///< with two_slice always k
-    Intensity intensity = Intensity::area;
+    Tree hierarchy = Tree::binned;
+    Leaf leaf = Leaf::k;  ///< with two_slice always
+    Intensity intensity = Intensity::refined;
     /// Side of the square round each point, on the tree's planes, over which its irradiance is averaged
     /// exactly [m]; 0: at the point alone. Only with the bound two_slice; beams that spread too far for
     /// a fixed plane, and polygons that the plane cuts, are asked at the point.
     float footprint = 0;
+
+    /// The settings of [CC95]: hybrid cones, merged from their children's, over the caster's own
+    /// subdivision; flux over the area of caustic polygons across the receiver's normal.
+    static BeamTreeParams chuang1995() {
+        BeamTreeParams params;
+        params.bound = Bound::hybrid;
+        params.merging = ConeTreeSettings::Merging::cones;
+        params.hierarchy = Tree::quadtree;
+        params.leaf = Leaf::n;
+        params.intensity = Intensity::area;
+        return params;
+    }
 };
 
 }  // namespace caustics::beamtree

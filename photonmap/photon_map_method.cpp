@@ -20,6 +20,11 @@ bool is_traced(const P& params) { return params.load.empty(); }
 
 std::vector<Parameter<P>> photon_parameters() {
     return {
+        parameter::preset<P>(
+            &P::preset, {{"jensen1996", P::jensen1996}},
+            {.key = "preset",
+             .meaning = "Takes the paper's settings in place of the defaults: balanced, raw.",
+             .source = "[J96]"}),
         parameter::whole_number<P>(
             &P::photons, 1, most_photons,
             {.key = "photons",
@@ -37,7 +42,9 @@ std::vector<Parameter<P>> photon_parameters() {
             &P::emission,
             {{"random", P::Emission::random}, {"stratified", P::Emission::stratified}},
             {.key = "emission",
-             .meaning = "Draws light paths at random, or one jittered path from each stratum.",
+             .meaning =
+                 "Draws light paths at random, or one jittered path from each stratum: with less "
+                 "noise, but the nearest N then read up to 1/(2N) low.",
              .source = "[J96 sec. 2]"})
             .only_if(is_traced),
         parameter::choice<P>(&P::interaction,

@@ -154,6 +154,37 @@ Parameter<Params> choice(Member member, std::vector<Choice<MemberOf<Params, Memb
             value};
 }
 
+/// Settings that have a name, such as those of a paper.
+template <class Params>
+struct Preset {
+    std::string name;
+    Params (*settings)();
+};
+
+/// A row that puts named settings in place of the defaults: the table's first, so that the rows below it
+/// change what they say. `member` is the name in force; empty: none.
+template <class Params>
+Parameter<Params> preset(std::string Params::* member, std::vector<Preset<Params>> presets,
+                         KeyText text) {
+    text.type = "choice";
+    text.usual = "none";
+    std::vector<std::string> names;
+    for (const auto& each : presets) {
+        names.push_back(each.name);
+        text.choices += (text.choices.empty() ? "" : ", ") + each.name;
+    }
+    return {std::move(text),
+            [=](const JsonNode& node, Params& p) {
+                const std::size_t chosen = node.as_choice(names);
+                p = presets[chosen].settings();
+                p.*member = names[chosen];
+            },
+            [member](const Params& p) -> std::optional<ParameterValue> {
+                return (p.*member).empty() ? std::nullopt
+                                           : std::optional<ParameterValue>(p.*member);
+            }};
+}
+
 /// A file that the method writes, or none.
 template <class Params>
 Parameter<Params> written_file(std::filesystem::path Params::* member, KeyText text) {

@@ -18,6 +18,7 @@
 #include "experiments/run/caustic_survey.h"
 #include "experiments/run/method.h"
 #include "experiments/run/methods.h"
+#include "experiments/verify/cell_light.h"
 #include "experiments/verify/light_audit.h"
 
 namespace caustics::experiments {
@@ -28,15 +29,10 @@ using Verdict = Finding::Verdict;
 
 constexpr int max_bounces = 16;
 constexpr int width = 48;
-constexpr int columns = 6;
-constexpr int rows = 4;
 constexpr std::uint64_t seeds = 12;
-/// Errors by twelve seeds follow Student's law of eleven degrees: beyond six of them lies one cell in ten
-/// thousand.
-constexpr double widest = 6;
-constexpr double allowed_in_all = 0.02;
-constexpr double allowed_in_cells = 0.1;
-/// What a method may be off in all, if more effort makes it less.
+/// What a biased method may be off.
+constexpr BiasAllowed allowed = {.in_all = 0.02, .in_cells = 0.1};
+/// What it may be off in all, if more effort makes it less.
 constexpr double most_while_shrinking = 0.1;
 
 Verdict verdict(bool holds) { return holds ? Verdict::holds : Verdict::fails; }
@@ -57,7 +53,7 @@ const MethodDescription* reference_for(const Scene& scene) {
 
 SceneDesc made_small(SceneDesc desc) {
     Camera& camera = desc.camera;
-    camera.height = std::max(rows, width * camera.height / camera.width);
+    camera.height = std::max(CellLight::rows, width * camera.height / camera.width);
     camera.width = width;
     desc.sampling = PixelSampling{};
     return desc;
@@ -74,45 +70,6 @@ bool same_bits(const Film& a, const Film& b) {
     return std::ranges::equal(a.planes(), b.planes(), [](const Plane& x, const Plane& y) {
         return x.channel == y.channel && x.values == y.values;
     });
-}
-
-/// Which cell a pixel belongs to.
-std::size_t cell_of(const Film& film, std::size_t pixel) {
-    const auto w = static_cast<std::size_t>(film.width()),
-               h = static_cast<std::size_t>(film.height());
-    return pixel / w * rows / h * columns + pixel % w * columns / w;
-}
-
-/// Mean caustic of each cell, and of the whole as the last number, over seeds.
-struct CellLight {
-    std::vector<double> mean = std::vector<double>(columns * rows + 1, 0.0);
-    std::vector<double> error = std::vector<double>(columns * rows + 1, 0.0);
-};
-
-CellLight cell_light(const std::vector<Film>& films, const PixelMask& counted) {
-    CellLight light;
-    const auto n = static_cast<double>(films.size());
-    std::vector<std::vector<double>> means;
-    for (const Film& film : films) {
-        std::vector<double> sum(light.mean.size(), 0.0), count(light.mean.size(), 0.0);
-        for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-            if (!counted[i]) continue;
-            for (const std::size_t cell : {cell_of(film, i), sum.size() - 1}) {
-                sum[cell] += static_cast<double>(film.rgb("caustic", i).mean());
-                count[cell] += 1;
-            }
-        }
-        for (std::size_t cell = 0; cell < sum.size(); ++cell)
-            sum[cell] = count[cell] > 0 ? sum[cell] / count[cell] : 0;
-        means.push_back(std::move(sum));
-    }
-    for (std::size_t cell = 0; cell < light.mean.size(); ++cell) {
-        for (const auto& one : means) light.mean[cell] += one[cell] / n;
-        double squares = 0;
-        for (const auto& one : means) squares += std::pow(one[cell] - light.mean[cell], 2);
-        light.error[cell] = n > 1 ? std::sqrt(squares / (n - 1) / n) : 0;
-    }
-    return light;
 }
 
 class SceneVerifier {
@@ -278,48 +235,20 @@ private:
         const std::vector<Film> films = films_of(method, false, progress);
         const PixelMask counted = reached_pixels(films.front(), truth.front());
         const CellLight known = cell_light(truth, counted);
-        const Gap first = gap(facts, cell_light(films, counted), known);
+        const BiasAllowed room = facts.is_unbiased ? BiasAllowed{} : allowed;
+        const CellGap first = gap(cell_light(films, counted), known, room);
         if (first.holds || facts.more_effort.empty()) {
             add(what, verdict(first.holds), first.text);
             return;
         }
         progress.begin(facts.name + " with more effort");
         const std::vector<Film> better = films_of(method, true, progress);
-        const Gap second = gap(facts, cell_light(better, counted), known);
+        const CellGap second = gap(cell_light(better, counted), known, room);
         const bool shrinks = second.whole <= most_while_shrinking &&
                              1.3 * second.whole <= first.whole &&
                              second.cells_off <= first.cells_off;
         add(what, verdict(second.holds || shrinks),
             first.text + "; with more effort " + second.text);
-    }
-
-    /// How far a method is from the reference.
-    struct Gap {
-        double whole;  ///< of its mean
-        std::size_t cells_off;
-        bool holds;
-        std::string text;
-    };
-
-    static Gap gap(const MethodFacts& method, const CellLight& found, const CellLight& truth) {
-        const std::size_t whole = truth.mean.size() - 1;
-        const double mean = truth.mean[whole];
-        const double in_cells = method.is_unbiased ? 0 : allowed_in_cells;
-        const double in_all = method.is_unbiased ? 0 : allowed_in_all;
-        std::size_t off = 0;
-        for (std::size_t cell = 0; cell < whole; ++cell) {
-            const double error = std::hypot(found.error[cell], truth.error[cell]);
-            const double room = widest * error + in_cells * (truth.mean[cell] + mean);
-            off += std::abs(found.mean[cell] - truth.mean[cell]) > room ? 1 : 0;
-        }
-        if (!(mean > 0))
-            return {0, off, off == 0,
-                    fmt::format("the reference is black; {} of {} cells are not", off, whole)};
-        const double error = std::hypot(found.error[whole], truth.error[whole]) / mean;
-        const double miss = std::abs(found.mean[whole] / mean - 1);
-        return {miss, off, off == 0 && miss <= widest * error + in_all,
-                fmt::format("mean {:.4f} +- {:.4f} of it, {} of {} cells off",
-                            found.mean[whole] / mean, error, off, whole)};
     }
 
     SceneDesc desc_;

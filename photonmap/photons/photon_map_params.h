@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "core/light_path/light_path.h"
 
@@ -34,11 +35,12 @@ struct PhotonMapParams {
         random,
         stratified  ///< one jittered particle a stratum, in Morton order: less noise, and faster
     };
+    std::string preset = {};  ///< name of the settings that were taken in place of the defaults
     std::uint64_t photons = 100'000;  ///< to store; 0 when `emitted` is given instead
     std::uint64_t emitted = 0;        ///< to emit; 0 when `photons` is given
     Emission emission = Emission::random;
     Interaction interaction = Interaction::roulette;
-    TreeKind tree = TreeKind::balanced;
+    TreeKind tree = TreeKind::packed;
     static constexpr int default_adaptive_nearest = 200;
     static constexpr int least_adaptive_nearest = 20;  ///< for AdaptiveN's ladder to have room
     static constexpr int most_adaptive_nearest = 100'000;
@@ -63,6 +65,15 @@ struct PhotonMapParams {
     /// File that the photons come from instead of being traced; empty: none. Then photons and
     /// emitted are 0, and the file says how the photons were traced.
     std::filesystem::path load = {};
+
+    /// The settings of [J96]: light paths at random, a balanced tree, and the estimate as printed. The
+    /// paper does not say N.
+    static PhotonMapParams jensen1996() {
+        PhotonMapParams params;
+        params.tree = TreeKind::balanced;
+        params.estimator = Estimator::raw;
+        return params;
+    }
 };
 
 }  // namespace caustics::photonmap

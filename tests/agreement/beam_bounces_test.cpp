@@ -160,7 +160,7 @@ void expect_same_flux(const Scene& scene, double half, const Params& params, dou
 }
 
 beamtree::BeamTreeParams swept(beamtree::Intensity intensity = beamtree::Intensity::area) {
-    beamtree::BeamTreeParams params;
+    beamtree::BeamTreeParams params = beamtree::BeamTreeParams::chuang1995();
     params.bound = beamtree::Bound::sphere_swept;
     params.intensity = intensity;
     return params;

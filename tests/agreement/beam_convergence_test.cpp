@@ -219,7 +219,8 @@ TEST(BeamConvergence, ThePolygonsThatHoldAPointLightIt) {
             }
         folded += held > 1;
     }
-    const auto found = support::irradiance(*build(scene, beamtree::BeamTreeParams{}, {}), points);
+    const auto found =
+        support::irradiance(*build(scene, beamtree::BeamTreeParams::chuang1995(), {}), points);
     int on_a_rim = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         on_a_rim += std::abs(static_cast<double>(found[i].value.mean()) - truth[i]) >

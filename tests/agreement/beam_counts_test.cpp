@@ -32,7 +32,8 @@ void expect_near_the_paper(const Counters& counted) {
 // [CC95 sec. 3.3]: 100 x 100 pixels, 7575 polygons; 61 x 61 cells in triangles, and 87 x 87 quads.
 // results/beamtree has all bounds and other waves.
 TEST(BeamCounts, AreThePapersWithinAFactorOfTwo) {
-    beamtree::BeamTreeParams params;
+    beamtree::BeamTreeParams params = beamtree::BeamTreeParams::chuang1995();
+    params.merging = beamtree::ConeTreeSettings::Merging::rays;
     expect_near_the_paper(counts("61", params));
     params.polygons = beamtree::PolygonKind::quad;
     expect_near_the_paper(counts("87", params));

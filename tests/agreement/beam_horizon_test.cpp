@@ -65,7 +65,7 @@ TEST(BeamHorizon, AStandingMirrorOfAnyResolutionLightsTheFloor) {
         const double allowed = resolution < 4 ? 0.09 : 0.3 / resolution;
         for (const auto leaf :
              {beamtree::BeamTreeParams::Leaf::n, beamtree::BeamTreeParams::Leaf::k}) {
-            beamtree::BeamTreeParams params;
+            beamtree::BeamTreeParams params = beamtree::BeamTreeParams::chuang1995();
             params.leaf = leaf;
             const Agreement own = on_the_floor(scene, *build(scene, params, {}));
             EXPECT_NEAR(own.mean_ratio, 1, allowed) << resolution;
@@ -81,7 +81,7 @@ TEST(BeamHorizon, AStandingMirrorOfAnyResolutionLightsTheFloor) {
 
 // Where the light comes down unevenly the refined intensity is told across the light: second order.
 TEST(BeamHorizon, RefinedIntensityIsOfSecondOrder) {
-    beamtree::BeamTreeParams params;
+    beamtree::BeamTreeParams params = beamtree::BeamTreeParams::chuang1995();
     params.intensity = beamtree::Intensity::refined;
     double last = 0;
     for (const int resolution : {16, 32, 64}) {

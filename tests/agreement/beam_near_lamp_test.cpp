@@ -80,7 +80,7 @@ TEST(NearLamp, ShinesFromALargeMirrorAsItDoesFromAfar) {
                            support::horizontal("mirror", 2, half, false, support::mirror())};
             desc.lights = {support::point_light({lamp_x, lamp_y, 2 - light}, 10)};
             const Scene scene(std::move(desc));
-            const auto tree = build(scene, beamtree::BeamTreeParams{}, {});
+            const auto tree = build(scene, beamtree::BeamTreeParams::chuang1995(), {});
             const Ratio found = ratio(scene, *tree, 0, [&](double r) {
                 const double h = 2 + light;
                 return 10 * h / std::pow(r * r + h * h, 1.5);

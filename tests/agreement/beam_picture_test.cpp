@@ -63,7 +63,7 @@ std::vector<float> caustic_layer(const Scene& scene, const Params& params, int t
 // polygon may fall to the other side of it.
 void expect_equal(const Scene& scene,
                   beamtree::PolygonKind kind = beamtree::PolygonKind::triangle) {
-    beamtree::BeamTreeParams tree_params;
+    beamtree::BeamTreeParams tree_params = beamtree::BeamTreeParams::chuang1995();
     tree_params.polygons = kind;
     const std::vector<float> tree = caustic_layer(scene, tree_params);
     for (const int resolution : {2, 9}) {

@@ -239,7 +239,7 @@ private:
 };
 
 inline beamtree::BeamTreeParams with(beamtree::Intensity intensity) {
-    beamtree::BeamTreeParams params;
+    beamtree::BeamTreeParams params = beamtree::BeamTreeParams::chuang1995();
     params.bound = beamtree::Bound::sphere_swept;
     params.intensity = intensity;
     params.light_samples = 1;

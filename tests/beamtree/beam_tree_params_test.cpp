@@ -19,8 +19,18 @@ std::string error(const std::string& text) {
     return "no error";
 }
 
-TEST(BeamTreeParams, AreThePapersByDefault) {
+TEST(BeamTreeParams, AreTheBestByDefault) {
     const BeamTreeParams p = params("{}");
+    EXPECT_EQ(p.bound, Bound::two_slice);
+    EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::binned);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::k);
+    EXPECT_EQ(p.intensity, Intensity::refined);
+}
+
+TEST(BeamTreeParams, AreThePapersByPreset) {
+    const BeamTreeParams p = params(R"({"preset": "chuang1995"})");
+    EXPECT_EQ(p.merging, ConeTreeSettings::Merging::cones);
+    EXPECT_EQ(p.intensity, Intensity::area);
     EXPECT_EQ(p.bound, Bound::hybrid);
     EXPECT_EQ(p.spread_threshold, 10);
     EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::quadtree);
@@ -63,7 +73,8 @@ TEST(BeamTreeParams, TwoSliceBringsWhatFitsIt) {
 TEST(BeamTreeParams, AveragesOverSquaresOfTheSlicesPlanes) {
     EXPECT_EQ(params(R"({"bound": "two_slice"})").footprint, 0);
     EXPECT_EQ(params(R"({"bound": "two_slice", "footprint": 0.5})").footprint, 0.5F);
-    EXPECT_NE(error(R"({"footprint": 0.5})").find("two_slice"), std::string::npos);
+    EXPECT_NE(error(R"({"bound": "single", "footprint": 0.5})").find("two_slice"),
+              std::string::npos);
     for (const char* const value : {"0", "-1", "1e30", "1e-30"})
         EXPECT_NE(error(R"({"bound": "two_slice", "footprint": )" + std::string(value) + "}")
                       .find("above 0"),

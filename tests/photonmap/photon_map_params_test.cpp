@@ -29,9 +29,9 @@ TEST(PhotonMapParams, AreReadWithTheirDefaultsInPlace) {
     const PhotonMapParams given = params_of(
         R"({"photons": 2000000000, "nearest": 1, "estimator": "raw", "max_radius": 0.25,
             "max_bounces": 4, "emission": "random", "interaction": "roulette",
-            "tree": "packed", "tables": true})");
-    EXPECT_EQ(defaults.tree, TreeKind::balanced);
-    EXPECT_EQ(given.tree, TreeKind::packed);
+            "tree": "balanced", "tables": true})");
+    EXPECT_EQ(defaults.tree, TreeKind::packed);
+    EXPECT_EQ(given.tree, TreeKind::balanced);
     EXPECT_EQ(given.photons, 2'000'000'000U);
     EXPECT_EQ(given.emitted, 0U);
     EXPECT_EQ(given.nearest, 1);

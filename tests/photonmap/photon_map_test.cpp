@@ -75,7 +75,8 @@ std::vector<Estimate> irradiance(const CausticEstimator& map,
 
 TEST(PhotonMap, StoresTheFluxThatTheMirrorCatches) {
     const Scene scene(flat_mirror(grey));
-    const auto map = build(scene, {.photons = 0, .emitted = 100'000}, {});
+    const auto map =
+        build(scene, {.photons = 0, .emitted = 100'000, .tree = TreeKind::balanced}, {});
     const BuildReport report = map->build_report();
     EXPECT_EQ(report.counters.at("photons_emitted"), 100'000U);
     const double share = static_cast<double>(report.counters.at("photons_stored")) / 100'000;
@@ -185,7 +186,8 @@ TEST(PhotonMap, CountsThePhotonsThatAdaptiveUses) {
 
 TEST(PhotonMap, PassesAreIndependentMapsWithSmallerDiscs) {
     const Scene scene(flat_mirror(grey));
-    const PhotonMapParams params{.photons = 20'000, .radius = 0.3, .passes = 4};
+    const PhotonMapParams params{
+        .photons = 20'000, .tree = TreeKind::balanced, .radius = 0.3, .passes = 4};
     const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
     std::vector<std::uint64_t> found;
     std::set<float> values;

@@ -40,6 +40,9 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
         {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
         {"causticpolygons", {"prune=0.05", "max_beams=1000"}},
         {"beamtree", {"max_beams=20000"}},
+        {"beamtree", {"preset=chuang1995"}},
+        {"beamtree", {"preset=chuang1995", "bound=two_slice"}},
+        {"photonmap", {"preset=jensen1996", "tree=packed"}},
         {"photonmap", {"emitted=1000", "nearest=12", "estimator=raw", "max_radius=0.5"}},
         {"photonmap", {"adaptive=true", "nearest=120", "filter=gaussian"}},
         {"photonmap",
@@ -78,21 +81,25 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
     EXPECT_EQ(text("photonmap", {}),
               R"({"adaptive":false,"emission":"random","estimator":"unbiased","filter":"none",)"
               R"("interaction":"roulette","max_bounces":16,"nearest":50,"passes":1,)"
-              R"("photons":100000,"tables":false,"tree":"balanced"})");
+              R"("photons":100000,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("photonmap", {"load=a.photons", "radius=0.5"}),
               R"({"adaptive":false,"estimator":"unbiased","filter":"none","load":"a.photons",)"
-              R"("passes":1,"radius":0.5,"tables":false,"tree":"balanced"})");
+              R"("passes":1,"radius":0.5,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("photonmap", {"emitted=10", "adaptive=true", "max_radius=1"}),
               R"({"adaptive":true,"emission":"random","emitted":10,"estimator":"unbiased",)"
               R"("filter":"none","interaction":"roulette","max_bounces":16,"max_radius":1.0,)"
-              R"("nearest":200,"passes":1,"tables":false,"tree":"balanced"})");
+              R"("nearest":200,"passes":1,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("beamtree", {}),
+              R"({"bound":"two_slice","hierarchy":"binned","intensity":"refined","leaf":"k",)"
+              R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
+              R"("polygons":"triangles"})");
+    EXPECT_EQ(text("beamtree", {"bound=hybrid", "intensity=area"}),
               R"({"bound":"hybrid","hierarchy":"quadtree","intensity":"area","leaf":"n",)"
               R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
               R"("polygons":"triangles","spread_threshold":10.0})");
-    EXPECT_EQ(text("beamtree", {"bound=two_slice", "footprint=0.1"}),
+    EXPECT_EQ(text("beamtree", {"footprint=0.1"}),
               R"({"bound":"two_slice","footprint":0.10000000149011612,"hierarchy":"binned",)"
-              R"("intensity":"area","leaf":"k","light_samples":16,"max_bounces":16,)"
+              R"("intensity":"refined","leaf":"k","light_samples":16,"max_bounces":16,)"
               R"("merging":"rays","mesh_resolution":64,"polygons":"triangles"})");
 }
 
@@ -101,7 +108,36 @@ TEST(Methods, KeepTheWordsOfOlderFilesInRecords) {
                                          std::pair("n", "n"), std::pair("k", "k")})
         EXPECT_EQ(describe(method("beamtree", {std::string("leaf=") + word})).at("leaf"), recorded);
     EXPECT_NE(error("beamtree", {"leaf=m"}).find("receiver, fixed"), std::string::npos);
-    EXPECT_NE(help_text("beamtree").find("receiver, fixed, default receiver"), std::string::npos);
+    EXPECT_NE(help_text("beamtree").find("receiver, fixed, default fixed"), std::string::npos);
+}
+
+// A preset is a paper's settings, and what stands beside it changes it.
+TEST(Methods, TakeThePapersSettingsByName) {
+    const auto settings = [](const std::string& name, const std::vector<std::string>& params) {
+        return describe(method(name, params));
+    };
+    nlohmann::json paper = settings("beamtree", {"preset=chuang1995"});
+    EXPECT_EQ(paper.at("preset"), "chuang1995");
+    paper.erase("preset");
+    EXPECT_EQ(paper, settings("beamtree", {"bound=hybrid", "merging=cones", "hierarchy=quadtree",
+                                           "leaf=receiver", "intensity=area"}));
+    EXPECT_EQ(settings("beamtree", {"preset=chuang1995", "bound=single"}).at("bound"), "single");
+    paper = settings("photonmap", {"nearest=80", "preset=jensen1996"});
+    EXPECT_EQ(paper.at("preset"), "jensen1996");
+    paper.erase("preset");
+    EXPECT_EQ(paper, settings("photonmap", {"nearest=80", "tree=balanced", "estimator=raw"}));
+    EXPECT_NE(error("beamtree", {"preset=jensen1996"}).find("chuang1995"), std::string::npos);
+}
+
+// What belongs to cones asks for them, as it did when they were the default.
+TEST(Methods, TakeConesWhereAParameterOfConesIsGiven) {
+    for (const std::string of_cones : {"spread_threshold=22.5", "merging=cones", "leaf=receiver"}) {
+        const nlohmann::json described = describe(method("beamtree", {of_cones}));
+        EXPECT_EQ(described.at("bound"), "hybrid") << of_cones;
+        EXPECT_EQ(described.at("hierarchy"), "quadtree") << of_cones;
+        EXPECT_EQ(described.at("leaf"), "n") << of_cones;
+        EXPECT_NE(error("beamtree", {"bound=two_slice", of_cones}), "no error");
+    }
 }
 
 TEST(Methods, AreToldKeyByKey) {
