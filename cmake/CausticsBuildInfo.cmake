@@ -20,6 +20,8 @@ add_custom_target(caustics_build_info_header
         "-DBUILD_TYPE=${CMAKE_BUILD_TYPE}"
         "-DEMBREE_VERSION=${embree_VERSION}"
         "-DTBB_VERSION=${TBB_VERSION}"
+        "-DOPENEXR_VERSION=${OpenEXR_VERSION}"
+        "-DLIBPNG_VERSION=${PNG_VERSION_STRING}"
         "-DOPENIMAGEIO_VERSION=${OpenImageIO_VERSION}"
         "-DEIGEN_VERSION=${Eigen3_VERSION}"
         "-DASSIMP_VERSION=${assimp_VERSION}"

@@ -1,9 +1,8 @@
-# cmake --install: the program, the scenes, sweep files and kept references, and the tool behind `report`,
+# cmake --install: the program and its module, the scenes, sweep files and kept references, and the tool behind `report`,
 # which find each other by their places. The libraries are not installed: their interfaces are not promised to stay.
 
-include(GNUInstallDirs)
-
 install(TARGETS causticbench RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(TARGETS caustics_foreign_pictures LIBRARY DESTINATION "${CAUSTICS_MODULE_FOLDER}")
 foreach(folder IN ITEMS scenes sweeps references)
     install(DIRECTORY "${PROJECT_SOURCE_DIR}/experiments/${folder}"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/causticbench")

@@ -130,8 +130,24 @@ function(caustics_executable name)
     caustics_configure_target(${name})
     caustics_use_precompiled(${name} caustics_precompiled)
     target_link_libraries(${name} PRIVATE ${depends})
+    # A program copied out of its build still finds the modules there.
     set_target_properties(${name} PROPERTIES
-        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin"
+        BUILD_RPATH "${PROJECT_BINARY_DIR}/${CAUSTICS_MODULE_FOLDER}")
+endfunction()
+
+# caustics_module(foreign_pictures SOURCES ... DEPENDS ...): a library that programs load when they need it, from
+# ../<CAUSTICS_MODULE_FOLDER> beside their own folder, both where they are built and where they are installed.
+include(GNUInstallDirs)
+set(CAUSTICS_MODULE_FOLDER "${CMAKE_INSTALL_LIBDIR}/causticbench")
+function(caustics_module name)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
+    caustics_resolve_targets(depends ${arg_DEPENDS})
+    add_library(caustics_${name} MODULE ${arg_SOURCES})
+    caustics_configure_target(caustics_${name})
+    target_link_libraries(caustics_${name} PRIVATE ${depends})
+    set_target_properties(caustics_${name} PROPERTIES PREFIX ""
+        LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/${CAUSTICS_MODULE_FOLDER}")
 endfunction()
 
 # caustics_test(kd_tree SOURCES ... DEPENDS ... LABELS ... [DEFINES ...] [SHARED_MESHES])

@@ -35,7 +35,9 @@ EXCEPTIONS = {
 LIBRARIES = {
     "embree3/": ["core/scene/intersector.cpp", "tests/bench/"],
     "embree4/": ["core/scene/intersector.cpp", "tests/bench/"],
-    "OpenImageIO/": ["core/render/film.cpp", "core/base/picture_file.h", "core/base/picture_file.cpp", "tests/"],
+    "OpenImageIO/": ["core/picture/openimageio_source.cpp"],
+    "OpenEXR/": ["core/picture/exr_file.cpp"],
+    "png.h": ["core/picture/png_file.cpp", "tests/support/png_kinds.cpp"],
     "assimp/": ["core/mesh/mesh_io.cpp"],
     "nlohmann/": ["core/scene_file/json_reader.cpp", "core/scene_file/json_document.h", "core/scene_file/json_document.cpp",
                   "experiments/", "tests/"],

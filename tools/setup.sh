@@ -10,7 +10,8 @@ packages=(
     libembree-dev libtbb-dev                        # rays and threads
     libeigen3-dev libfmt-dev                        # vectors, text
     nlohmann-json3-dev libassimp-dev                # scene and mesh files
-    libopenimageio-dev openimageio-tools            # images; its CMake files ask for the tools
+    libopenexr-dev libpng-dev                       # pictures of our own
+    libopenimageio-dev openimageio-tools            # other pictures; its CMake files ask for the tools
     libcli11-dev                                    # command line
     libgtest-dev                                    # tests
     libbenchmark-dev libnanoflann-dev               # benchmarks

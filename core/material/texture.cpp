@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/base/error.h"
-#include "core/base/picture_file.h"
+#include "core/picture/picture_file.h"
 
 namespace caustics {
 namespace {
@@ -102,13 +102,13 @@ void add_to(ValueHash& hash, const Texture& texture) {
 
 Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {
     PictureFile picture(file);
-    const bool decode = !raw && !picture.spec().format.is_floating_point();
-    const auto channels = static_cast<std::size_t>(picture.spec().nchannels);
+    const bool decode = !raw && !picture.shape().is_float;
+    const auto channels = static_cast<std::size_t>(picture.shape().channels);
     // One or two channels are grey, with alpha ignored.
     const std::size_t step = channels >= 3 ? 1 : 0;
     Bitmap bitmap;
-    bitmap.width = picture.spec().width;
-    bitmap.height = picture.spec().height;
+    bitmap.width = picture.shape().width;
+    bitmap.height = picture.shape().height;
     bitmap.texels.reserve(picture.pixel_count());
     picture.read_rows([&](int y, const float* values) {
         for (int x = 0; x < bitmap.width; ++x, values += channels) {

@@ -38,7 +38,7 @@ Spectrum evaluate(const Texture& texture, const Vec2& uv);
 /// Adds all that evaluate() depends on.
 void add_to(ValueHash& hash, const Texture& texture);
 
-/// Reads a picture file by OpenImageIO; 8- and 16-bit files are sRGB-decoded unless `raw`.
+/// Reads a picture file of any format; 8- and 16-bit files are sRGB-decoded unless `raw`.
 /// One channel is grey; alpha is ignored. Throws InputError.
 Bitmap load_bitmap(const std::filesystem::path& file, bool raw);
 

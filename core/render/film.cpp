@@ -1,8 +1,5 @@
 #include "core/render/film.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <new>
@@ -10,12 +7,16 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/picture_file.h"
+#include "core/picture/exr_file.h"
+#include "core/picture/picture_file.h"
+#include "core/picture/png_file.h"
 
 namespace caustics {
 namespace {
 
 namespace fs = std::filesystem;
+
+const std::string text_prefix = "causticbench.";  // of our attributes
 
 std::array<std::string, 3> rgb_channels(const std::string& layer) {
     const std::string prefix = layer.empty() ? "" : layer + ".";
@@ -26,19 +27,34 @@ std::array<std::string, 3> rgb_channels(const std::string& layer) {
     throw InputError(file.string() + ": cannot be " + doing + " (" + why + ")");
 }
 
-// OpenImageIO encodes to memory: its own writers do not report a full disk, and a temporary name
-// would hide the extension they choose the format by.
-void encode_and_write(const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                      const void* pixels, const fs::path& file) {
-    const auto output = OIIO::ImageOutput::create(format);
-    if (!output) fail(file, "written", OIIO::geterror());
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    const bool done = output->set_ioproxy(&memory) &&
-                      output->open(file.filename().string(), spec) &&
-                      output->write_image(type, pixels) && output->close();
-    if (!done) fail(file, "written", output->geterror());
-    write_atomic_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+/// What the library throws becomes an InputError that names the file.
+template <class Work>
+auto with_reasons(const fs::path& file, const std::string& doing, const Work& work) {
+    try {
+        return work();
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        fail(file, doing, "it does not fit into memory");
+    } catch (const std::exception& error) {
+        fail(file, doing, error.what());
+    }
+}
+
+Film decode(const std::string& bytes) {
+    ExrFile file(bytes);
+    Film film(file.width(), file.height());
+    if (film.pixel_count() > PictureFile::most_pixels)
+        throw std::runtime_error(std::to_string(film.width()) + " x " +
+                                 std::to_string(film.height()) + " pixels, more than " +
+                                 std::to_string(PictureFile::most_pixels));
+    std::vector<ExrChannel<float>> channels;
+    for (const std::string& name : file.channels())
+        channels.push_back({name, film.plane(name).data()});
+    file.read(channels);
+    for (const auto& [name, text] : file.texts())
+        if (name.starts_with(text_prefix)) film.metadata[name.substr(text_prefix.size())] = text;
+    return film;
 }
 
 }  // namespace
@@ -83,50 +99,27 @@ void Film::set_rgb(const std::string& layer, std::size_t pixel, const Spectrum& 
 }
 
 void write_exr(const Film& film, const fs::path& file) {
-    OIIO::ImageSpec spec(film.width(), film.height(), static_cast<int>(film.planes().size()),
-                         OIIO::TypeDesc::FLOAT);
-    spec.channelnames.clear();
-    for (const Plane& plane : film.planes()) spec.channelnames.push_back(plane.channel);
-    spec.attribute("compression", "zip");
-    // Without it the writer puts the hour of writing here, and the bytes differ.
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-    for (const auto& [name, value] : film.metadata) spec.attribute("causticbench." + name, value);
-    std::vector<float> pixels(film.pixel_count() * film.planes().size());
-    for (std::size_t c = 0; c < film.planes().size(); ++c)
-        for (std::size_t i = 0; i < film.pixel_count(); ++i)
-            pixels[i * film.planes().size() + c] = film.planes()[c].values[i];
-    encode_and_write("openexr", spec, OIIO::TypeDesc::FLOAT, pixels.data(), file);
+    std::vector<ExrChannel<const float>> channels;
+    for (const Plane& plane : film.planes())
+        channels.push_back({plane.channel, plane.values.data()});
+    std::map<std::string, std::string> texts;
+    for (const auto& [name, value] : film.metadata) texts[text_prefix + name] = value;
+    const std::string bytes = with_reasons(
+        file, "written", [&] { return encode_exr(film.width(), film.height(), channels, texts); });
+    write_atomic_file(file, bytes);
 }
 
 Film read_exr(const fs::path& file) {
-    PictureFile picture(file);
-    if (picture.format() != "openexr")
-        picture.fail("holds " + picture.format() + " values, not radiance as OpenEXR does");
-    const OIIO::ImageSpec& spec = picture.spec();
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-        spec.height != spec.full_height)
-        fail(file, "read", "its data window is not the whole picture");
-    Film film(spec.width, spec.height);
-    const auto channels = static_cast<std::size_t>(spec.nchannels);
-    const auto width = static_cast<std::size_t>(spec.width);
-    std::vector<std::vector<float>*> planes;
-    for (const std::string& channel : spec.channelnames) planes.push_back(&film.plane(channel));
-    picture.read_rows([&](int y, const float* values) {
-        for (std::size_t i = width * static_cast<std::size_t>(y), end = i + width; i < end; ++i)
-            for (std::size_t c = 0; c < channels; ++c) (*planes[c])[i] = *values++;
-    });
-    const std::string prefix = "causticbench.";
-    for (const auto& attribute : spec.extra_attribs) {
-        const std::string name = attribute.name().string();
-        if (name.starts_with(prefix))
-            film.metadata[name.substr(prefix.size())] = attribute.get_string();
+    const std::string bytes = read_whole_file(file);
+    if (!is_exr(bytes)) {
+        const PictureFile picture(file);
+        picture.fail("holds " + picture.shape().format + " values, not radiance as OpenEXR does");
     }
-    return film;
+    return with_reasons(file, "read", [&] { return decode(bytes); });
 }
 
 void write_png(int width, int height, const std::vector<unsigned char>& rgb, const fs::path& file) {
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    encode_and_write("png", spec, OIIO::TypeDesc::UINT8, rgb.data(), file);
+    write_atomic_file(file, encode_png(width, height, rgb));
 }
 
 }  // namespace caustics

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "core/base/picture_file.h"
 #include "core/exact_shapes/shape_keys.h"
 #include "core/geometry/fractal_field.h"
+#include "core/picture/picture_file.h"
 
 namespace caustics::scene_file {
 namespace {
@@ -39,16 +39,16 @@ HeightGrid read_fractal(const JsonNode& node, const Vec2d& half_size) {
 // Pixels are the corners of the cells; the top row lies at +y, as the picture looks from above.
 HeightGrid load_heights(const std::filesystem::path& file, double height) {
     PictureFile picture(file);
-    const OIIO::ImageSpec& spec = picture.spec();
-    if (spec.nchannels != 1)
-        picture.fail(fmt::format("heights are one channel, and not {}", spec.nchannels));
-    if (spec.format.size() < 2)
+    const PictureShape& shape = picture.shape();
+    if (shape.channels != 1)
+        picture.fail(fmt::format("heights are one channel, and not {}", shape.channels));
+    if (shape.bytes_per_value < 2)
         picture.fail("heights of 8 bits are a flight of stairs; use a 16-bit PNG or an EXR file");
-    HeightGrid grid{.columns = spec.width - 1, .rows = spec.height - 1};
+    HeightGrid grid{.columns = shape.width - 1, .rows = shape.height - 1};
     const int most = HeightGrid::most_cells;
     if (grid.columns < 1 || grid.rows < 1 || grid.columns > most || grid.rows > most)
         picture.fail(fmt::format("heights are 2 to {} pixels wide and high, and not {} x {}",
-                                 most + 1, spec.width, spec.height));
+                                 most + 1, shape.width, shape.height));
     grid.heights.resize(picture.pixel_count());
     picture.read_rows([&](int y, const float* values) {
         for (int x = 0; x <= grid.columns; ++x) {

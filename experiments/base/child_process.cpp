@@ -22,6 +22,7 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
+#include "core/base/shared_library.h"
 #include "experiments/base/file_io.h"
 
 namespace caustics::experiments {
@@ -39,22 +40,11 @@ constexpr char threw_letter = 'e';
     throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// 0 where there is no /proc to count them by.
-std::size_t thread_count() {
-    std::error_code none;
-    const std::filesystem::directory_iterator threads("/proc/self/task", none);
-    return static_cast<std::size_t>(std::distance(begin(threads), end(threads)));
-}
-
-/// Some of OpenImageIO's own libraries begin threads when they are loaded; those sleep and hold
-/// nothing that a child needs. One of them ends its thread for good at the first fork.
-std::size_t threads_of_libraries = thread_count();
+const std::size_t threads_at_start = thread_count();
 
 void require_no_other_thread() {
-    const std::size_t threads = thread_count();
-    if (threads > threads_of_libraries)
+    if (thread_count() > threads_at_start + library_threads())
         throw std::logic_error("a child must be forked before any thread begins");
-    threads_of_libraries = threads;
 }
 
 void write_all(int descriptor, std::string_view bytes) {

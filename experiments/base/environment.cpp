@@ -52,6 +52,8 @@ json libraries() {
     return {{"embree", build_info::embree_version},
             {"tbb", build_info::tbb_version},
             {"eigen", build_info::eigen_version},
+            {"openexr", build_info::openexr_version},
+            {"libpng", build_info::libpng_version},
             {"openimageio", build_info::openimageio_version},
             {"assimp", build_info::assimp_version},
             {"nlohmann_json", build_info::nlohmann_json_version},

@@ -1,13 +1,17 @@
 #include <gtest/gtest.h>
-#include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "core/base/atomic_file.h"
+#include "core/render/film.h"
 #include "core/scene/scene_reader.h"
+#include "tests/support/png_kinds.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {
@@ -33,17 +37,15 @@ TEST_F(MeshShapes, TwoResolutionsAreThoseAlongXAndY) {
     EXPECT_EQ(water.mesh.triangles.size(), 10U);
 }
 
-/// Three by two pixels of one channel, the upper row first.
-void write_picture(const std::filesystem::path& file, OIIO::TypeDesc type) {
-    constexpr std::array<float, 6> values{1, 0, 0, 0, 32768 / 65535.0F, 0.2F};
-    const auto out = OIIO::ImageOutput::create(file.string());
-    ASSERT_TRUE(out && out->open(file.string(), OIIO::ImageSpec(3, 2, 1, type)));
-    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, values.data()) && out->close());
-}
-
 TEST_F(MeshShapes, HeightsOfAPictureStandOnItsPixels) {
-    write_picture(folder_ / "heights.png", OIIO::TypeDesc::UINT16);
-    write_picture(folder_ / "heights.exr", OIIO::TypeDesc::FLOAT);
+    // Three by two pixels of one channel, the upper row first.
+    const std::vector<std::uint16_t> heights{65535, 0, 0, 0, 32768, 13107};
+    write_atomic_file(folder_ / "heights.png",
+                      support::png_of_kind({support::PngKind::Colours::grey, 16}, 3, 2, heights));
+    Film film(3, 2);
+    std::ranges::transform(heights, film.plane("Y").begin(),
+                           [](std::uint16_t z) { return static_cast<float>(z) / 65535; });
+    write_exr(film, folder_ / "heights.exr");
     const std::vector<Vec3> expected = {{-3, -1, 0},   {0, -1, 2 * 32768 / 65535.0F},
                                         {3, -1, 0.4F}, {-3, 1, 2},
                                         {0, 1, 0},     {3, 1, 0}};

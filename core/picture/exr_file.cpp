@@ -1,0 +1,166 @@
+#include "core/picture/exr_file.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfVersion.h>
+
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/parallel.h"
+
+namespace caustics {
+namespace {
+
+class MemoryInput : public Imf::IStream {
+public:
+    explicit MemoryInput(const std::string& bytes) : IStream("it"), bytes_(bytes) {}
+
+    bool read(char to[], int count) override {
+        const auto wanted = static_cast<std::uint64_t>(count);
+        if (at_ > bytes_.size() || wanted > bytes_.size() - at_)
+            throw std::runtime_error("the file ends early");
+        std::memcpy(to, bytes_.data() + at_, wanted);
+        at_ += wanted;
+        return at_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return at_; }
+    void seekg(std::uint64_t to) override { at_ = to; }
+
+private:
+    const std::string& bytes_;
+    std::uint64_t at_ = 0;
+};
+
+/// The writer comes back to its table of offsets, so that it overwrites.
+class MemoryOutput : public Imf::OStream {
+public:
+    MemoryOutput() : OStream("it") {}
+
+    void write(const char from[], int count) override {
+        const auto length = static_cast<std::size_t>(count);
+        if (bytes.size() < at_ + length) bytes.resize(at_ + length);
+        std::memcpy(bytes.data() + at_, from, length);
+        at_ += length;
+    }
+    std::uint64_t tellp() override { return at_; }
+    void seekp(std::uint64_t to) override { at_ = to; }
+
+    std::string bytes;
+
+private:
+    std::uint64_t at_ = 0;
+};
+
+/// Threads of OpenEXR for large pictures, as long as it lives: afterwards a child may be forked again.
+class ExrThreads {
+public:
+    explicit ExrThreads(std::size_t values) {
+        constexpr std::size_t worth_threads = 1 << 20;
+        const int threads = values < worth_threads ? 0 : available_threads();
+        if (threads > 1) Imf::setGlobalThreadCount(threads);
+    }
+    ~ExrThreads() { Imf::setGlobalThreadCount(0); }
+    ExrThreads(const ExrThreads&) = delete;
+    ExrThreads& operator=(const ExrThreads&) = delete;
+};
+
+Imf::Slice slice(const float* values, const Imath::Box2i& window) {
+    return Imf::Slice::Make(Imf::FLOAT, values, window);
+}
+
+std::size_t value_count(int width, int height, std::size_t channels) {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels;
+}
+
+}  // namespace
+
+std::string encode_exr(int width, int height, const std::vector<ExrChannel<const float>>& channels,
+                       const std::map<std::string, std::string>& texts) {
+    Imf::Header header(width, height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    // The hour of writing would make other bytes of the same picture.
+    Imf::addCapDate(header, "1970:01:01 00:00:00");
+    for (const auto& [name, text] : texts) header.insert(name, Imf::StringAttribute(text));
+    Imf::FrameBuffer buffer;
+    for (const auto& [name, values] : channels) {
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        buffer.insert(name, slice(values, header.dataWindow()));
+    }
+    const ExrThreads threads(value_count(width, height, channels.size()));
+    MemoryOutput memory;
+    {
+        Imf::OutputFile file(memory, header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(height);
+    }  // writes the table of offsets
+    return std::move(memory.bytes);
+}
+
+bool is_exr(const std::string& bytes) { return bytes.size() >= 4 && Imf::isImfMagic(bytes.data()); }
+
+struct ExrFile::Opened {
+    explicit Opened(const std::string& bytes) : memory(bytes), file(memory) {}
+
+    const Imf::Header& header() const { return file.header(); }
+
+    MemoryInput memory;
+    Imf::InputFile file;
+};
+
+ExrFile::ExrFile(const std::string& bytes) : opened_(std::make_unique<Opened>(bytes)) {
+    const Imf::Header& header = opened_->header();
+    if (header.hasType() && Imf::isDeepData(header.type()))
+        throw std::runtime_error("it holds deep data");
+    const Imf::ChannelList& channels = header.channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
+            throw std::runtime_error(std::string("channel ") + channel.name() +
+                                     " has less than one value a pixel");
+    if (header.dataWindow() != header.displayWindow())
+        throw std::runtime_error("its data window is not the whole picture");
+}
+
+ExrFile::~ExrFile() = default;
+
+int ExrFile::width() const { return opened_->header().dataWindow().size().x + 1; }
+
+int ExrFile::height() const { return opened_->header().dataWindow().size().y + 1; }
+
+std::vector<std::string> ExrFile::channels() const {
+    std::vector<std::string> names;
+    const Imf::ChannelList& channels = opened_->header().channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        names.emplace_back(channel.name());
+    return names;
+}
+
+std::map<std::string, std::string> ExrFile::texts() const {
+    std::map<std::string, std::string> found;
+    const Imf::Header& header = opened_->header();
+    for (auto entry = header.begin(); entry != header.end(); ++entry)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute()))
+            found[entry.name()] = text->value();
+    return found;
+}
+
+void ExrFile::read(const std::vector<ExrChannel<float>>& channels) {
+    const Imath::Box2i& window = opened_->header().dataWindow();
+    Imf::FrameBuffer buffer;
+    for (const auto& [name, values] : channels) buffer.insert(name, slice(values, window));
+    const ExrThreads threads(value_count(width(), height(), channels.size()));
+    opened_->file.setFrameBuffer(buffer);
+    opened_->file.readPixels(window.min.y, window.max.y);
+}
+
+}  // namespace caustics

@@ -1,0 +1,120 @@
+// The module with OpenImageIO, which foreign_picture loads.
+
+#include <fcntl.h>
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "core/base/lower_case.h"
+#include "core/picture/foreign_picture.h"
+
+namespace caustics {
+namespace {
+
+/// Standard error leads nowhere as long as it lives.
+class SilentStandardError {
+public:
+    SilentStandardError() : kept_(fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) {
+        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+        if (kept_ >= 0 && nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+        if (nowhere >= 0) close(nowhere);
+    }
+    ~SilentStandardError() {
+        if (kept_ < 0) return;
+        std::fflush(stderr);
+        dup2(kept_, STDERR_FILENO);
+        close(kept_);
+    }
+    SilentStandardError(const SilentStandardError&) = delete;
+    SilentStandardError& operator=(const SilentStandardError&) = delete;
+
+private:
+    int kept_;
+};
+
+OIIO::ImageSpec reading() {
+    OIIO::ImageSpec config;
+    config["oiio:UnassociatedAlpha"] = 1;
+    return config;
+}
+
+class OpenImageIoSource : public PictureSource {
+public:
+    OpenImageIoSource(const std::filesystem::path& file, const std::string& bytes) {
+        const SilentStandardError silent;
+        open_input(file, bytes);
+        const OIIO::ImageSpec& spec = input_->spec();
+        shape_ = {spec.width,
+                  spec.height,
+                  spec.nchannels,
+                  static_cast<int>(spec.format.size()),
+                  spec.format.is_floating_point(),
+                  input_->format_name()};
+    }
+
+    void read_rows(int first, int last, float* values) override {
+        const SilentStandardError silent;
+        const OIIO::ImageSpec& spec = input_->spec();
+        const int top = spec.y;
+        const bool done = spec.tile_width > 0 ? read_tiles(first, last, values)
+                                              : input_->read_scanlines(
+                                                    0, 0, top + first, top + last, 0, 0,
+                                                    spec.nchannels, OIIO::TypeDesc::FLOAT, values);
+        if (!done) throw std::runtime_error(input_->geterror());
+    }
+
+private:
+    void open_input(const std::filesystem::path& file, const std::string& bytes) {
+        const OIIO::ImageSpec config = reading();
+        std::string format = lower_case(file.extension().string());
+        if (!format.empty()) format.erase(0, 1);
+        OIIO::ImageSpec found;
+        std::string why;
+        if (!format.empty()) input_ = OIIO::ImageInput::create(format);
+        if (input_ && input_->supports("ioproxy")) {
+            memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
+            input_->set_ioproxy(memory_.get());
+            // A '?' in a file's name would be taken for a query.
+            if (input_->open("picture." + format, found, config)) return;
+            why = input_->geterror();
+        }
+        // A format that is read by name alone, or another one than the name says.
+        if (file.string().find('?') == std::string::npos)
+            input_ = OIIO::ImageInput::open(file.string(), &config);
+        else
+            input_.reset();
+        const std::string by_name = OIIO::geterror();
+        if (!input_) throw std::runtime_error(why.empty() ? by_name : why);
+    }
+
+    // Tiles are read whole, once: all rows are kept.
+    bool read_tiles(int first, int last, float* values) {
+        const auto row = static_cast<std::ptrdiff_t>(shape_.width) * shape_.channels;
+        if (tiles_.empty()) {
+            tiles_.resize(static_cast<std::size_t>(row) * static_cast<std::size_t>(shape_.height));
+            if (!input_->read_image(0, 0, 0, shape_.channels, OIIO::TypeDesc::FLOAT, tiles_.data()))
+                return false;
+        }
+        std::copy(tiles_.begin() + row * first, tiles_.begin() + row * last, values);
+        return true;
+    }
+
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+    std::vector<float> tiles_;
+};
+
+}  // namespace
+}  // namespace caustics
+
+extern "C" caustics::PictureSource* caustics_open_picture(const char* file,
+                                                          const std::string& bytes) {
+    return new caustics::OpenImageIoSource(file, bytes);
+}

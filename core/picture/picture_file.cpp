@@ -1,0 +1,55 @@
+#include "core/picture/picture_file.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/picture/foreign_picture.h"
+#include "core/picture/png_file.h"
+
+namespace caustics {
+
+PictureFile::PictureFile(const std::filesystem::path& file)
+    : file_(file), bytes_(read_whole_file(file)) {
+    try {
+        source_ = is_png(bytes_) ? open_png(bytes_) : open_foreign_picture(file_, bytes_);
+    } catch (const std::runtime_error& error) {
+        fail(error.what());
+    }
+    const PictureShape& found = shape();
+    if (found.width < 1 || found.height < 1 || found.channels < 1) fail("it has no pixels");
+    if (pixel_count() > most_pixels)
+        fail(std::to_string(found.width) + " x " + std::to_string(found.height) +
+             " pixels, more than " + std::to_string(most_pixels));
+}
+
+std::size_t PictureFile::pixel_count() const {
+    return static_cast<std::size_t>(shape().width) * static_cast<std::size_t>(shape().height);
+}
+
+void PictureFile::read_rows(const std::function<void(int y, const float* values)>& take) {
+    constexpr int rows_at_once = 64;
+    const std::size_t row =
+        static_cast<std::size_t>(shape().width) * static_cast<std::size_t>(shape().channels);
+    std::vector<float> values(row * static_cast<std::size_t>(rows_at_once));
+    for (int first = 0; first < shape().height; first += rows_at_once) {
+        const int last = std::min(first + rows_at_once, shape().height);
+        try {
+            source_->read_rows(first, last, values.data());
+        } catch (const std::runtime_error& error) {
+            fail(error.what());
+        }
+        for (int y = first; y < last; ++y)
+            take(y, &values[row * static_cast<std::size_t>(y - first)]);
+    }
+}
+
+void PictureFile::fail(std::string why) const {
+    throw InputError(file_.string() + ": cannot be read (" +
+                     (why.empty() ? "not a picture of a known format" : std::move(why)) + ")");
+}
+
+}  // namespace caustics

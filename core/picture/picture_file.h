@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/picture/picture_source.h"
+
+namespace caustics {
+
+/// A picture of any format: PNG by libpng, others by OpenImageIO (see foreign_picture.h).
+class PictureFile {
+public:
+    /// As many pixels as a film may have.
+    static constexpr std::size_t most_pixels = std::size_t{1} << 27;
+
+    /// Throws InputError for what is no picture, and for more than `most_pixels`.
+    explicit PictureFile(const std::filesystem::path& file);
+    PictureFile(const PictureFile&) = delete;
+    PictureFile& operator=(const PictureFile&) = delete;
+
+    const PictureShape& shape() const { return source_->shape(); }
+    std::size_t pixel_count() const;
+    /// Hands over the values of a row after another: `channels` floats a pixel. Throws InputError for a broken
+    /// picture.
+    void read_rows(const std::function<void(int y, const float* values)>& take);
+    [[noreturn]] void fail(std::string why) const;
+
+private:
+    std::filesystem::path file_;
+    std::string bytes_;
+    std::unique_ptr<PictureSource> source_;
+};
+
+}  // namespace caustics

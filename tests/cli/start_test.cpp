@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/base/atomic_file.h"
+#include "tests/cli/program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics {
+namespace {
+
+using support::ProgramResult;
+using support::shell;
+
+const std::string scenes = CAUSTICS_SOURCE_DIR "/experiments/scenes/";
+
+/// Libraries that the program loads, at its start and later, as the loader tells (ld.so(8)).
+class Start : public testing::Test {
+protected:
+    /// $D is the test's folder, $S that of the scenes.
+    ProgramResult run(const std::string& line) const {
+        return shell(fmt::format("D='{}'; S='{}'; {}", folder_.path().string(), scenes, line));
+    }
+
+    std::size_t libraries_of(const std::string& words) const {
+        const ProgramResult result = run("LD_DEBUG=files $P " + words + " >/dev/null");
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        constexpr std::string_view mark = "calling init:";
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = result.err.find(mark, at)) != std::string::npos; ++at)
+            ++count;
+        return count;
+    }
+
+    /// A scene whose floor shows a picture of a format that only OpenImageIO reads.
+    std::string foreign_scene() const {
+        write_atomic_file(folder_ / "floor.ppm", "P3\n2 1\n255\n255 0 0 0 255 0\n");
+        write_atomic_file(folder_ / "scene.json", R"({
+            "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 3},
+                       "to_world": [{"look_at": {"origin": [0, 0, 3], "target": [0, 0, 0],
+                                                 "up": [0, 1, 0]}}]},
+            "light": {"type": "point", "position": [0, 0, 2], "intensity": 1},
+            "floor": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance":
+                                                    {"type": "bitmap", "filename": "floor.ppm"}}}})");
+        return folder_ / "scene.json";
+    }
+
+    support::TemporaryFolder folder_;
+};
+
+/// The libraries that are linked are fewer than 20, a sanitizer's included; OpenImageIO needs 250.
+constexpr std::size_t few = 30;
+constexpr std::size_t many = 60;
+
+TEST_F(Start, LoadsFewLibrariesForPicturesOfItsOwn) {
+    const std::string small =
+        "--method none --set /sensor/film/width=4 --set /sensor/film/height=3 --spp 1";
+    EXPECT_LT(libraries_of("--version"), few);
+    EXPECT_LT(libraries_of("info $S/ball.json"), few) << "its texture is a PNG";
+    EXPECT_LT(libraries_of("render $S/ball.json " + small + " -o $D/a.exr -o $D/a.png"), few);
+    EXPECT_LT(libraries_of("compare $D/a.exr $D/a.exr"), few);
+}
+
+TEST_F(Start, LoadsOpenImageIoForAForeignPicture) {
+    EXPECT_GT(libraries_of("info " + foreign_scene()), many);
+}
+
+TEST_F(Start, TrialsAreForkedAfterTheLibrariesOfAForeignPictureBeganTheirThreads) {
+    write_atomic_file(folder_ / "sweep.json",
+                      fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1, 2],
+                                       "methods": [{{"method": "none"}}]}})",
+                                  foreign_scene()));
+    const ProgramResult swept = run("$P sweep $D/sweep.json -o $D/out");
+    EXPECT_EQ(swept.exit_code, 0) << swept.err;
+}
+
+TEST_F(Start, ACopyOfTheProgramFindsTheModuleOfItsBuild) {
+    foreign_scene();
+    const ProgramResult copied = run("cp $P $D/copy && $D/copy info $D/scene.json");
+    EXPECT_EQ(copied.exit_code, 0) << copied.err;
+}
+
+}  // namespace
+}  // namespace caustics
