@@ -24,7 +24,6 @@ add_custom_target(caustics_build_info_header
         "-DLIBPNG_VERSION=${PNG_VERSION_STRING}"
         "-DOPENIMAGEIO_VERSION=${OpenImageIO_VERSION}"
         "-DEIGEN_VERSION=${Eigen3_VERSION}"
-        "-DASSIMP_VERSION=${assimp_VERSION}"
         "-DNLOHMANN_JSON_VERSION=${nlohmann_json_VERSION}"
         -P "${PROJECT_SOURCE_DIR}/cmake/write_build_info.cmake"
     BYPRODUCTS "${CAUSTICS_BUILD_INFO_HEADER}"

@@ -9,7 +9,7 @@ packages=(
     g++ cmake ninja-build                           # build
     libembree-dev libtbb-dev                        # rays and threads
     libeigen3-dev libfmt-dev                        # vectors, text
-    nlohmann-json3-dev libassimp-dev                # scene and mesh files
+    nlohmann-json3-dev                              # scene files
     libopenexr-dev libpng-dev                       # pictures of our own
     libopenimageio-dev openimageio-tools            # other pictures; its CMake files ask for the tools
     libcli11-dev                                    # command line

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/mesh/mesh_source.h"
+#include "core/mesh/quoted_word.h"
 
 namespace caustics {
 
@@ -51,7 +51,7 @@ std::vector<PlyElement> PlyFile::read_header() {
         else if (words[0] == "property" && !elements.empty())
             elements.back().properties.push_back(read_property(words));
         else
-            fail("header line beginning with " + quoted(words[0]) + " is not understood");
+            fail("header line beginning with " + quoted_word(words[0]) + " is not understood");
     }
     if (!format) fail("the header has no format line");
     format_ = *format;
@@ -115,7 +115,7 @@ PlyProperty PlyFile::read_property(const std::vector<std::string>& words) const 
     const std::optional<PlyType> type = parse_type(words[words.size() - 2]);
     const std::optional<PlyType> count_type = list ? parse_type(words[2]) : std::nullopt;
     if (!type || (list && !count_type))
-        fail("property " + quoted(words.back()) + " has an unknown type");
+        fail("property " + quoted_word(words.back()) + " has an unknown type");
     return {words.back(), *type, count_type};
 }
 
@@ -138,7 +138,7 @@ double PlyFile::read_ascii(const std::string& element, std::size_t index) {
     const auto [stop, error] =
         std::from_chars(word.data() + sign, word.data() + word.size(), value);
     if (error != std::errc{} || stop != word.data() + word.size())
-        fail(element + " " + std::to_string(index) + ": " + quoted(std::string(word)) +
+        fail(element + " " + std::to_string(index) + ": " + quoted_word(std::string(word)) +
              " is not a number");
     return value;
 }

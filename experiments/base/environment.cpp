@@ -55,7 +55,6 @@ json libraries() {
             {"openexr", build_info::openexr_version},
             {"libpng", build_info::libpng_version},
             {"openimageio", build_info::openimageio_version},
-            {"assimp", build_info::assimp_version},
             {"nlohmann_json", build_info::nlohmann_json_version},
             {"fmt", fmt::format("{}.{}.{}", fmt_version / 10000, fmt_version / 100 % 100,
                                 fmt_version % 100)},

@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/core/mesh/mesh_files.h"
 
@@ -71,6 +77,41 @@ TEST_F(MeshIo, VerticesWithoutNormalOrUvBesideOthersAreCompleted) {
         EXPECT_EQ(mesh.normals[mesh.triangles[1][i]], Vec3(0, 0, 1));
         EXPECT_EQ(mesh.uvs[mesh.triangles[0][i]], Vec2(0.5F, 0.5F));
     }
+}
+
+TEST_F(MeshIo, ObjNumbersAreTheNearestFloats) {
+    std::mt19937 random(3);
+    std::string text;
+    std::vector<std::string> written;
+    for (int i = 0; i < 3000; ++i) {
+        const auto digits = std::to_string(random() % 1'000'000);
+        written.push_back((i % 2 == 0 ? "-" : "") + std::to_string(random() % 10) + "." + digits +
+                          (i % 3 == 0 ? "e-3" : ""));
+        text += (i % 3 == 0 ? "v " : " ") + written.back() + (i % 3 == 2 ? "\n" : "");
+    }
+    for (int i = 1; i <= 1000; ++i) text += "f " + std::to_string(i) + " 1 2\n";
+    const TriangleMesh mesh = load("a.obj", text);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_EQ(
+                mesh.positions[mesh.triangles[i][0]][axis],
+                std::strtof(written[3 * i + static_cast<std::size_t>(axis)].c_str(), nullptr));
+}
+
+TEST_F(MeshIo, ObjCornersThatAgreeAreOneVertex) {
+    // A position named twice, and zeros of both signs; 2,500 others, so that the table of vertices grows.
+    std::string text = "v 0 0 0\nv -0 0 -0\nvt 0 0\nvt 0 0\nvt 1 0\n";
+    for (int i = 0; i < 2500; ++i) text += "v " + std::to_string(i) + " 1 0\n";
+    text += "f 1/1 2/2 3/1\nf 1/3 1/1 3/1\n";
+    for (int i = 3; i < 2502; ++i)
+        text += "f " + std::to_string(i) + "/1 " + std::to_string(i + 1) + "/1 2/1\n";
+    const TriangleMesh mesh = load("a.obj", text);
+    EXPECT_EQ(mesh.positions.size(), 2U + 2500U);
+    using Triangle = std::array<std::uint32_t, 3>;
+    EXPECT_EQ(mesh.triangles[0], (Triangle{0, 0, 1}));
+    EXPECT_EQ(mesh.triangles[1], (Triangle{2, 0, 1})) << "other texture coordinates";
+    EXPECT_EQ(mesh.triangles[2], (Triangle{1, 3, 0}));
+    EXPECT_EQ(mesh.triangles.back(), (Triangle{2500, 2501, 0}));
 }
 
 TEST_F(MeshIo, BrokenObjFilesAreRefusedWithTheLine) {

@@ -1,26 +1,24 @@
+#include "core/mesh/ply_mesh.h"
+
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <utility>
 #include <vector>
 
-#include "core/mesh/mesh_source.h"
+#include "core/base/interrupt.h"
+#include "core/math/polygon.h"
 #include "core/mesh/ply_file.h"
+#include "core/mesh/quoted_word.h"
 
 namespace caustics {
 namespace {
 
 constexpr auto max_float = static_cast<double>(std::numeric_limits<float>::max());
-
-template <class Value>
-void append(std::string& text, Value value) {
-    const auto raw = std::bit_cast<std::array<char, sizeof(Value)>>(value);
-    text.append(raw.data(), raw.size());
-}
+constexpr std::size_t values_between_looks = 1 << 14;  // for Ctrl-C
 
 // Which properties of a vertex are kept, and under which name. A group is kept whole or not at all.
 struct KeptGroup {
@@ -37,32 +35,31 @@ const std::vector<KeptGroup>& kept_groups() {
     return groups;
 }
 
-/// Reads the elements and writes the plain file.
-class PlyChecker {
+class PlyReader {
 public:
-    PlyChecker(const std::string& bytes, const std::string& name) : file_(bytes, name) {}
+    PlyReader(const std::string& bytes, const std::string& name) : file_(bytes, name) {}
 
-    MeshSource run() {
+    TriangleMesh run() {
         const std::vector<PlyElement> elements = file_.read_header();
         const PlyElement& vertices = the_element(elements, "vertex");
         const PlyElement& faces = the_element(elements, "face");
         vertex_count_ = vertices.count;
         choose_columns(vertices);
-        std::string vertex_data;
-        std::string face_data;
         for (const PlyElement& element : elements)
             for (std::size_t i = 0; i < element.count; ++i) {
+                if (i % values_between_looks == 0) throw_if_interrupted();
                 if (&element == &vertices)
-                    read_vertex(element, i, vertex_data);
+                    read_vertex(element, i);
                 else if (&element == &faces)
-                    read_face(element, i, face_data);
+                    read_face(element, i);
                 else
                     for (const PlyProperty& property : element.properties)
                         read_property(element, property, i);
             }
         file_.expect_end();
-        if (triangles_ == 0) file_.fail("no faces");
-        return {header(faces.count) + vertex_data + face_data, triangles_};
+        cut_polygons();
+        if (mesh_.triangles.empty()) file_.fail("no faces");
+        return std::move(mesh_);
     }
 
 private:
@@ -72,7 +69,7 @@ private:
         for (const PlyElement& element : elements) {
             // Also keeps a wrong count from being a long loop over nothing.
             if (element.properties.empty())
-                file_.fail("element " + quoted(element.name) + " has no properties");
+                file_.fail("element " + quoted_word(element.name) + " has no properties");
             if (element.name != name) continue;
             if (found != nullptr) file_.fail("more than one element '" + name + "'");
             found = &element;
@@ -88,13 +85,13 @@ private:
                     return i;
             return {};
         };
-        bool uv_chosen = false;
         for (const KeptGroup& group : kept_groups()) {
             const bool complete = std::all_of(group.given.begin(), group.given.end(),
                                               [&](const auto& name) { return column(name); });
             if (!complete && group.kept[0] == "x") file_.fail("vertices have no x, y, z");
-            if (!complete || (uv_chosen && group.kept[0] == "u")) continue;
-            uv_chosen = group.kept[0] == "u";
+            if (!complete || (has_uvs_ && group.kept[0] == "u")) continue;
+            has_normals_ = has_normals_ || group.kept[0] == "nx";
+            has_uvs_ = has_uvs_ || group.kept[0] == "u";
             for (std::size_t i = 0; i < group.given.size(); ++i) {
                 columns_.push_back(*column(group.given[i]));
                 names_.push_back(group.kept[i]);
@@ -133,24 +130,26 @@ private:
         file_.fail(element.name + " " + std::to_string(index) + ": " + reason);
     }
 
-    void read_vertex(const PlyElement& element, std::size_t index, std::string& out) {
+    void read_vertex(const PlyElement& element, std::size_t index) {
         row_.clear();
         for (const PlyProperty& property : element.properties) {
             const std::vector<double>& values = read_property(element, property, index);
             row_.push_back(property.count_type ? 0.0 : values[0]);
         }
-        // `pad`, never 0x0A.
-        out.push_back(0);
+        kept_.clear();
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const double value = row_[columns_[i]];
             if (!(std::abs(value) <= max_float))
                 fail(element, index,
                      names_[i] + " is " + number_text(value) + ", not a finite number");
-            append(out, static_cast<float>(value));
+            kept_.push_back(static_cast<float>(value));
         }
+        mesh_.positions.emplace_back(kept_[0], kept_[1], kept_[2]);
+        if (has_normals_) mesh_.normals.emplace_back(kept_[3], kept_[4], kept_[5]);
+        if (has_uvs_) mesh_.uvs.emplace_back(kept_[kept_.size() - 2], kept_.back());
     }
 
-    void read_face(const PlyElement& element, std::size_t index, std::string& out) {
+    void read_face(const PlyElement& element, std::size_t index) {
         bool found = false;
         for (const PlyProperty& property : element.properties) {
             const std::vector<double>& corners = read_property(element, property, index);
@@ -162,40 +161,72 @@ private:
                 fail(element, index,
                      "a face needs at least 3 corners, this one has " +
                          std::to_string(corners.size()));
-            append(out, static_cast<std::uint32_t>(corners.size()));
+            polygon_sizes_.push_back(static_cast<std::uint32_t>(corners.size()));
             for (const double corner : corners) {
                 if (to_index(element, index, corner) >= vertex_count_)
                     fail(element, index,
                          "vertex " + number_text(corner) + " is not among the " +
                              std::to_string(vertex_count_) + " vertices");
-                append(out, static_cast<std::uint32_t>(corner));
+                corners_.push_back(static_cast<std::uint32_t>(corner));
             }
-            triangles_ += corners.size() - 2;
         }
         if (!found) file_.fail("faces have no list 'vertex_indices' or 'vertex_index'");
     }
 
-    std::string header(std::size_t face_count) const {
-        std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                           std::to_string(vertex_count_) + "\nproperty uchar pad\n";
-        for (const std::string& name : names_) text += "property float " + name + '\n';
-        return text + "element face " + std::to_string(face_count) +
-               "\nproperty list uint uint vertex_indices\nend_header\n";
+    // Faces may come before their vertices.
+    void cut_polygons() {
+        std::vector<Vec3> polygon;
+        const std::uint32_t* corners = corners_.data();
+        for (const std::uint32_t size : polygon_sizes_) {
+            polygon.clear();
+            for (std::uint32_t i = 0; i < size; ++i) polygon.push_back(mesh_.positions[corners[i]]);
+            for (const auto& [a, b, c] : triangulate_polygon(polygon))
+                mesh_.triangles.push_back({corners[a], corners[b], corners[c]});
+            corners += size;
+        }
     }
 
     PlyFile file_;
     std::size_t vertex_count_ = 0;
-    std::size_t triangles_ = 0;
-    std::vector<std::size_t> columns_;  // of the kept properties
+    std::vector<std::size_t> columns_;  // of the kept properties: position, normal, uv
     std::vector<std::string> names_;    // of the kept properties
+    bool has_normals_ = false;
+    bool has_uvs_ = false;
     std::vector<double> values_;
     std::vector<double> row_;
+    std::vector<float> kept_;
+    std::vector<std::uint32_t> polygon_sizes_;
+    std::vector<std::uint32_t> corners_;  // of all polygons, one after the other
+    TriangleMesh mesh_;
 };
+
+// Vertices that no triangle has are no part of the surface, nor of its bounds.
+void drop_unused_vertices(TriangleMesh& mesh) {
+    constexpr std::uint32_t unused = ~0U;
+    std::vector<std::uint32_t> place(mesh.positions.size(), unused);
+    for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t corner : triangle) place[corner] = 0;
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < place.size(); ++i) {
+        if (place[i] == unused) continue;
+        mesh.positions[count] = mesh.positions[i];
+        if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[i];
+        if (!mesh.uvs.empty()) mesh.uvs[count] = mesh.uvs[i];
+        place[i] = count++;
+    }
+    mesh.positions.resize(count);
+    if (!mesh.normals.empty()) mesh.normals.resize(count);
+    if (!mesh.uvs.empty()) mesh.uvs.resize(count);
+    for (auto& triangle : mesh.triangles)
+        for (std::uint32_t& corner : triangle) corner = place[corner];
+}
 
 }  // namespace
 
-MeshSource check_ply(const std::string& bytes, const std::string& name) {
-    return PlyChecker(bytes, name).run();
+TriangleMesh read_ply(const std::string& bytes, const std::string& name) {
+    TriangleMesh mesh = PlyReader(bytes, name).run();
+    drop_unused_vertices(mesh);
+    return mesh;
 }
 
 }  // namespace caustics
