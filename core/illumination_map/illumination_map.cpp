@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/illumination_map/texel_area.h"
+#include "core/method/unlit_estimator.h"
 #include "core/reference/ordered_paths.h"
 
 namespace caustics {
@@ -66,12 +67,25 @@ struct ReceiverMaps {
     }
 };
 
-ReceiverMaps empty_maps(const Shape& shape, int resolution) {
+void require_diffuse(const Shape& shape) {
     if (!std::holds_alternative<Diffuse>(shape.bsdf.model))
         throw UnsupportedScene(
             "illuminationmap keeps no directions of light, so its receivers must be diffuse, and "
             "\"" +
             shape.name + "\" is not (photonmap and the references take any)");
+}
+
+/// Throws what making their maps would. Texture coordinates of exact shapes always name one place each.
+void check_receivers(const Scene& scene, int resolution) {
+    for (const Shape& shape : scene.shapes()) {
+        if (!is_receiver(shape.bsdf)) continue;
+        require_diffuse(shape);
+        if (shape.primitive == Primitive::mesh) texel_areas(shape, texel_grid(shape, resolution));
+    }
+}
+
+ReceiverMaps empty_maps(const Shape& shape, int resolution) {
+    require_diffuse(shape);
     const TexelGrid grid = texel_grid(shape, resolution);
     ReceiverMaps maps;
     maps.areas = texel_areas(shape, grid);
@@ -168,14 +182,16 @@ const DescribedMethod<IlluminationMapParams>& illuminationmap_method() {
                              .unit = "texels",
                              .source = "[Arvo 1986]"}),
                         parameter::max_bounces<P>()},
-         .take_least_work = [](P& params) { params.emitted = 1; }});
+         .take_least_work = [](P& params) { params.only_checked = true; }});
     return method;
 }
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene,
                                               const IlluminationMapParams& params,
                                               const RunOptions& options) {
-    return std::make_unique<IlluminationMap>(scene, params, options);
+    if (!params.only_checked) return std::make_unique<IlluminationMap>(scene, params, options);
+    check_receivers(scene, params.resolution);
+    return std::make_unique<UnlitEstimator>();
 }
 
 }  // namespace caustics

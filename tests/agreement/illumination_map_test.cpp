@@ -1,4 +1,5 @@
 #include "core/illumination_map/illumination_map.h"
+#include "core/geometry/tessellate.h"
 #include "core/method/none.h"
 
 #include <gtest/gtest.h>
@@ -225,13 +226,28 @@ TEST(IlluminationMap, KeepsTheSidesOfAThinReceiverApart) {
     EXPECT_EQ(support::irradiance(*map, {on_shape(scene, 1, middle, false)})[0].value[0], 0);
 }
 
-TEST(IlluminationMap, RefusesWhatItCannotHold) {
-    const Scene glossy(daylight_scene(support::schlick(0.5F, 0.1F)));
+std::string refusal(const SceneDesc& desc, const IlluminationMapParams& params) {
+    const Scene scene(desc);
     try {
-        map_of(glossy, {.emitted = 10});
-        ADD_FAILURE() << "taken";
+        map_of(scene, params);
     } catch (const UnsupportedScene& error) {
-        EXPECT_NE(std::string(error.what()).find("\"plate\""), std::string::npos) << error.what();
+        return error.what();
+    }
+    return "taken";
+}
+
+// Asked only whether it can, it makes no texels of exact shapes, but refuses the same.
+TEST(IlluminationMap, RefusesWhatItCannotHold) {
+    SceneDesc crate = daylight_scene(support::diffuse(0.5F));
+    crate.shapes[1] =
+        support::mesh("plate", tessellate_cube(2), Transform::Identity(), support::diffuse(0.5F));
+    for (const bool only_checked : {false, true}) {
+        const IlluminationMapParams params{.emitted = 10, .only_checked = only_checked};
+        const std::string glossy = refusal(daylight_scene(support::schlick(0.5F, 0.1F)), params);
+        EXPECT_NE(glossy.find("\"plate\" is not"), std::string::npos) << glossy;
+        EXPECT_NE(refusal(crate, params).find("\"plate\" has texture coordinates that overlap"),
+                  std::string::npos);
+        EXPECT_EQ(refusal(daylight_scene(support::diffuse(0.5F)), params), "taken");
     }
 }
 
