@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/disk.h"
 #include "core/base/error.h"
 
 namespace caustics {
@@ -24,8 +25,7 @@ std::filesystem::path entry_of(int descriptor) {
 /// system has no such files, or it could not be given a name later.
 int open_nameless(const std::filesystem::path& folder) {
     constexpr mode_t mode = 0666;
-    const int descriptor =
-        open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
+    const int descriptor = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
     std::error_code none;
     if (descriptor < 0 || std::filesystem::exists(entry_of(descriptor), none)) return descriptor;
     close(descriptor);
@@ -38,16 +38,18 @@ AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(file), tempora
     std::error_code unknown;
     if (std::filesystem::is_other(file, unknown)) fail(EEXIST);
     temporary_ += ".tmp-" + std::to_string(getpid());
-    const int nameless = open_nameless(file.parent_path());
-    is_nameless_ = nameless >= 0;
-    out_ = is_nameless_ ? fdopen(nameless, "wb") : std::fopen(temporary_.c_str(), "wb");
-    if (out_ == nullptr) fail(errno);
+    out_ = open_nameless(folder_above(file));
+    is_nameless_ = out_ >= 0;
+    constexpr mode_t mode = 0666;
+    if (!is_nameless_)
+        out_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode);
+    if (out_ < 0) fail(errno);
 }
 
 AtomicFile::~AtomicFile() {
-    if (out_ != nullptr) std::fclose(out_);
-    std::error_code ignored;
-    if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
+    if (out_ >= 0) close(out_);
+    // Not std::filesystem's, which may want memory.
+    if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
 void AtomicFile::fail(int error) const {
@@ -55,32 +57,51 @@ void AtomicFile::fail(int error) const {
                      std::generic_category().message(error) + ")");
 }
 
+void AtomicFile::put(std::string_view bytes) const {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(out_, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail(errno);
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
 void AtomicFile::write(std::string_view bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), out_) != bytes.size()) fail(errno);
+    constexpr std::size_t block = 1 << 16;
+    if (waiting_.size() + bytes.size() < block) {
+        waiting_ += bytes;
+        return;
+    }
+    put(waiting_);
+    waiting_.clear();
+    put(bytes);
 }
 
 /// Another process of that number may have left the name behind.
 void AtomicFile::name() {
     std::error_code none;
     std::filesystem::remove(temporary_, none);
-    const std::filesystem::path entry = entry_of(fileno(out_));
+    const std::filesystem::path entry = entry_of(out_);
     if (linkat(AT_FDCWD, entry.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0)
         fail(errno);
 }
 
 void AtomicFile::commit() {
-    if (std::fflush(out_) != 0) fail(errno);
+    put(waiting_);
+    // First the content, then its name: a disk may take them in any order.
+    bring_to_disk(out_, file_);
     if (is_nameless_) name();
-    if (std::fclose(std::exchange(out_, nullptr)) != 0) fail(errno);
+    if (close(std::exchange(out_, -1)) != 0) fail(errno);
     std::error_code error;
     std::filesystem::rename(temporary_, file_, error);
     if (error) fail(error.value());
     temporary_.clear();
+    bring_to_disk(folder_above(file_));
 }
 
 void require_writable_place(const std::filesystem::path& file) {
     namespace fs = std::filesystem;
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    const fs::path folder = folder_above(file);
     const auto fail = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
     std::error_code unknown;
     if (!fs::is_directory(folder, unknown))

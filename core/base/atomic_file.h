@@ -1,16 +1,16 @@
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace caustics {
 
-/// A file that is whole or absent: written without a name, or under a temporary one beside it where
-/// the file system has none without, and named or renamed by commit(). Without commit() nothing is
-/// left behind. Every failure throws InputError naming the file and the
-/// system's reason (a full disk, a missing folder).
+/// A file that is whole or absent, whatever stops the process or the machine: written without a name,
+/// or under a temporary one beside it where the file system has none without; commit() brings it to
+/// the disk, then gives it its name, and brings that there. Without commit() nothing is left behind.
+/// Every failure throws InputError naming the file and the system's reason (a full disk, a missing
+/// folder).
 class AtomicFile {
 public:
     explicit AtomicFile(const std::filesystem::path& file);
@@ -23,11 +23,13 @@ public:
 
 private:
     [[noreturn]] void fail(int error) const;
+    void put(std::string_view bytes) const;
     void name();
 
     std::filesystem::path file_;
     std::filesystem::path temporary_;
-    std::FILE* out_ = nullptr;
+    std::string waiting_;  ///< bytes that are not written yet
+    int out_ = -1;
     bool is_nameless_ = false;
 };
 
