@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/disk.h"
 #include "core/base/error.h"
 
 namespace caustics::experiments {
@@ -23,6 +24,25 @@ bool is_part(const fs::path& folder) {
     return fs::is_directory(folder) && (fs::is_empty(folder) || fs::exists(folder / lock_name));
 }
 
+/// All but the lock, whose name is on the disk before the first other and after the last: so it
+/// tells what is left of a crash.
+void clear(const fs::path& folder) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        if (entry.path().filename() != lock_name) fs::remove_all(entry.path());
+    bring_to_disk(folder);
+}
+
+/// Of folders in it as well. Not by the library's recursive iterator, which ends the process where it
+/// finds no memory.
+void bring_all_to_disk(const fs::path& folder) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        if (entry.is_directory() && !entry.is_symlink())
+            bring_all_to_disk(entry.path());
+        else
+            bring_to_disk(entry.path());
+    bring_to_disk(folder);
+}
+
 }  // namespace
 
 AtomicFolder::AtomicFolder(const fs::path& target)
@@ -31,26 +51,42 @@ AtomicFolder::AtomicFolder(const fs::path& target)
         throw InputError(
             fmt::format("{}: is in the way of {}", temporary_.string(), target.string()));
     lock_.emplace(temporary_);
-    for (const fs::directory_entry& entry : fs::directory_iterator(temporary_))
-        if (entry.path().filename() != lock_name) fs::remove_all(entry.path());
+    clear(temporary_);
 }
 
 AtomicFolder::~AtomicFolder() {
-    std::error_code ignored;
-    if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+    if (temporary_.empty()) return;
+    try {
+        clear(temporary_);
+        fs::remove_all(temporary_);
+    } catch (const std::exception&) {}  // the next one for that target tries again
 }
 
 void AtomicFolder::commit() {
-    fs::remove(temporary_ / lock_name);
+    bring_all_to_disk(temporary_);
     const bool stays = fs::is_symlink(target_) || (fs::exists(target_) && !fs::is_empty(target_));
     if (stays) {
         for (const fs::directory_entry& entry : fs::directory_iterator(temporary_))
-            fs::rename(entry.path(), target_ / entry.path().filename());
-        fs::remove(temporary_);
+            if (entry.path().filename() != lock_name)
+                fs::rename(entry.path(), target_ / entry.path().filename());
+        bring_to_disk(target_);
+        fs::remove_all(temporary_);
     } else {
-        fs::rename(temporary_, target_);
+        put_in_place();
     }
     temporary_.clear();
+}
+
+void AtomicFolder::put_in_place() const {
+    std::error_code ignored;
+    fs::rename(temporary_, target_);
+    try {
+        bring_to_disk(folder_above(target_));
+    } catch (...) {
+        fs::rename(target_, temporary_, ignored);
+        throw;
+    }
+    fs::remove(target_ / lock_name, ignored);
 }
 
 }  // namespace caustics::experiments

@@ -21,11 +21,13 @@ public:
 
     /// To write into.
     const std::filesystem::path& path() const { return temporary_; }
-    /// Makes it the target. In a target that is a link or holds something already, files of the same
-    /// names are replaced and others stay.
+    /// Makes it the target, and brings that to the disk. In a target that is a link or holds something
+    /// already, files of the same names are replaced and others stay.
     void commit();
 
 private:
+    void put_in_place() const;
+
     std::filesystem::path target_;     ///< absolute
     std::filesystem::path temporary_;  ///< empty once it is the target
     std::optional<FolderLock> lock_;

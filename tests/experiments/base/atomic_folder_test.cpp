@@ -70,6 +70,26 @@ TEST_F(WholeFolders, RemoveWhatAKilledProcessLeft) {
     EXPECT_EQ(files_in(target_), Names{"new"});
 }
 
+/// A process that is killed has no time to take back what it has done: at any moment all but an empty
+/// folder must be known by its lock.
+TEST_F(WholeFolders, KeepTheirLockUntilNothingElseIsLeft) {
+    {
+        AtomicFolder whole(target_);
+        EXPECT_EQ(files_in(whole.path()), Names{".lock"});
+        write_atomic_file(whole.path() / "new", "new");
+        whole.commit();
+    }
+    EXPECT_EQ(files_in(target_), Names{"new"});
+}
+
+TEST_F(WholeFolders, TakeBackWhatCannotBePutInPlace) {
+    AtomicFolder whole(target_);
+    write_atomic_file(whole.path() / "new", "new");
+    write_atomic_file(target_, "a file in the way");
+    EXPECT_THROW(whole.commit(), std::exception);
+    EXPECT_EQ(read_whole_file(target_), "a file in the way");
+}
+
 TEST_F(WholeFolders, RemoveNothingElse) {
     fs::create_directory(folder_ / "target.part");
     write_atomic_file(folder_ / "target.part/mine", "mine");
