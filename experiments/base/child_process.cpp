@@ -40,10 +40,10 @@ constexpr char threw_letter = 'e';
     throw std::system_error(errno, std::generic_category(), what);
 }
 
-const std::size_t threads_at_start = thread_count();
+const std::size_t threads_at_start = thread_count();  // 0: they could not be counted
 
 void require_no_other_thread() {
-    if (thread_count() > threads_at_start + library_threads())
+    if (threads_at_start > 0 && thread_count() > threads_at_start + library_threads())
         throw std::logic_error("a child must be forked before any thread begins");
 }
 
@@ -127,6 +127,8 @@ std::string last_message(const ChildProcess::Work& work, const ChildLimits& limi
         return std::string(1, threw_letter) + "out of memory";
     } catch (const std::exception& error) {
         return std::string(1, threw_letter) + error.what();
+    } catch (...) {
+        return std::string(1, threw_letter) + "an exception of a library";
     }
 }
 
@@ -136,8 +138,13 @@ std::string last_message(const ChildProcess::Work& work, const ChildLimits& limi
     if (getppid() != parent) _exit(1);
     std::signal(SIGINT, SIG_IGN);
     std::signal(SIGTERM, SIG_IGN);
-    write_all(pipe, last_message(work, limits, log, pipe));
-    std::fflush(nullptr);
+    try {
+        write_all(pipe, last_message(work, limits, log, pipe));
+        std::fflush(nullptr);
+    } catch (...) {
+        // No memory to say why. The way back is through the parent's own work.
+        write_all(pipe, std::string_view("eout of memory"));
+    }
     _exit(0);
 }
 

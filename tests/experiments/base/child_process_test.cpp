@@ -48,6 +48,18 @@ TEST(ChildProcesses, ThrowHereWhatTheWorkThrewThere) {
     EXPECT_EQ(end.text, "out of memory");
 }
 
+TEST(ChildProcesses, NeverReturnIntoTheWorkOfTheirParent) {
+    const pid_t parent = getpid();
+    try {
+        const ChildEnd end = end_of([](const Tell&) -> std::string { throw 1; });
+        EXPECT_EQ(end.how, How::threw);
+        EXPECT_NE(end.text, "");
+    } catch (int) {
+        if (getpid() != parent) _exit(0);  // without an answer: the parent's test fails
+        throw;
+    }
+}
+
 TEST(ChildProcesses, SurviveTheirCrashes) {
     const ChildEnd fault = end_of([](const Tell&) -> std::string {
         std::signal(SIGSEGV, SIG_DFL);  // sanitizers catch it
