@@ -102,17 +102,7 @@ int parse_and_run(int argc, char** argv) {
     return run_verb(verbs);
 }
 
-}  // namespace
-
-}  // namespace caustics::experiments
-
-int main(int argc, char** argv) {
-    using namespace caustics;
-    using namespace caustics::experiments;
-    std::setlocale(LC_ALL, "C");
-    hold_standard_streams();
-    catch_interrupts();
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write like others
+int run_and_report(int argc, char** argv) {
     try {
         return parse_and_run(argc, argv);
     } catch (const InputError& error) {
@@ -128,5 +118,24 @@ int main(int argc, char** argv) {
                       failed);
     } catch (const std::exception& error) {
         return report(error.what(), failed);
+    }
+}
+
+}  // namespace
+
+}  // namespace caustics::experiments
+
+int main(int argc, char** argv) {
+    using namespace caustics;
+    using namespace caustics::experiments;
+    std::setlocale(LC_ALL, "C");
+    hold_standard_streams();
+    catch_interrupts();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write like others
+    try {
+        return run_and_report(argc, argv);
+    } catch (const std::bad_alloc&) {  // not even for the message
+        write_stderr("causticbench: error: out of memory\n");
+        return failed;
     }
 }
