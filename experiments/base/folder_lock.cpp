@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "core/base/disk.h"
 #include "core/base/error.h"
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
@@ -30,19 +31,24 @@ struct flock whole_file_lock() {
 }  // namespace
 
 std::string runner_at_work_on(const std::filesystem::path& folder) {
-    const int file = open(lock_file(folder).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0) return {};
+    const std::filesystem::path name = lock_file(folder);
+    const int file = open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0 && (errno == ENOENT || errno == ENOTDIR)) return {};
+    if (file < 0)
+        throw InputError(fmt::format("{}: cannot be read ({})", name.string(), reason(errno)));
     struct flock lock = whole_file_lock();
     const bool held = fcntl(file, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
     close(file);
-    return held ? read_whole_file(lock_file(folder)) : std::string();
+    return held ? read_whole_file(name) : std::string();
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        throw InputError(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
+    try {
+        make_folders(folder);
+    } catch (const std::filesystem::filesystem_error& error) {
+        throw InputError(
+            fmt::format("{}: cannot be made ({})", folder.string(), error.code().message()));
+    }
     const std::filesystem::path name = lock_file(folder);
     file_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0)

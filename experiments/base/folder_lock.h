@@ -21,7 +21,7 @@ private:
 };
 
 /// "process 12 on host" where another process holds the lock of a folder; else empty. Needs no
-/// leave to write there.
+/// leave to write there. Throws InputError when the lock is there but cannot be looked at.
 std::string runner_at_work_on(const std::filesystem::path& folder);
 
 }  // namespace caustics::experiments

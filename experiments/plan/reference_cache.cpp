@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/disk.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/scene/eye_medium.h"
@@ -92,7 +93,7 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
     if (begun) film.metadata["extends"] = begun->file.filename().string();
     if (result.why_empty) film.metadata["why_empty"] = *result.why_empty;
     const std::filesystem::path target = file_of(request);
-    std::filesystem::create_directories(target.parent_path());
+    make_folders(target.parent_path());
     write_exr(film, target);
 }
 
