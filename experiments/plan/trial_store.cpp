@@ -1,13 +1,11 @@
 #include "experiments/plan/trial_store.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <system_error>
 
+#include "core/base/disk.h"
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
 #include "experiments/plan/record.h"
@@ -25,20 +23,11 @@ constexpr std::string_view old_prefix = ".old-";
     throw InputError(fmt::format("{}: cannot be written ({})", place.string(), error.message()));
 }
 
-/// Waits until the file or folder is on the disk: a rename may get there before the data does.
-void bring_to_disk(const fs::path& place) {
-    const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool failed = descriptor < 0 || fsync(descriptor) != 0;
-    const int error = errno;
-    if (descriptor >= 0) close(descriptor);
-    if (failed) cannot_be_written(place, {error, std::generic_category()});
-}
-
 }  // namespace
 
 void TrialStore::prepare() const {
     try {
-        fs::create_directories(trials_);
+        make_folders(trials_);
         for (const fs::directory_entry& entry : fs::directory_iterator(trials_)) {
             const std::string name = entry.path().filename().string();
             const fs::path replaced =
@@ -57,13 +46,16 @@ std::optional<nlohmann::json> TrialStore::record(const std::string& id) const {
     const fs::path file = record_of(id);
     const auto require = [&](bool whole, const std::string& flaw) {
         if (!whole)
-            throw InputError(fmt::format("{}: broken record ({}); a sweep runs the trial again",
-                                         file.string(), flaw));
+            throw BrokenRecord(fmt::format("{}: broken record ({}); a sweep runs the trial again",
+                                           file.string(), flaw));
     };
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (status.type() == fs::file_type::not_found) return {};
-    require(!error, error.message());
+    require(error != std::errc::too_many_symbolic_link_levels, error.message());
+    // It may be whole: a disk that fails for a moment must not cost a trial.
+    if (error)
+        throw InputError(fmt::format("{}: cannot be read ({})", file.string(), error.message()));
     require(fs::is_regular_file(status), "not a file");
     nlohmann::json record = nlohmann::json::parse(read_whole_file(file), nullptr, false);
     require(!record.is_discarded(), "not JSON");
@@ -94,11 +86,13 @@ void TrialStore::commit(const std::string& id, const nlohmann::json& record) con
     write_atomic_file(folder / "record.json",
                       record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     try {
+        // A rename may get to the disk before what it names.
         for (const fs::directory_entry& file : fs::directory_iterator(folder))
             bring_to_disk(file.path());
         bring_to_disk(folder);
         if (fs::exists(place)) fs::rename(place, old);
         fs::rename(folder, place);
+        bring_to_disk(trials_);  // before anything of the earlier one goes
         fs::remove_all(old);
     } catch (const fs::filesystem_error& error) {
         cannot_be_written(place, error.code());
@@ -117,9 +111,10 @@ std::vector<std::string> TrialStore::trials() const {
     return ids;
 }
 
-void TrialStore::drop(const std::string& id) const {
-    std::error_code ignored;
-    fs::remove_all(temporary_of(id), ignored);
+void TrialStore::drop(const std::string& id) const noexcept {
+    try {
+        fs::remove_all(temporary_of(id));
+    } catch (const std::exception&) {}
 }
 
 void TrialStore::remove(const std::string& id) const {

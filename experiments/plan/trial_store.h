@@ -6,7 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
+
 namespace caustics::experiments {
+
+/// A file that was read and is no record of its trial.
+class BrokenRecord : public InputError {
+public:
+    using InputError::InputError;
+};
 
 /// The folder of finished trials, DIR/trials/ID/{record.json, image.exr, log.txt}. A trial's folder
 /// is whole or absent: it is filled under a temporary name, brought to the disk and renamed.
@@ -19,7 +27,8 @@ public:
     /// brings back what they were about to replace. Throws InputError when it cannot be written.
     void prepare() const;
 
-    /// The record of a finished trial. Throws InputError when it is there but broken.
+    /// The record of a finished trial. Throws BrokenRecord when it is there but none, and InputError
+    /// when it cannot be read.
     std::optional<nlohmann::json> record(const std::string& id) const;
     /// The ids of all that are there, in no order.
     std::vector<std::string> trials() const;
@@ -33,10 +42,11 @@ public:
 
     /// An empty folder to write a trial's files into, temporary_of(id).
     std::filesystem::path begin(const std::string& id) const;
-    /// Adds the record and makes that folder the trial's, in place of an earlier one.
+    /// Adds the record and makes that folder the trial's, in place of an earlier one; all of it is
+    /// on the disk then.
     void commit(const std::string& id, const nlohmann::json& record) const;
-    /// Forgets that folder.
-    void drop(const std::string& id) const;
+    /// Forgets that folder; what cannot be removed, prepare() will.
+    void drop(const std::string& id) const noexcept;
     std::filesystem::path temporary_of(const std::string& id) const;
     /// Removes a trial.
     void remove(const std::string& id) const;

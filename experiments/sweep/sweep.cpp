@@ -8,18 +8,19 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/base/disk.h"
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
 #include "core/base/parallel.h"
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
-#include "experiments/base/folder_lock.h"
 #include "experiments/base/progress.h"
 #include "experiments/base/stopwatch.h"
 #include "experiments/report/record_table.h"
 #include "experiments/report/strips.h"
 #include "experiments/report/sweep_summary.h"
 #include "experiments/run/cli_options.h"
+#include "experiments/sweep/sweep_folder.h"
 #include "experiments/sweep/sweep_status.h"
 #include "experiments/sweep/sweep_warnings.h"
 
@@ -43,17 +44,6 @@ std::string result_text(const json& record) {
     return status_of(record);
 }
 
-constexpr std::string_view temporary_mark = ".tmp-";  ///< of AtomicFile
-
-/// Removes files that killed processes left under temporary names.
-void remove_leftovers(const fs::path& folder) {
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-        if (entry.is_regular_file() &&
-            entry.path().filename().string().find(temporary_mark) != std::string::npos)
-            fs::remove(entry.path(), ignored);
-}
-
 std::size_t trials_of_others(const SweepPlan& plan, const TrialStore& store) {
     std::set<std::string> own;
     for (const Trial& trial : plan.trials) own.insert(trial.id);
@@ -66,15 +56,9 @@ public:
     Sweep(const SweepPlan& plan, const SweepOptions& options)
         : plan_(plan),
           options_(options),
-          lock_(options.folder),
-          store_(options.folder),
-          references_(options.folder / "references", options.references) {
-        store_.prepare();
-        remove_leftovers(options.folder);
-        remove_leftovers(figures_folder());
-        // Shards may share a folder of references, where others are at work.
-        const fs::path references = options.folder / "references";
-        if (!fs::is_symlink(references)) remove_leftovers(references);
+          folder_(options.folder),
+          store_(folder_.store()),
+          references_(folder_.references(), options.references) {
         status_ = sweep_status(plan, options, store_);
         others_ = trials_of_others(plan, store_);
         progress_.emplace(status_.share.size(), status_.share.size() - status_.todo.size());
@@ -96,8 +80,8 @@ public:
         if (options_.only_references) return broken_references_.empty() ? 0 : 1;
         SweepSummary summary(plan_.swept);
         print_notes(write_table(&summary));
-        const fs::path figures = figures_folder();
-        fs::create_directories(figures);
+        const fs::path figures = folder_.figures();
+        make_folders(figures);
         print_notes(write_strips(
             plan_, store_, [&](const Trial& trial) { return known_status(trial) == "done"; },
             references_, figures));
@@ -109,8 +93,6 @@ public:
     }
 
 private:
-    fs::path figures_folder() const { return options_.folder / "report" / "figures"; }
-
     std::string known_status(const Trial& trial) const {
         const auto found = status_.statuses.find(trial.id);
         return found == status_.statuses.end() ? std::string() : found->second;
@@ -263,8 +245,8 @@ private:
 
     const SweepPlan& plan_;
     const SweepOptions& options_;
-    FolderLock lock_;
-    TrialStore store_;
+    SweepFolder folder_;
+    const TrialStore& store_;
     ReferenceCache references_;
     SweepStatus status_;
     std::optional<Progress> progress_;

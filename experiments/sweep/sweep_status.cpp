@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <set>
 
-#include "core/base/error.h"
 #include "experiments/base/environment.h"
 #include "experiments/report/trial_rows.h"
 
@@ -78,7 +77,7 @@ SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,
         try {
             const std::optional<TableRow> row = rows.row(trial.id);
             if (row) take_note(all, trial, *row, store);
-        } catch (const InputError& error) {
+        } catch (const BrokenRecord& error) {
             all.broken[trial.id] = error.what();
         }
     }

@@ -1,6 +1,7 @@
 #include "experiments/plan/trial_store.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <set>
 
@@ -83,6 +84,34 @@ TEST_F(JobStores, SaySoWhenARecordIsBroken) {
         write_atomic_file(folder_ / "trials/a-1/record.json", text);
         EXPECT_THROW(store_.record("a-1"), InputError) << text;
     }
+}
+
+/// Whether a sweep would run the trial again, in place of what is there.
+bool is_broken(const TrialStore& store, const std::string& id) {
+    try {
+        store.record(id);
+    } catch (const BrokenRecord&) {
+        return true;
+    } catch (const InputError&) {}
+    return false;
+}
+
+TEST_F(JobStores, CallNoRecordBrokenThatCannotBeReadNow) {
+    add(store_, "a-1", "done");
+    add(store_, "b-2", "done");
+    write_atomic_file(store_.record_of("b-2"), "{");
+    EXPECT_TRUE(is_broken(store_, "b-2"));
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+    const rlimit none{0, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+    const bool broken = is_broken(store_, "a-1");
+    EXPECT_THROW(store_.record("a-1"), InputError);
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+    EXPECT_FALSE(broken);
+    const std::string too_long(300, 'a');
+    EXPECT_THROW(store_.record(too_long), InputError);
+    EXPECT_FALSE(is_broken(store_, too_long));
 }
 
 TEST_F(JobStores, TakeNothingElseForARecord) {
