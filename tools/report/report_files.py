@@ -8,10 +8,23 @@ PACKAGES = "Debian's python3-matplotlib and python3-scipy"
 
 
 def write(path, text):
-    """Whole files only: a reader never sees half of one."""
-    with open(f"{path}.part", "w", encoding="utf-8", newline="\n") as file:
-        file.write(text)
-    os.replace(f"{path}.part", path)
+    """Whole files only, whatever stops the program or the machine: a reader never sees half of one."""
+    part = f"{path}.part"
+    try:
+        with open(part, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())  # before it has its name: a disk may take the two in any order
+        os.replace(part, path)
+    except OSError:
+        if os.path.isfile(part):
+            os.remove(part)
+        raise
+    folder = os.open(os.path.dirname(path) or ".", os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
 
 
 def report(tool, what, output, make):
