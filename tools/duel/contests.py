@@ -1,0 +1,176 @@
+"""experiments/duel: its scenes, the settings that a method may choose, and the sweep files that follow from them.
+
+A *setting* is one combination of a method's parameters, its camera samples a pixel and, where it may choose one, the caster's
+mesh. Lengths are metres.
+"""
+import dataclasses
+import itertools
+import json
+import pathlib
+
+from report.records import RecordsError, canonical
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "experiments" / "duel"
+EXACT, GIVEN = "exact", "given"
+
+
+@dataclasses.dataclass(frozen=True)
+class Setting:
+    """`label` is the method as tables name it: the paper's cones run apart from the beam tree's own bound."""
+    label: str
+    method: str
+    asks: str
+    spp: int
+    mesh: object  # None where the method has no choice
+    param: tuple  # sorted (name, value)
+
+    def text(self):
+        words = [f"{name} {shown(value)}" for name, value in self.param if name not in ("tree", "bound", "max_bounces", "leaf") or value in ("balanced", "unbalanced")]
+        words += [f"mesh {self.mesh}"] if self.mesh is not None else []
+        return ", ".join([*words, f"{self.spp} spp"])
+
+
+def shown(value):
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else canonical(str(value))
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    """One scene as it is set; `text` is its entry of scenes.json."""
+    text: dict
+
+    def __getattr__(self, name):
+        try:
+            return self.text[name]
+        except KeyError:
+            raise AttributeError(name) from None
+
+    def is_base(self):
+        return self.text.get("base", False)
+
+    def quadrature(self):
+        return "quadrature" in self.truth
+
+    def resolved(self):
+        """The scene's file with its settings, as JSON."""
+        scene = json.loads((ROOT / self.file).read_text(encoding="utf-8"))
+        for pointer, value in self.all_set().items():
+            place = scene
+            *way, last = pointer.strip("/").split("/")
+            for step in way:
+                place = place[int(step) if isinstance(place, list) else step]
+            place[int(last) if isinstance(place, list) else last] = value
+        return scene
+
+    def all_set(self):
+        width, height = self.size
+        return {"/sensor/film/width": width, "/sensor/film/height": height, **self.set}
+
+
+class Duel:
+    def __init__(self, folder=FOLDER):
+        read = lambda name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
+        self.rules, self.space, self.text = read("scenes"), read("methods"), read("hypotheses")
+        self.scenes = [Scene(each) for each in self.rules["scenes"]]
+        self.hypotheses = self.text["hypotheses"]
+        names = [scene.name for scene in self.scenes]
+        for key in ("pilot", "quick"):
+            unknown = [name for name in self.rules[key] if name not in names]
+            if unknown:
+                raise RecordsError(f"scenes.json: {key}: no scene {unknown[0]} (known: {', '.join(names)})")
+
+    def scene(self, name):
+        return next(scene for scene in self.scenes if scene.name == name)
+
+    def settings(self, scene):
+        """Every setting of the search on a scene, each once."""
+        found = {}
+        for method in self.space["methods"]:
+            if method["method"] not in scene.text.get("methods", [method["method"]]):
+                continue
+            for row in method["rows"]:
+                if allowed(row, scene):
+                    for setting in row_settings(method, row, scene):
+                        found.setdefault(setting, None)
+        return list(found)
+
+    def kept(self, label):
+        """The most settings of a method that go on from the search."""
+        return next(method.get("keep", 1) for method in self.space["methods"] if method["method"] == label.partition(",")[0])
+
+
+def allowed(row, scene):
+    if row.get("base") and not scene.is_base():
+        return False
+    return row.get("needs") != "square pixels" or scene.text.get("square", False)
+
+
+def row_settings(method, row, scene):
+    label = row.get("as", method["method"])
+    own = {**row["param"], **({} if method["method"] == "none" else scene.text.get("param", {}))}
+    if "mesh_resolution" in own and scene.mesh != EXACT:
+        del own["mesh_resolution"]
+    if method["method"] in ("beamtree", "causticpolygons") and "light_samples" in scene.text:
+        own["light_samples"] = scene.light_samples
+    values = [[length(value, scene) for value in each] if isinstance(each, list) else [length(each, scene)] for each in own.values()]
+    meshes = scene.mesh.get(label, []) if isinstance(scene.mesh, dict) else [None]
+    for spp, mesh, *chosen in itertools.product(row["spp"], meshes, *values):
+        param = tuple(sorted(zip(own, chosen)))
+        yield Setting(label, method["method"], row.get("asks", method["asks"]), spp, mesh, param)
+
+
+def length(value, scene):
+    return value["pixels"] * scene.pixel if isinstance(value, dict) else value
+
+
+def sweep_files(scene, settings, seeds, threads, folder, phase):
+    """Writes one sweep file for each number of samples and mesh; returns their paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    groups = {}
+    for setting in settings:
+        groups.setdefault((setting.spp, setting.mesh), []).append(setting)
+    paths = []
+    for (spp, mesh), own in groups.items():
+        path = folder / f"{phase}_spp{spp}{'' if mesh is None else f'_mesh{mesh}'}.json"
+        path.write_text(json.dumps(sweep(scene, own, seeds, threads, folder), indent=1) + "\n", encoding="utf-8")
+        paths.append(path)
+    return paths
+
+
+def sweep(scene, settings, seeds, threads, folder):
+    first = settings[0]
+    fixed = dict(scene.all_set())
+    if first.mesh is not None:
+        fixed[scene.mesh["pointer"]] = first.mesh
+    file = ROOT / scene.file
+    made = {"version": 1, "scenes": [str(file)],
+            "set": {f"set_{i}": {"pointer": pointer, "values": [value]} for i, (pointer, value) in enumerate(fixed.items())},
+            "methods": [{"method": each.method, "param": dict(each.param)} if each.param else {"method": each.method} for each in settings],
+            "seeds": list(seeds), "spp": first.spp, "threads": threads}
+    if not scene.quadrature():
+        made["reference"] = {"method": "lighttrace", "param": {"paths": scene.truth["paths"], **scene.text.get("param", {})}}
+    return made
+
+
+def setting_of(row, settings, scene):
+    """The setting that made a row of records."""
+    names = {name for setting in settings for name, _ in setting.param} - {"nearest", "mesh_resolution", "max_bounces"}
+    fits = [each for each in settings if each.method == row["method"] and str(each.spp) == row["spp"] and params_fit(each, row, names)
+            and (each.mesh is None or row[mesh_column(scene, each)] == str(each.mesh))]
+    if len(fits) != 1:
+        raise RecordsError(f"trial {row['trial']}: {len(fits)} settings fit it")
+    return fits[0]
+
+
+def mesh_column(scene, setting):
+    pointers = [*scene.all_set(), scene.mesh["pointer"]]
+    return f"set_{list(dict.fromkeys(pointers)).index(scene.mesh['pointer'])}"
+
+
+def params_fit(setting, row, names):
+    own = dict(setting.param)
+    plain = lambda value: {True: "true", False: "false"}[value] if isinstance(value, bool) else canonical(str(value))
+    if any(plain(own[name]) != canonical(row.get(name, "")) for name in ("nearest", "mesh_resolution") if name in own):
+        return False
+    return all((plain(own[name]) if name in own else "") == canonical(row.get(name, "")) for name in names)

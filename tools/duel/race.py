@@ -1,0 +1,142 @@
+"""Runs the duel: a search over each method's settings on seeds of its own, a pilot that fixes the number of seeds, and the final
+runs of what the search chose. What is there is taken as it is; the number of seeds and the choice are written once and kept."""
+import json
+import math
+import statistics
+import subprocess
+import sys
+import time
+
+from duel import contests, curves
+from duel.scores import CELL_COLUMNS, COLUMNS, Scored, read_csv, write_csv
+from report.records import RecordsError, read_rows
+from report.report_files import write
+
+SEARCH, FINAL = "search", "final"
+USUAL_S = {SEARCH: 0.9, FINAL: 0.9}  # a trial, until some have been measured
+
+
+class Race:
+    def __init__(self, duel, output, program, jobs, quick):
+        self.duel, self.output, self.program, self.jobs = duel, output, str(program), jobs
+        self.scenes = [scene for scene in duel.scenes if not quick or scene.name in duel.rules["quick"]]
+        self.start, self.spent, self.done = time.monotonic(), 0.0, 0
+
+    def folder(self, scene):
+        return self.output / "trials" / scene.name
+
+    def log(self, text):
+        print(f"duel: {text}", file=sys.stderr, flush=True)
+
+    def run(self):
+        """All scenes, or those of --quick."""
+        self.seeds = self.pilot()
+        for number, scene in enumerate(self.scenes, 1):
+            self.log(f"scene {number} of {len(self.scenes)}: {scene.name} ({scene.title}); {self.left(number)}")
+            self.race(scene)
+
+    def left(self, number):
+        minutes = (time.monotonic() - self.start) / 60
+        if number == 1 or not self.done:
+            return f"{minutes:.1f} minutes so far"
+        return f"{minutes:.1f} minutes so far, about {self.spent / self.done * (len(self.scenes) - number + 1) / 60:.0f} to go"
+
+    def race(self, scene):
+        begin = time.monotonic()
+        searched = self.search(scene, self.search_seeds(scene))
+        picked = self.choice(scene, searched)
+        self.measure(scene, picked, self.seeds, FINAL)
+        self.spent, self.done = self.spent + time.monotonic() - begin, self.done + 1
+
+    def search_seeds(self, scene):
+        return self.duel.rules["pilot_seeds" if scene.name in self.duel.rules["pilot"] else "search_seeds"]
+
+    def search(self, scene, seeds):
+        return self.measure(scene, self.duel.settings(scene), seeds, SEARCH)
+
+    def pilot(self):
+        """The seeds of the final runs: as many as the pilot's scatter asks for, by the rule in scenes.json; kept once written."""
+        path = self.output / "pilot.json"
+        rules = self.duel.rules
+        if not path.is_file():
+            scatter = {}
+            for name in rules["pilot"]:
+                cells = self.search(self.duel.scene(name), rules["pilot_seeds"])
+                scatter[name] = statistics.median(scatter_of(cell) for cell in fronts(cells, self.duel) if scatter_of(cell) > 0)
+            wanted = wanted_seeds(max(scatter.values()), rules["half_interval"], rules["least_seeds"], rules["most_seeds"])
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write(path, json.dumps({"scatter": scatter, "seeds": wanted}, indent=1) + "\n")
+        wanted = json.loads(path.read_text(encoding="utf-8"))["seeds"]
+        return list(range(rules["first_seed"], rules["first_seed"] + wanted))
+
+    def choice(self, scene, cells):
+        """The settings that run again on the reported seeds; kept once written."""
+        path = self.output / "chosen" / f"{scene.name}.json"
+        if not path.is_file():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write(path, json.dumps([[cell.label, cell.setting.text()] for cell in fronts(cells, self.duel)], indent=1, ensure_ascii=False) + "\n")
+        names = {tuple(each) for each in json.loads(path.read_text(encoding="utf-8"))}
+        return [setting for setting in self.duel.settings(scene) if (setting.label, setting.text()) in names]
+
+    def measure(self, scene, settings, seeds, phase):
+        """Runs the settings, scores them, writes records/SCENE_PHASE.csv; taken from there where all is there. Returns cells."""
+        path = self.output / "records" / f"{scene.name}_{phase}.csv"
+        wanted = {(setting.label, setting.text(), seed) for setting in settings for seed in seeds}
+        rows = read_csv(path) if path.is_file() else []
+        if not wanted <= {(row["label"], row["settings"], row["seed"]) for row in rows}:
+            rows = self.sweep(scene, settings, seeds, phase)
+            write_csv(path, COLUMNS, rows)
+        return cells_of(settings, rows)
+
+    def sweep(self, scene, settings, seeds, phase):
+        folder = self.folder(scene)
+        paths = contests.sweep_files(scene, settings, seeds, self.duel.rules["threads"], folder / "sweeps", phase)
+        words = ["sweep", *map(str, paths), "-o", str(folder), "--jobs", str(self.jobs), "--timeout", "300"]
+        self.log(f"{scene.name}: {phase}, {len(settings)} settings x {len(seeds)} seeds")
+        status = subprocess.run([self.program, *words], cwd=contests.ROOT, stdin=subprocess.DEVNULL, stdout=sys.stderr).returncode
+        if status not in (0, 1):
+            raise ChildProcessError(f"sweep of {scene.name}: exit code {status}")
+        scored, records, trials = Scored(scene, folder), [], {}
+        for _, row in read_rows(folder / "records.csv")[1]:
+            if row["status"] == "done":
+                setting = contests.setting_of(row, settings, scene)
+                records.append(scored.record(row, setting, phase))
+                trials.setdefault(setting, []).append(row["trial"])
+            else:
+                self.log(f"{scene.name}: {row['trial']}: {row['status']}: {row.get('message', '')}")
+        if not records:
+            raise RecordsError(f"{folder}: no trial is done")
+        if len(seeds) > 1:
+            write_csv(self.output / "records" / f"{scene.name}_{phase}_spread.csv", CELL_COLUMNS,
+                      [scored.spread(setting, own) for setting, own in trials.items() if len(own) > 1])
+        return sorted(records, key=lambda row: (row["label"], row["settings"], row["seed"]))
+
+
+def cells_of(settings, rows):
+    groups = {}
+    for row in rows:
+        groups.setdefault((row["label"], row["settings"]), []).append(row)
+    return [curves.Cell(setting, groups[setting.label, setting.text()]) for setting in settings if (setting.label, setting.text()) in groups]
+
+
+def fronts(cells, duel):
+    """What each method's search chooses, method by method."""
+    labels = dict.fromkeys(cell.label for cell in cells)
+    return [cell for label in labels for cell in curves.chosen([each for each in cells if each.label == label], duel.kept(label))]
+
+
+def scatter_of(cell):
+    """The standard deviation of the logarithm of a trial's error, from its squared error's."""
+    if len(cell.squares) < 2:
+        return 0.0
+    return float(cell.squares.std(ddof=1) / cell.squares.mean() / 2)
+
+
+def wanted_seeds(scatter, half_interval, least, most):
+    """The fewest seeds for which Student's 95 % half interval of the mean is below `half_interval`, within bounds."""
+    from report.intervals import student
+
+    for n in range(max(least, 2), most):
+        if student(n - 1) * scatter / math.sqrt(n) <= math.log1p(half_interval):
+            return n
+    return most
