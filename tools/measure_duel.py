@@ -31,7 +31,7 @@ def arguments():
 
 
 def run(chosen, output):
-    from duel import contests, counts, page, race
+    from duel import contests, counts, folds, page, race
 
     duel = contests.Duel()
     known = [scene.name for scene in duel.scenes] + ["counts"]
@@ -47,6 +47,7 @@ def run(chosen, output):
         held.run()
         if not chosen.quick and (not chosen.only or "counts" in chosen.only):
             counts.run(held)
+            folds.run(held)
     page.write_all(duel, output, chosen.quick)
 
 

@@ -6,6 +6,7 @@ mesh. Lengths are metres.
 import dataclasses
 import itertools
 import json
+import math
 import pathlib
 
 from report.records import RecordsError, canonical
@@ -101,7 +102,7 @@ class Duel:
 
 
 def allowed(row, scene):
-    if row.get("base") and not scene.is_base():
+    if row.get("base") and not scene.is_base() or min(row["spp"]) > scene.text.get("most_spp", math.inf):
         return False
     return row.get("needs") != "square pixels" or scene.text.get("square", False)
 
@@ -111,11 +112,14 @@ def row_settings(method, row, scene):
     own = {**row["param"], **({} if method["method"] == "none" else scene.text.get("param", {}))}
     if "mesh_resolution" in own and scene.mesh != EXACT:
         del own["mesh_resolution"]
+    elif "mesh_resolution" in own and "mesh_resolution" in scene.text:
+        own["mesh_resolution"] = scene.mesh_resolution
     if method["method"] in ("beamtree", "causticpolygons") and "light_samples" in scene.text:
         own["light_samples"] = scene.light_samples
     values = [[length(value, scene) for value in each] if isinstance(each, list) else [length(each, scene)] for each in own.values()]
     meshes = scene.mesh.get(label, []) if isinstance(scene.mesh, dict) else [None]
-    for spp, mesh, *chosen in itertools.product(row["spp"], meshes, *values):
+    samples = [spp for spp in row["spp"] if spp <= scene.text.get("most_spp", math.inf)]
+    for spp, mesh, *chosen in itertools.product(samples, meshes, *values):
         param = tuple(sorted(zip(own, chosen)))
         yield Setting(label, method["method"], row.get("asks", method["asks"]), spp, mesh, param)
 

@@ -27,19 +27,9 @@ def run(race):
         folder.mkdir(parents=True, exist_ok=True)
         sweep = casters_sweep(folder) if name == "counts_casters" else contests.FOLDER / "sweeps" / f"{name}.json"
         race.log(name)
-        run_sweep(race, sweep, folder)
+        race.run_sweep([sweep], folder)
         records += [record(name, row, folder) for _, row in read_rows(folder / "records.csv")[1] if row["status"] == "done"]
     write_csv(path, COLUMNS, records)
-
-
-def run_sweep(race, sweep, folder):
-    import subprocess
-    import sys
-
-    words = [race.program, "sweep", str(sweep), "-o", str(folder)]
-    status = subprocess.run(words, cwd=contests.ROOT, stdin=subprocess.DEVNULL, stdout=sys.stderr).returncode
-    if status not in (0, 1):
-        raise ChildProcessError(f"{sweep.name}: exit code {status}")
 
 
 def casters_sweep(folder):

@@ -13,7 +13,8 @@ from report.records import RecordsError, read_rows
 from report.report_files import write
 
 SEARCH, FINAL = "search", "final"
-USUAL_S = {SEARCH: 0.9, FINAL: 0.9}  # a trial, until some have been measured
+MEMORY = "8000"  # MiB of a trial
+LEFT_OUT = ("scene", "label", "settings", "seed", "status", "message")
 
 
 class Race:
@@ -83,33 +84,43 @@ class Race:
         path = self.output / "records" / f"{scene.name}_{phase}.csv"
         wanted = {(setting.label, setting.text(), seed) for setting in settings for seed in seeds}
         rows = read_csv(path) if path.is_file() else []
-        if not wanted <= {(row["label"], row["settings"], row["seed"]) for row in rows}:
-            rows = self.sweep(scene, settings, seeds, phase)
+        left_out = path.with_name(f"{path.stem}_left_out.csv")
+        known = rows + (read_csv(left_out, LEFT_OUT) if left_out.is_file() else [])
+        if not wanted <= {(row["label"], row["settings"], int(row["seed"])) for row in known}:
+            rows, others = self.sweep(scene, settings, seeds, phase)
             write_csv(path, COLUMNS, rows)
+            if others:
+                write_csv(left_out, LEFT_OUT, others)
         return cells_of(settings, rows)
 
     def sweep(self, scene, settings, seeds, phase):
         folder = self.folder(scene)
         paths = contests.sweep_files(scene, settings, seeds, self.duel.rules["threads"], folder / "sweeps", phase)
-        words = ["sweep", *map(str, paths), "-o", str(folder), "--jobs", str(self.jobs), "--timeout", "300"]
         self.log(f"{scene.name}: {phase}, {len(settings)} settings x {len(seeds)} seeds")
-        status = subprocess.run([self.program, *words], cwd=contests.ROOT, stdin=subprocess.DEVNULL, stdout=sys.stderr).returncode
-        if status not in (0, 1):
-            raise ChildProcessError(f"sweep of {scene.name}: exit code {status}")
-        scored, records, trials = Scored(scene, folder), [], {}
+        self.run_sweep(paths, folder)
+        scored, records, trials, left_out = Scored(scene, folder), [], {}, []
         for _, row in read_rows(folder / "records.csv")[1]:
+            setting = contests.setting_of(row, settings, scene)
             if row["status"] == "done":
-                setting = contests.setting_of(row, settings, scene)
                 records.append(scored.record(row, setting, phase))
                 trials.setdefault(setting, []).append(row["trial"])
             else:
-                self.log(f"{scene.name}: {row['trial']}: {row['status']}: {row.get('message', '')}")
+                left_out.append({"scene": scene.name, "label": setting.label, "settings": setting.text(), "seed": row["seed"],
+                                 "status": row["status"], "message": row.get("message", "").split(";")[0]})
         if not records:
             raise RecordsError(f"{folder}: no trial is done")
         if len(seeds) > 1:
             write_csv(self.output / "records" / f"{scene.name}_{phase}_spread.csv", CELL_COLUMNS,
                       [scored.spread(setting, own) for setting, own in trials.items() if len(own) > 1])
-        return sorted(records, key=lambda row: (row["label"], row["settings"], row["seed"]))
+        order = lambda row: (row["label"], row["settings"], int(row["seed"]))
+        return sorted(records, key=order), sorted(left_out, key=order)
+
+    def run_sweep(self, files, folder):
+        """A sweep of the program, whose trials that fail become rows."""
+        words = ["sweep", *map(str, files), "-o", str(folder), "--jobs", str(self.jobs), "--timeout", str(self.duel.rules["longest_s"]), "--memory", MEMORY]
+        status = subprocess.run([self.program, *words], cwd=contests.ROOT, stdin=subprocess.DEVNULL, stdout=sys.stderr).returncode
+        if status not in (0, 1):
+            raise ChildProcessError(f"{folder.name}: the sweep ended with exit code {status}")
 
 
 def cells_of(settings, rows):
