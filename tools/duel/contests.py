@@ -71,6 +71,7 @@ class Scene:
 
 class Duel:
     def __init__(self, folder=FOLDER):
+        self.folder = folder
         read = lambda name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
         self.rules, self.space, self.text = read("scenes"), read("methods"), read("hypotheses")
         self.scenes = [Scene(each) for each in self.rules["scenes"]]
@@ -128,7 +129,7 @@ def length(value, scene):
     return value["pixels"] * scene.pixel if isinstance(value, dict) else value
 
 
-def sweep_files(scene, settings, seeds, threads, folder, phase):
+def sweep_files(scene, settings, seeds, rules, folder, phase):
     """Writes one sweep file for each number of samples and mesh; returns their paths."""
     folder.mkdir(parents=True, exist_ok=True)
     groups = {}
@@ -137,12 +138,13 @@ def sweep_files(scene, settings, seeds, threads, folder, phase):
     paths = []
     for (spp, mesh), own in groups.items():
         path = folder / f"{phase}_spp{spp}{'' if mesh is None else f'_mesh{mesh}'}.json"
-        path.write_text(json.dumps(sweep(scene, own, seeds, threads, folder), indent=1) + "\n", encoding="utf-8")
+        path.write_text(json.dumps(sweep(scene, own, seeds, rules), indent=1) + "\n", encoding="utf-8")
         paths.append(path)
     return paths
 
 
-def sweep(scene, settings, seeds, threads, folder):
+def sweep(scene, settings, seeds, rules):
+    """The reference has a seed of its own: with a trial's it would be made of the same light paths."""
     first = settings[0]
     fixed = dict(scene.all_set())
     if first.mesh is not None:
@@ -151,9 +153,10 @@ def sweep(scene, settings, seeds, threads, folder):
     made = {"version": 1, "scenes": [str(file)],
             "set": {f"set_{i}": {"pointer": pointer, "values": [value]} for i, (pointer, value) in enumerate(fixed.items())},
             "methods": [{"method": each.method, "param": dict(each.param)} if each.param else {"method": each.method} for each in settings],
-            "seeds": list(seeds), "spp": first.spp, "threads": threads}
+            "seeds": list(seeds), "spp": first.spp, "threads": rules["threads"]}
     if not scene.quadrature():
-        made["reference"] = {"method": "lighttrace", "param": {"paths": scene.truth["paths"], **scene.text.get("param", {})}}
+        made["reference"] = {"method": "lighttrace", "param": {"paths": scene.truth["paths"], **scene.text.get("param", {})},
+                             "seed": rules["reference_seed"]}
     return made
 
 

@@ -1,9 +1,10 @@
 """Error over CPU seconds: fronts, errors at equal time, times at equal error, and what the seeds say of them.
 
 The interval of a quantity is exp(log value +- t s), s the bootstrap's standard deviation of its logarithm over the seeds times
-sqrt(n / (n - 1)), t Student's for n - 1 degrees of freedom: for a mean it is Student's interval, where the plain percentiles of
-five seeds cover 84 % instead of 95 %. Seeds are drawn for all settings together, since they share camera samples.
+sqrt(n / (n - 1)), t Student's for n - 1 degrees of freedom: for a mean it is Student's interval, which the bootstrap's plain
+percentiles of so few seeds are far narrower than. Seeds are drawn for all settings together, since they share camera samples.
 """
+import functools
 import math
 import statistics
 
@@ -12,31 +13,42 @@ import numpy as np
 from report.curves import along
 from report.intervals import student
 
-RESAMPLES = 400
+RESAMPLES = 200
 STEP = 0.9  # a front goes on with what is at least 10 % better
 
 
 class Cell:
-    """A setting's trials: CPU seconds, bytes and squared errors, one a seed; `noise` is the truth's own squared error."""
+    """A setting's trials, one a seed: CPU seconds, bytes and squared errors; `noise` is the truth's own squared error.
+
+    `draw` numbers the draws of seeds: 0 is all of them as they are.
+    """
 
     def __init__(self, setting, rows):
         self.setting, self.label, self.rows = setting, setting.label, rows
         self.work = np.array([row["build_s"] + row["query_s"] for row in rows])
         self.squares = np.array([row["relmse"] for row in rows])
         self.noise = rows[0]["relmse_noise"]
-        self.seeds = [row["seed"] for row in rows]
+        picks = draws(len(rows))
+        self.medians = np.median(self.work[picks], axis=1).tolist()
+        self.errors = [error_of(square, self.noise) for square in self.squares[picks].mean(axis=1).tolist()]
 
-    def seconds(self, seeds=slice(None)):
-        return float(np.median(self.work[seeds]))
+    def seconds(self, draw=0):
+        return self.medians[draw]
 
-    def error(self, seeds=slice(None)):
-        return error_of(float(self.squares[seeds].mean()), self.noise)
+    def error(self, draw=0):
+        return self.errors[draw]
 
     def is_at_noise(self):
         return self.squares.mean() < 1.25 * self.noise
 
-    def bytes(self):
-        return statistics.median(row["map_bytes"] for row in self.rows)
+    def median(self, column):
+        return statistics.median(row[column] for row in self.rows)
+
+
+@functools.cache
+def draws(seeds):
+    """RESAMPLES + 1 rows of seeds' numbers: all of them, then draws with replacement; the same on every run."""
+    return np.vstack([np.arange(seeds), np.random.default_rng(1996).integers(0, seeds, (RESAMPLES, seeds))])
 
 
 def error_of(square, noise):
@@ -83,35 +95,29 @@ def at_error(curve, error):
 
 
 class Field:
-    """The cells of one scene, whose curves are drawn anew for each draw of seeds."""
+    """The cells of one scene; cells that lack seeds which others have are left out."""
 
     def __init__(self, cells):
-        self.cells = cells
-        self.labels = list(dict.fromkeys(cell.label for cell in cells))
-        self.seeds = min(len(cell.seeds) for cell in cells) if cells else 0
+        self.seeds = max((len(cell.rows) for cell in cells), default=0)
+        self.cells = [cell for cell in cells if len(cell.rows) == self.seeds]
+        self.labels = list(dict.fromkeys(cell.label for cell in self.cells))
 
-    def curve(self, label, draw=slice(None), x=None):
-        own = [cell for cell in self.cells if cell.label == label]
-        return front((x(cell, draw) if x else cell.seconds(draw), cell.error(draw)) for cell in own)
-
-    def draws(self):
-        """The whole, then resamples of the seeds; the same on every run."""
-        yield slice(None)
-        random = np.random.default_rng(1996)
-        for _ in range(RESAMPLES):
-            yield random.integers(0, self.seeds, self.seeds)
+    def curve(self, label, draw=0, x=None):
+        """The front of a method, over CPU seconds or over x(cell)."""
+        return front((x(cell) if x else cell.seconds(draw), cell.error(draw)) for cell in self.cells if cell.label == label)
 
 
-def quantity(fields, measure):
-    """(value, low, high) of measure(draws by field); None where it cannot be told. Missing resamples widen nothing, they are left out."""
-    values = [measure(draw) for draw in zip(*(field.draws() for field in fields))]
-    if values[0] is None or not values[0] > 0:
+def quantity(seeds, measure):
+    """(value, low, high) of measure(draw); None where it cannot be told. Draws in which it cannot are left out."""
+    value = measure(0)
+    if value is None or not value > 0:
         return None
-    return interval(values[0], [value for value in values[1:] if value is not None and value > 0], min(field.seeds for field in fields))
+    others = [measure(draw) for draw in range(1, RESAMPLES + 1)]
+    return interval(value, [other for other in others if other is not None and other > 0], seeds)
 
 
 def interval(value, resampled, seeds):
-    if seeds < 2 or len(resampled) < 2:
+    if seeds < 2 or len(resampled) < RESAMPLES // 2:
         return value, 0.0, math.inf
     spread = float(np.std(np.log(resampled))) * math.sqrt(seeds / (seeds - 1))
     reach = math.exp(student(seeds - 1) * spread)

@@ -27,7 +27,7 @@ def run(race):
         return
     scene, folder = race.duel.scene("folded"), race.output / "trials" / "folds"
     own, trials = settings(scene), {}
-    race.run_sweep(contests.sweep_files(scene, own, race.seeds, 1, folder / "sweeps", "folds"), folder)
+    race.run_sweep(contests.sweep_files(scene, own, race.seeds, race.duel.rules, folder / "sweeps", "folds"), folder)
     scored = Scored(scene, folder)
     for _, row in read_rows(folder / "records.csv")[1]:
         scored.truth_for(row)

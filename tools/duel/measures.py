@@ -50,7 +50,7 @@ def factor_of_errors(results, name, seconds=SECOND):
     if name not in results.fields:
         return []
     field = results.fields[name]
-    return case(name, curves.quantity([field], lambda draws: errors_at(field, draws[0], seconds)))
+    return case(name, curves.quantity(field.seeds, lambda draw: errors_at(field, draw, seconds)))
 
 
 def times_with_bound(field, error, beams=BEAMS, photons=PHOTONS):
@@ -68,15 +68,21 @@ def times_with_bound(field, error, beams=BEAMS, photons=PHOTONS):
         bound = a / ends[1][-1][0]
         return (bound, 0.0, bound)
 
-    def ratio(draws):
-        top, bottom = (curves.at_error(field.curve(label, draws[0]), error * (1 + 1e-9)) for label in (photons, beams))
+    def ratio(draw):
+        top, bottom = (curves.at_error(field.curve(label, draw), error * (1 + 1e-9)) for label in (photons, beams))
         return top / bottom if top and bottom else None
-    return curves.quantity([field], ratio)
+    return curves.quantity(field.seeds, ratio)
 
 
 def factor_at_least_common(field, beams=BEAMS):
-    error = least_common(field, beams)
-    return None if error is None else times_with_bound(field, error, beams)
+    """The factor of times at the least error that both reach, in each draw of its own."""
+    def ratio(draw):
+        photons, other = (field.curve(label, draw) for label in (PHOTONS, beams))
+        if not photons or not other:
+            return None
+        error = max(photons[-1][1], other[-1][1]) * (1 + 1e-9)
+        return curves.at_error(photons, error) / curves.at_error(other, error)
+    return curves.quantity(field.seeds, ratio)
 
 
 def over(results, names, seconds=SECOND):
@@ -85,10 +91,10 @@ def over(results, names, seconds=SECOND):
         return None
     fields = [results.fields[name] for name in names]
 
-    def ratio(draws):
-        a, b = (errors_at(field, draw, seconds) for field, draw in zip(fields, draws))
+    def ratio(draw):
+        a, b = (errors_at(field, draw, seconds) for field in fields)
         return a / b if a and b else None
-    return curves.quantity(fields, ratio)
+    return curves.quantity(fields[0].seeds, ratio)
 
 
 def pools(results):
@@ -104,12 +110,12 @@ def rivals(results):
     for name in results.base():
         field = results.fields[name]
 
-        def ratio(draws):
-            errors = {label: curves.at_time(field.curve(label, draws[0]), SECOND) for label in field.labels if label not in ("none", CONES)}
+        def ratio(draw):
+            errors = {label: curves.at_time(field.curve(label, draw), SECOND) for label in field.labels if label not in ("none", CONES)}
             own = [errors[label] for label in (PHOTONS, BEAMS) if errors.get(label)]
             others = [error for label, error in errors.items() if error and label not in (PHOTONS, BEAMS)]
             return min(own) / min(others) if own and others else None
-        found += case(name, curves.quantity([field], ratio))
+        found += case(name, curves.quantity(field.seeds, ratio))
     return found
 
 
@@ -138,13 +144,13 @@ def alpha_photons(results):
     if any(name not in results.fields for name in names):
         return []
     fields = [results.fields[name] for name in names]
-    stored = lambda cell, draw: statistics.median(row["photons_stored"] for row in cell.rows)
+    stored = lambda cell: cell.median("photons_stored")
     goal = max(field.curve(PHOTONS, x=stored)[-1][1] for field in fields) * (1 + 1e-9)
 
-    def ratio(draws):
-        a, b = (curves.at_error(field.curve(PHOTONS, draw, stored), goal) for field, draw in zip(fields, draws))
+    def ratio(draw):
+        a, b = (curves.at_error(field.curve(PHOTONS, draw, stored), goal) for field in fields)
         return a / b if a and b else None
-    return case(f"alpha 0.01 over 1 at {100 * goal:.2g} % error", curves.quantity(fields, ratio))
+    return case(f"alpha 0.01 over 1 at {100 * goal:.2g} % error", curves.quantity(fields[0].seeds, ratio))
 
 
 def alpha_winner(results):
@@ -158,10 +164,10 @@ def resolution(results):
     fields = [results.fields[name] for name in names]
     goal = max(0.05, *(least_common(field) or 0.05 for field in fields)) * (1 + 1e-9)
 
-    def ratio(draws):
-        a, b = (times_at(field, draw, goal) for field, draw in zip(fields, draws))
+    def ratio(draw):
+        a, b = (times_at(field, draw, goal) for field in fields)
         return a / b if a and b else None
-    return case(f"160 over 64 pixels a side at {100 * goal:.2g} % error", curves.quantity(fields, ratio))
+    return case(f"160 over 64 pixels a side at {100 * goal:.2g} % error", curves.quantity(fields[0].seeds, ratio))
 
 
 def lit_share(results):
@@ -199,10 +205,10 @@ def wanted_error(results):
                 found.append(Case(name, bound, bound, math.inf, "the photon map never reaches 5 %"))
             continue
 
-        def ratio(draws):
-            a, b = (times_at(field, draws[0], error) for error in (0.05, 0.2))
+        def ratio(draw):
+            a, b = (times_at(field, draw, error) for error in (0.05, 0.2))
             return a / b if a and b else None
-        found += case(name, curves.quantity([field], ratio))
+        found += case(name, curves.quantity(field.seeds, ratio))
     return found
 
 
@@ -212,12 +218,12 @@ def memory(results):
         field = results.fields.get(name)
         if field and least_common(field):
             goal = least_common(field) * (1 + 1e-9)
-            found += case(name, curves.quantity([field], lambda draws: times_at(field, draws[0], goal, lambda cell, draw: cell.bytes())), f"at {100 * goal:.2g} % error")
+            found += case(name, curves.quantity(field.seeds, lambda draw: times_at(field, draw, goal, lambda cell: cell.median("map_bytes"))), f"at {100 * goal:.2g} % error")
     return found
 
 
 def duvenhage(results):
-    """The median over the scenes, our bound and the paper's cones apart; the scenes' factors are drawn anew together."""
+    """The median over the scenes, our bound and the paper's cones apart; its ends are the medians of the scenes' ends."""
     found = []
     for name, beams in (("two_slice", BEAMS), ("the paper's cones", CONES)):
         own = [factor for factor in (factor_at_least_common(results.fields[scene], beams) for scene in results.base()) if factor]

@@ -95,7 +95,7 @@ class Race:
 
     def sweep(self, scene, settings, seeds, phase):
         folder = self.folder(scene)
-        paths = contests.sweep_files(scene, settings, seeds, self.duel.rules["threads"], folder / "sweeps", phase)
+        paths = contests.sweep_files(scene, settings, seeds, self.duel.rules, folder / "sweeps", phase)
         self.log(f"{scene.name}: {phase}, {len(settings)} settings x {len(seeds)} seeds")
         self.run_sweep(paths, folder)
         scored, records, trials, left_out = Scored(scene, folder), [], {}, []

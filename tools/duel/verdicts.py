@@ -15,12 +15,12 @@ class Case:
     note: str = ""
 
     def text(self):
+        if self.low == self.high:
+            return f"{self.value:.3g}"
         if self.high == math.inf and self.low == self.value:
             return f"> {self.value:.3g}"
         if self.low == 0 and self.high == self.value:
             return f"< {self.value:.3g}"
-        if self.low == self.high:
-            return f"{self.value:.3g}"
         return f"{self.value:.3g} ({self.low:.3g} to {self.high:.3g})"
 
 

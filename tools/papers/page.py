@@ -66,8 +66,9 @@ def write_page(folder, study, entries, part, machine):
 def rendered(paper, entries, kept):
     """{file name: text} of everything that follows from verdicts.json and tables.json."""
     tables = [Table(**each) for each in kept["tables"]]
-    return {"tables.md": markdown(paper, entries, kept, tables), "tables.csv": comma(entries, tables),
-            "tables.tex": latex(paper, entries, tables), "index.html": page(paper, entries, kept, tables)}
+    every = [claims_table(entries), *tables]
+    return {"tables.md": markdown(paper, entries, kept, tables), "tables.csv": comma(every),
+            "tables.tex": latex(f"{paper.text['author']}: {paper.text['title']}", every), "index.html": page(paper, entries, kept, tables)}
 
 
 def took(kept):
@@ -124,23 +125,25 @@ def seconds(paper):
     return [[what, short(paper.number(name)), paper.text["numbers"][name]["where"]] for what, name in paper.text["seconds"]]
 
 
-def comma(entries, tables):
+def comma(tables):
+    """Tables one after another as CSV, each below a line with its title."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    for table in [claims_table(entries), *tables]:
+    for table in tables:
         writer.writerow([f"# {table.title}"])
         writer.writerow(table.heading)
         writer.writerows(table.rows)
     return text.getvalue()
 
 
-def latex(paper, entries, tables):
+def latex(title, tables):
+    """Tables one after another for LaTeX, below a comment."""
     special = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
                "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "–": "--", "×": r"$\times$", "·": r"$\cdot$", "²": r"$^2$", "µ": r"$\mu$",
                "°": r"$^\circ$", "<": r"$<$", ">": r"$>$", "≤": r"$\le$", "≥": r"$\ge$"}
     escape = lambda field: "".join(special.get(letter, letter) for letter in str(field))
-    text = [f"% {paper.text['author']}: {paper.text['title']}; needs booktabs and tabularx"]
-    for table in [claims_table(entries), *tables]:
+    text = [f"% {title}; needs booktabs and tabularx"]
+    for table in tables:
         line = lambda fields: " & ".join(map(escape, fields)) + r" \\"
         columns = "X" + "l" * (len(table.heading) - 1)
         text += [rf"\begin{{tabularx}}{{\linewidth}}{{{columns}}}", r"\toprule", f"% {table.title}", line(table.heading), r"\midrule",
