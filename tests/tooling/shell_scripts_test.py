@@ -104,13 +104,13 @@ class FreshDebian(Sandbox):
 
 
 class Reproduce(Sandbox):
-    """tools/reproduce.sh with a build and a tool that only say what they are asked."""
+    """tools/reproduce.sh and tools/duel.sh with a build and a tool that only say what they are asked."""
 
-    def reproduced(self, *words, **environment):
-        self.copy("tools/reproduce.sh")
+    def reproduced(self, *words, script="reproduce.sh", tool="reproduce.py", **environment):
+        self.copy(f"tools/{script}")
         self.write("tools/build.sh", 'echo "build $*"')
-        (self.folder / "tools/reproduce.py").write_text("import sys\nprint(*sys.argv[1:])\n")
-        return self.run_script("tools/reproduce.sh", *words, **environment).stdout.splitlines()
+        (self.folder / "tools" / tool).write_text("import sys\nprint(*sys.argv[1:])\n")
+        return self.run_script(f"tools/{script}", *words, **environment).stdout.splitlines()
 
     def test_builds_and_hands_its_words_on(self):
         self.assertEqual(self.reproduced("jensen1996", "--quick", CAUSTICS_BENCH=""),
@@ -118,6 +118,12 @@ class Reproduce(Sandbox):
 
     def test_takes_a_program_that_is_there(self):
         self.assertEqual(self.reproduced(CAUSTICS_BENCH="/a/program"), ["--program /a/program"])
+
+    def test_the_duel_does_the_same(self):
+        duel = lambda *words, **environment: self.reproduced(*words, script="duel.sh", tool="measure_duel.py", **environment)
+        self.assertEqual(duel("--quick", CAUSTICS_BENCH=""),
+                         ["build release causticbench", "--program build/release/bin/causticbench --quick"])
+        self.assertEqual(duel(CAUSTICS_BENCH="/a/program"), ["--program /a/program"])
 
 
 class ContinuousIntegration(Sandbox):
