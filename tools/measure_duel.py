@@ -44,10 +44,11 @@ def run(chosen, output):
         held = race.Race(duel, output, chosen.program.resolve(), chosen.jobs, chosen.quick)
         if chosen.only:
             held.scenes = [scene for scene in duel.scenes if scene.name in chosen.only]
-        held.run()
+        held.seeds = held.pilot()
         if not chosen.quick and (not chosen.only or "counts" in chosen.only):
             counts.run(held)
             folds.run(held)
+        held.run()
     page.write_all(duel, output, chosen.quick)
 
 

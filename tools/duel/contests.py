@@ -89,10 +89,8 @@ class Duel:
         """Every setting of the search on a scene, each once."""
         found = {}
         for method in self.space["methods"]:
-            if method["method"] not in scene.text.get("methods", [method["method"]]):
-                continue
             for row in method["rows"]:
-                if allowed(row, scene):
+                if row.get("as", method["method"]) not in scene.text.get("without", []) and allowed(row, scene):
                     for setting in row_settings(method, row, scene):
                         found.setdefault(setting, None)
         return list(found)
@@ -105,7 +103,8 @@ class Duel:
 def allowed(row, scene):
     if row.get("base") and not scene.is_base() or min(row["spp"]) > scene.text.get("most_spp", math.inf):
         return False
-    return row.get("needs") != "square pixels" or scene.text.get("square", False)
+    needs = {None: True, "square pixels": scene.text.get("square", False), "exact casters": scene.mesh == EXACT}
+    return needs[row.get("needs")]
 
 
 def row_settings(method, row, scene):

@@ -21,7 +21,7 @@ class Race:
     def __init__(self, duel, output, program, jobs, quick):
         self.duel, self.output, self.program, self.jobs = duel, output, str(program), jobs
         self.scenes = [scene for scene in duel.scenes if not quick or scene.name in duel.rules["quick"]]
-        self.start, self.spent, self.done = time.monotonic(), 0.0, 0
+        self.start, self.spent, self.done, self.seeds = time.monotonic(), 0.0, 0, []
 
     def folder(self, scene):
         return self.output / "trials" / scene.name
@@ -30,8 +30,7 @@ class Race:
         print(f"duel: {text}", file=sys.stderr, flush=True)
 
     def run(self):
-        """All scenes, or those of --quick."""
-        self.seeds = self.pilot()
+        """All scenes, or those of --quick, on the pilot's seeds."""
         for number, scene in enumerate(self.scenes, 1):
             self.log(f"scene {number} of {len(self.scenes)}: {scene.name} ({scene.title}); {self.left(number)}")
             self.race(scene)
