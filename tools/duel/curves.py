@@ -23,11 +23,13 @@ class Cell:
     `draw` numbers the draws of seeds: 0 is all of them as they are.
     """
 
-    def __init__(self, setting, rows):
+    def __init__(self, setting, rows, plain=False):
+        """By relmse, or `plain` by rmse over the truth's mean."""
         self.setting, self.label, self.rows = setting, setting.label, rows
         self.work = np.array([row["build_s"] + row["query_s"] for row in rows])
-        self.squares = np.array([row["relmse"] for row in rows])
-        self.noise = rows[0]["relmse_noise"]
+        square = lambda row, name: (row[f"rmse{name}"] / row["mean"]) ** 2 if plain else row[f"relmse{name}"]
+        self.squares = np.array([square(row, "") for row in rows])
+        self.noise = square(rows[0], "_noise")
         picks = draws(len(rows))
         self.medians = np.median(self.work[picks], axis=1).tolist()
         self.errors = [error_of(square, self.noise) for square in self.squares[picks].mean(axis=1).tolist()]
@@ -54,6 +56,11 @@ def draws(seeds):
 def error_of(square, noise):
     """The error without the truth's own; what lies within a quarter of the truth's variance is not told apart from it."""
     return math.sqrt(max(square - noise, noise / 4, 1e-30))
+
+
+def error_by_truth(error, noise, pixels):
+    """The standard error of an error by the truth's own, independent from pixel to pixel: of mean (d^2 + 2 d t + t^2) - noise, halved over the error."""
+    return math.sqrt((4 * error ** 2 * noise + 2 * noise ** 2) / pixels) / (2 * error)
 
 
 def front(points):

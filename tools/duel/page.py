@@ -17,7 +17,7 @@ class Records(measures.Results):
 
     def __init__(self, duel, output):
         folder = output / "records"
-        self.rows, self.left_out, self.spread = [], [], {}
+        self.rows, self.left_out, self.spread, self.plain = [], [], {}, {}
         fields, searched = {}, {}
         for scene in duel.scenes:
             for phase in (SEARCH, FINAL):
@@ -32,7 +32,9 @@ class Records(measures.Results):
                     searched[scene.name] = cells
                 else:
                     fields[scene.name] = Field(cells)
-        folds = folder / "folds.json"
+                    self.plain[scene.name] = Field(cells_of(duel.settings(scene), rows, True))
+        environment, folds = output / "environment.json", folder / "folds.json"
+        self.environment = json.loads(environment.read_text(encoding="utf-8")) if environment.is_file() else {}
         super().__init__(duel, fields, searched, read_if(folder / "folds.csv", ("method",)), read_if(folder / "counts.csv", counted_texts()),
                          json.loads(folds.read_text(encoding="utf-8")) if folds.is_file() else None)
 
@@ -50,7 +52,9 @@ class Records(measures.Results):
         several = lambda name: ", ".join(sorted({row[name] for row in self.rows}))
         loads = sorted(row["load_average"] for row in self.rows)
         cpu = sum(row["build_s"] + row["query_s"] for row in self.rows) / 60
-        return (f"{several('cpu')}, one thread a trial; causticbench {several('code_version')}; load average {loads[0]:.0f} to {loads[-1]:.0f} by other "
+        built = f"{self.environment['compiler']}, {self.environment['flags']}" if self.environment else "its build is not known"
+        built += "" if "NDEBUG" in built else ", assertions on"
+        return (f"{several('cpu')}, one thread a trial; causticbench {several('code_version')}, {built}; load average {loads[0]:.0f} to {loads[-1]:.0f} by other "
                 f"work (times are CPU times); {len(self.rows)} trials, {cpu:.0f} CPU minutes in the methods.")
 
 

@@ -13,6 +13,7 @@ from report.records import RecordsError, read_rows
 from report.report_files import write
 
 SEARCH, FINAL = "search", "final"
+ENVIRONMENT = ("cpu", "threads_available", "compiler", "flags", "build_type", "commit", "dirty", "libraries", "date")
 MEMORY = "8000"  # MiB of a trial
 LEFT_OUT = ("scene", "label", "settings", "seed", "status", "message")
 
@@ -78,6 +79,13 @@ class Race:
         names = {tuple(each) for each in json.loads(path.read_text(encoding="utf-8"))}
         return [setting for setting in self.duel.settings(scene) if (setting.label, setting.text()) in names]
 
+    def keep_environment(self, folder):
+        """environment.json of the first sweep: compiler, flags, machine."""
+        path, kept = self.output / "environment.json", folder / "environment.json"
+        if kept.is_file() and not path.is_file():
+            about = json.loads(kept.read_text(encoding="utf-8"))
+            write(path, json.dumps({name: about[name] for name in ENVIRONMENT}, indent=1) + "\n")
+
     def measure(self, scene, settings, seeds, phase):
         """Runs the settings, scores them, writes records/SCENE_PHASE.csv; taken from there where all is there. Returns cells."""
         path = self.output / "records" / f"{scene.name}_{phase}.csv"
@@ -97,6 +105,7 @@ class Race:
         paths = contests.sweep_files(scene, settings, seeds, self.duel.rules, folder / "sweeps", phase)
         self.log(f"{scene.name}: {phase}, {len(settings)} settings x {len(seeds)} seeds")
         self.run_sweep(paths, folder)
+        self.keep_environment(folder)
         scored, records, trials, left_out = Scored(scene, folder), [], {}, []
         for _, row in read_rows(folder / "records.csv")[1]:
             setting = contests.setting_of(row, settings, scene)
@@ -122,11 +131,11 @@ class Race:
             raise ChildProcessError(f"{folder.name}: the sweep ended with exit code {status}")
 
 
-def cells_of(settings, rows):
+def cells_of(settings, rows, plain=False):
     groups = {}
     for row in rows:
         groups.setdefault((row["label"], row["settings"]), []).append(row)
-    return [curves.Cell(setting, groups[setting.label, setting.text()]) for setting in settings if (setting.label, setting.text()) in groups]
+    return [curves.Cell(setting, groups[setting.label, setting.text()], plain) for setting in settings if (setting.label, setting.text()) in groups]
 
 
 def fronts(cells, duel):

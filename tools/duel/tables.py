@@ -6,6 +6,7 @@ from papers.words import short
 
 TIMES = (0.1, 0.3, 1, 3)  # CPU seconds
 ERRORS = (0.2, 0.05, 0.01, 0.001)
+TRUTHS = 10  # a difference has to be so many times what the truth's own error makes of it
 METHODS = (PHOTONS, BEAMS, CONES, "causticpolygons", "illuminationmap", "lighttrace")
 
 
@@ -33,14 +34,15 @@ def shown(results):
     return [(scene, results.fields[scene.name]) for scene in results.duel.scenes if scene.name in results.fields]
 
 
-def best(field, time):
+def best(field, time, pixels):
     """({method: error}, the methods that are best, ties included) at a time."""
     errors = {label: curves.at_time(field.curve(label), time) for label in field.labels if label != "none"}
     errors = {label: error for label, error in errors.items() if error}
     if not errors:
         return errors, []
     first = min(errors, key=errors.get)
-    tied = [label for label in errors if label == first or is_tie(field, label, first, time)]
+    tied = [label for label in errors if label == first or is_tie(field, label, first, time)
+            or errors[label] - errors[first] < TRUTHS * curves.error_by_truth(errors[first], field.cells[0].noise, pixels)]
     return errors, sorted(tied, key=errors.get)
 
 
@@ -49,17 +51,19 @@ def is_tie(field, label, first, time):
     return found is not None and found[1] <= 1
 
 
-def winners(results, time):
-    """One row a scene: each method's error after so many CPU seconds, the best in bold."""
+def winners(results, time, plain=False):
+    """One row a scene: each method's error after so many CPU seconds, the best in bold; `plain` by rmse."""
     rows = []
     for scene, field in shown(results):
-        errors, first = best(field, time)
+        field = results.plain[scene.name] if plain else field
+        errors, first = best(field, time, scene.size[0] * scene.size[1])
         cells = [(f"**{percent(errors[label])}**" if label in first else percent(errors[label])) if label in errors else "–" for label in METHODS]
         found = curves.quantity(field.seeds, lambda draw: measures.errors_at(field, draw, time))
         rows.append([scene.title, *cells, factor(found)])
     heading = ["scene", *METHODS, "photon map's error over the beam tree's"]
-    return Table(f"equal_time_{time:g}".replace(".", "_"), f"Error after {time:g} CPU seconds", heading, rows,
-                 "Bold: the least, and all that the seeds do not tell from it. –: no setting is done by then, or the method does not serve the scene.")
+    name = f"equal_time_{time:g}{'_rmse' if plain else ''}".replace(".", "_")
+    return Table(name, f"{'rmse over the mean' if plain else 'Error'} after {time:g} CPU second{'s' * (time != 1)}", heading, rows,
+                 "Bold: the least, and all that the seeds or the truth do not tell from it. –: no setting is done by then, or the method does not serve the scene.")
 
 
 def wanted(results):
@@ -154,4 +158,4 @@ def left_out(results):
 
 
 def everything(results):
-    return [*(winners(results, time) for time in TIMES), wanted(results), crossings(results), memory(results), parts(results), settings(results), left_out(results)]
+    return [*(winners(results, time) for time in TIMES), winners(results, 1, True), wanted(results), crossings(results), memory(results), parts(results), settings(results), left_out(results)]
