@@ -2,6 +2,7 @@
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import unittest
@@ -201,11 +202,13 @@ class Pages(unittest.TestCase):
     def test_plots_are_there_and_the_page_shows_only_those(self):
         for name in self.results.fields:
             self.assertTrue((RESULTS / "plots" / f"{name}.png").is_file(), name)
+        for link in re.findall(r"\]\(([\w./-]+)\)", self.texts["README.md"]):
+            self.assertTrue((RESULTS / link).exists(), link)
 
     def test_no_page_names_a_path_of_a_machine(self):
         for name, text in self.texts.items():
             self.assertNotIn(str(ROOT), text, name)
-            self.assertNotIn("{", text.replace("{", "", 0) if name == "README.md" else "", name)
+        self.assertNotRegex(self.texts["README.md"], r"\{[a-z_0-9]+\}")
 
 
 class CommandLine(unittest.TestCase):
