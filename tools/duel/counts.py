@@ -42,7 +42,7 @@ def casters_sweep(folder):
         files.append(folder / f"casters_{count}.json")
         files[-1].write_text(json.dumps(kept), encoding="utf-8")
     sweep = {"version": 1, "scenes": [file.name for file in files], "spp": 1,
-             "methods": [{"method": "beamtree", "param": {"bound": "hybrid", "mesh_resolution": 16, "max_bounces": 2}}]}
+             "methods": [{"method": "beamtree", "param": {"bound": "hybrid", "mesh_resolution": 8, "max_bounces": 2}}]}
     path = folder / "sweep.json"
     path.write_text(json.dumps(sweep), encoding="utf-8")
     return path
@@ -66,7 +66,8 @@ def swept(name, row):
     if name == "counts_floor":
         return str(json.loads(row["floor"])["fractal"]["levels"])
     if name == "counts_mirror":
-        return f"{row['amplitude']} {row['bound']}"
+        amplitude = json.loads(row["waves"])[0]["amplitude"]
+        return f"{'concave' if amplitude < 0 else 'convex' if amplitude > 0 else 'flat'} {row['bound']}"
     if name == "counts_lights":
         return row["light_samples"]
     return f"{row['photons']} {row['tree']}".strip() or "none"

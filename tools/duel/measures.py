@@ -270,9 +270,9 @@ def convergent(results):
     tests = {row["swept"]: row["cone_point_tests"] / row["beam_point_hits"] for row in rows_of(results, "counts_mirror")}
     if not tests:
         return []
-    ratios = {amplitude: tests[f"{amplitude} single"] / tests[f"{amplitude} double"] for amplitude in ("-0.03", "0", "0.03")}
-    note = ", ".join(f"amplitude {amplitude} m: {ratio:.3g}" for amplitude, ratio in ratios.items())
-    return counted("concave over convex", ratios["-0.03"] / ratios["0.03"], f"single over double: {note}")
+    ratios = {amplitude: tests[f"{shape} single"] / tests[f"{shape} double"] for shape in ("concave", "flat", "convex")}
+    note = ", ".join(f"{shape} {ratio:.3g}" for shape, ratio in ratios.items())
+    return counted("concave over convex", ratios["concave"] / ratios["convex"], f"single over double: {note}")
 
 
 def twenty_times(results):
