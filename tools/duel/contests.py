@@ -101,7 +101,7 @@ class Duel:
 
 
 def allowed(row, scene):
-    if row.get("base") and not scene.is_base() or min(row["spp"]) > scene.text.get("most_spp", math.inf):
+    if row.get("grid", scene.grid) != scene.grid or min(row["spp"]) > scene.text.get("most_spp", math.inf):
         return False
     needs = {None: True, "square pixels": scene.text.get("square", False), "exact casters": scene.mesh == EXACT}
     return needs[row.get("needs")]

@@ -270,7 +270,7 @@ def convergent(results):
     tests = {row["swept"]: row["cone_point_tests"] / row["beam_point_hits"] for row in rows_of(results, "counts_mirror")}
     if not tests:
         return []
-    ratios = {amplitude: tests[f"{shape} single"] / tests[f"{shape} double"] for shape in ("concave", "flat", "convex")}
+    ratios = {shape: tests[f"{shape} single"] / tests[f"{shape} double"] for shape in ("concave", "flat", "convex")}
     note = ", ".join(f"{shape} {ratio:.3g}" for shape, ratio in ratios.items())
     return counted("concave over convex", ratios["concave"] / ratios["convex"], f"single over double: {note}")
 
