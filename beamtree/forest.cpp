@@ -12,6 +12,10 @@
 namespace caustics::beamtree {
 namespace {
 
+// Trees of so many beams are built one after the other, each on all threads; so are few of them.
+constexpr std::size_t large = 4096;
+constexpr std::size_t few = 8;
+
 /// One tree to be built.
 struct TreePlan {
     std::vector<BeamNumber> beams;
@@ -68,18 +72,18 @@ Hierarchy quadtree_of(const TracedScene& traced, const TreePlan& plan) {
 }
 
 SliceTree slice_tree(const Scene& scene, const TracedScene& traced, const TreePlan& plan,
-                     float footprint, Isa isa) {
+                     float footprint, const RunOptions& options, int threads) {
     SlicedBeams beams{traced.sets, plan.beams, *plan.normal, scene.bounds(), footprint};
-    if (!plan.regular) return {std::move(beams), isa};
+    if (!plan.regular) return {std::move(beams), options.isa, threads};
     const Hierarchy hierarchy = quadtree_of(traced, plan);
     beams.beams.clear();
     for (const std::uint32_t beam : hierarchy.order)
         beams.beams.push_back({plan.beams.front().set, beam});
-    return {std::move(beams), hierarchy, isa};
+    return {std::move(beams), hierarchy, options.isa, threads};
 }
 
 ConeTree cone_tree(const Scene& scene, const TracedScene& traced, const TreePlan& plan,
-                   const BeamTreeParams& params) {
+                   const BeamTreeParams& params, int threads) {
     const std::uint32_t set = plan.beams.front().set;
     ConeTreeSettings settings;
     settings.bound = params.bound == Bound::two_slice ? Bound::sphere_swept : params.bound;
@@ -90,7 +94,7 @@ ConeTree cone_tree(const Scene& scene, const TracedScene& traced, const TreePlan
         plan.regular
             ? quadtree_of(traced, plan)
             : binned_hierarchy(traced.sets[set], in_their_set(plan.beams), scene.diameter() / 2);
-    return {traced.sets[set], set, hierarchy, settings, plan.normal};
+    return {traced.sets[set], set, hierarchy, settings, plan.normal, threads};
 }
 
 }  // namespace
@@ -101,13 +105,22 @@ Forest::Forest(const Scene& scene, const TracedScene& traced, const BeamTreePara
     std::vector<std::optional<ConeTree>> cones(plans.size());
     std::vector<std::optional<SliceTree>> slices(plans.size());
     TraceProgress progress(options);
-    parallel_for(options.threads, plans.size(), [&](std::size_t i, std::size_t) {
+    const auto build = [&](std::size_t i, int threads) {
         if (plans[i].sliced)
-            slices[i].emplace(slice_tree(scene, traced, plans[i], params.footprint, options.isa));
+            slices[i].emplace(
+                slice_tree(scene, traced, plans[i], params.footprint, options, threads));
         else
-            cones[i].emplace(cone_tree(scene, traced, plans[i], params));
+            cones[i].emplace(cone_tree(scene, traced, plans[i], params, threads));
         progress.add(1 / static_cast<double>(plans.size()));
-    });
+    };
+    std::vector<std::size_t> small;
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        if (plans[i].beams.size() >= large || plans.size() < few)
+            build(i, options.threads);
+        else
+            small.push_back(i);
+    parallel_for(options.threads, small.size(),
+                 [&](std::size_t k, std::size_t) { build(small[k], 1); });
     for (std::size_t i = 0; i < plans.size(); ++i) {
         if (slices[i])
             slices_.push_back(std::move(*slices[i]));

@@ -1,11 +1,13 @@
 #include "beamtree/beams/caster_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <optional>
 #include <tuple>
 
 #include "core/base/interrupt.h"
+#include "core/base/sort_by_number.h"
 #include "core/geometry/tessellate.h"
 
 namespace caustics::beamtree {
@@ -40,26 +42,52 @@ std::array<Position, 3> place(const TriangleMesh& mesh, std::size_t triangle) {
     return corners;
 }
 
-/// A triangle by its place; `caster` and `triangle` say which.
+/// A triangle of a caster, by the hash of its place.
 struct PlacedTriangle {
-    std::array<Position, 3> place;
-    std::size_t caster;
-    std::size_t triangle;
+    std::uint32_t hash;
+    std::uint32_t caster;
+    std::uint32_t triangle;
 };
+
+// The same in whichever order the corners come; adding zero makes -0 and 0 alike.
+std::uint32_t hash_of_place(const TriangleMesh& mesh, std::size_t triangle) {
+    std::uint32_t sum = 0;
+    for (const std::uint32_t corner : mesh.triangles[triangle]) {
+        std::uint32_t hash = 0;
+        for (const float x : mesh.positions[corner])
+            hash = (hash ^ std::bit_cast<std::uint32_t>(x + 0.0F)) * 0x9E3779B1U ^ hash >> 15U;
+        sum += hash ^ hash >> 16U;
+    }
+    return sum;
+}
+
+std::vector<PlacedTriangle> placed_triangles(const std::vector<CasterMesh>& casters) {
+    std::vector<PlacedTriangle> all;
+    for (std::uint32_t c = 0; c < casters.size(); ++c)
+        for (std::uint32_t i = 0; i < casters[c].mesh.triangles.size(); ++i)
+            if (!casters[c].left_out[i]) all.push_back({hash_of_place(casters[c].mesh, i), c, i});
+    return all;
+}
 
 // A ray meets one of two triangles at the same place and then starts behind both: so light is
 // bent once, and a second beam would count it twice. The first caster and triangle stays, as it does
 // for rays.
-void leave_out_duplicates(std::vector<CasterMesh>& casters) {
-    std::vector<PlacedTriangle> all;
-    for (std::size_t c = 0; c < casters.size(); ++c)
-        for (std::size_t i = 0; i < casters[c].mesh.triangles.size(); ++i)
-            if (!casters[c].left_out[i]) all.push_back({place(casters[c].mesh, i), c, i});
-    std::sort(all.begin(), all.end(), [](const PlacedTriangle& a, const PlacedTriangle& b) {
-        return std::tie(a.place, a.caster, a.triangle) < std::tie(b.place, b.caster, b.triangle);
-    });
+void leave_out_duplicates(std::vector<CasterMesh>& casters, int threads) {
+    const std::vector<PlacedTriangle> placed = placed_triangles(casters);
+    const auto place_of = [&](const PlacedTriangle& one) {
+        return place(casters[one.caster].mesh, one.triangle);
+    };
+    const std::size_t numbers = std::bit_ceil(placed.size() + 1);
+    const std::vector<PlacedTriangle> all = sort_by_number(
+        std::span(placed), numbers, threads,
+        [&](const PlacedTriangle& one) { return one.hash & (numbers - 1); },
+        [&](const PlacedTriangle& a, const PlacedTriangle& b) {
+            if (a.hash != b.hash) return a.hash < b.hash;
+            return std::tuple(place_of(a), a.caster, a.triangle) <
+                   std::tuple(place_of(b), b.caster, b.triangle);
+        });
     for (std::size_t i = 1; i < all.size(); ++i) {
-        if (all[i].place != all[i - 1].place) continue;
+        if (all[i].hash != all[i - 1].hash || place_of(all[i]) != place_of(all[i - 1])) continue;
         CasterMesh& caster = casters[all[i].caster];
         caster.left_out[all[i].triangle] = true;
         ++caster.duplicated;
@@ -108,7 +136,8 @@ Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     return cross.stableNormalized().cast<float>();
 }
 
-std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, PolygonKind kind) {
+std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, PolygonKind kind,
+                                      int threads) {
     std::vector<CasterMesh> casters;
     for (const std::uint32_t index : scene.casters()) {
         const Shape& shape = scene.shapes()[index];
@@ -123,11 +152,11 @@ std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, Polygo
         leave_out_degenerate(caster);
         casters.push_back(std::move(caster));
     }
-    leave_out_duplicates(casters);
+    leave_out_duplicates(casters, threads);
     for (CasterMesh& caster : casters) {
         throw_if_interrupted();
         if (kind == PolygonKind::quad) find_quads(caster);
-        caster.closed = ClosedParts(caster.mesh, caster.left_out);
+        caster.closed = ClosedParts(caster.mesh, caster.left_out, threads);
     }
     return casters;
 }

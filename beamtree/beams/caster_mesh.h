@@ -42,7 +42,7 @@ struct CasterMesh {
 
 /// Exact casters are tessellated with `resolution`; meshes are taken as they are.
 std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution,
-                                      PolygonKind kind = PolygonKind::triangle);
+                                      PolygonKind kind = PolygonKind::triangle, int threads = 1);
 
 /// Unit normal of a triangle, by its winding; zero when it has no area.
 Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c);

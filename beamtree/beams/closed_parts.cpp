@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
+#include "beamtree/beams/pieces.h"
 #include "beamtree/beams/solid_angle.h"
 #include "core/base/interrupt.h"
+#include "core/base/sort_by_number.h"
 #include "core/mesh/vertex_normals.h"
 
 namespace caustics::beamtree {
 namespace {
+
+// What threads take at a time.
+constexpr std::size_t edges_together = 2048;
 
 /// A triangle's side from one place to another.
 struct Edge {
@@ -22,9 +27,11 @@ struct Edge {
     std::pair<std::uint32_t, std::uint32_t> ends() const { return {low, high}; }
 };
 
-std::vector<Edge> edges_of(const TriangleMesh& mesh, const std::vector<bool>& left_out) {
-    const std::vector<std::uint32_t> places = number_positions(mesh.positions);
+std::vector<Edge> edges_of(const TriangleMesh& mesh, const std::vector<bool>& left_out,
+                           int threads) {
+    const std::vector<std::uint32_t> places = number_positions(mesh.positions, threads);
     std::vector<Edge> edges;
+    edges.reserve(3 * mesh.triangles.size());
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         if (left_out[i]) continue;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -33,27 +40,14 @@ std::vector<Edge> edges_of(const TriangleMesh& mesh, const std::vector<bool>& le
             edges.push_back({std::min(a, b), std::max(a, b), a < b, i});
         }
     }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return std::tuple(a.ends(), a.triangle) < std::tuple(b.ends(), b.triangle);
-    });
-    return edges;
+    return sort_by_number(
+        std::span<const Edge>(edges), mesh.positions.size(), threads,
+        [](const Edge& edge) { return edge.low; },
+        [](const Edge& a, const Edge& b) {
+            return std::tie(a.high, a.triangle, a.upwards) <
+                   std::tie(b.high, b.triangle, b.upwards);
+        });
 }
-
-/// Sets of triangles that grow together, each named by one of its members.
-class Pieces {
-public:
-    explicit Pieces(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
 
 // The corners of a triangle, seen from a point.
 std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& from) {
@@ -65,25 +59,28 @@ std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle, c
 
 }  // namespace
 
-ClosedParts::ClosedParts(const TriangleMesh& mesh, const std::vector<bool>& left_out) {
-    const std::vector<Edge> edges = edges_of(mesh, left_out);
+ClosedParts::ClosedParts(const TriangleMesh& mesh, const std::vector<bool>& left_out, int threads) {
+    const std::vector<Edge> edges = edges_of(mesh, left_out, threads);
     throw_if_interrupted();
     const std::size_t count = mesh.triangles.size();
     Pieces pieces(count);
-    std::vector<bool> torn(count);  // a triangle with an edge of another kind
-    for (std::size_t i = 0; i < edges.size();) {
-        std::size_t end = i + 1;
-        while (end < edges.size() && edges[end].ends() == edges[i].ends()) ++end;
-        const bool joined = end - i == 2 && edges[i].upwards != edges[i + 1].upwards;
-        for (std::size_t k = i; k < end; ++k) {
-            pieces.join(edges[i].triangle, edges[k].triangle);
-            if (!joined) torn[edges[k].triangle] = true;
+    std::vector<std::uint8_t> torn(count);  // a triangle with an edge of another kind
+    parallel_chunks(threads, edges.size(), edges_together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i) {
+            if (i > 0 && edges[i - 1].ends() == edges[i].ends()) continue;  // begun before
+            std::size_t end = i + 1;
+            while (end < edges.size() && edges[end].ends() == edges[i].ends()) ++end;
+            const bool joined = end - i == 2 && edges[i].upwards != edges[i + 1].upwards;
+            for (std::size_t k = i; k < end; ++k) {
+                pieces.join(edges[i].triangle, edges[k].triangle);
+                if (!joined)
+                    std::atomic_ref(torn[edges[k].triangle]).store(1, std::memory_order_relaxed);
+            }
         }
-        i = end;
-    }
+    });
     std::vector<bool> torn_piece(count);
     for (std::uint32_t i = 0; i < count; ++i)
-        if (torn[i] || left_out[i]) torn_piece[pieces.find(i)] = true;
+        if (torn[i] != 0 || left_out[i]) torn_piece[pieces.find(i)] = true;
     std::vector<std::uint32_t> part_of_piece(count, open);
     std::vector<double> volumes;
     part_of_.assign(count, open);

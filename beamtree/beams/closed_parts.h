@@ -15,7 +15,7 @@ class ClosedParts {
 public:
     ClosedParts() = default;
     /// Vertices at one position count as one. Triangles of `left_out` are not there.
-    ClosedParts(const TriangleMesh& mesh, const std::vector<bool>& left_out);
+    ClosedParts(const TriangleMesh& mesh, const std::vector<bool>& left_out, int threads = 1);
 
     /// The side of each part that a light cannot reach straight.
     class Hidden {

@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/sort_by_number.h"
+
 namespace caustics::beamtree {
 namespace {
 
@@ -18,6 +20,7 @@ struct EdgeOfTriangle {
 
 std::vector<EdgeOfTriangle> sorted_edges(const CasterMesh& caster) {
     std::vector<EdgeOfTriangle> edges;
+    edges.reserve(3 * caster.mesh.triangles.size());
     for (std::uint32_t t = 0; t < caster.mesh.triangles.size(); ++t) {
         if (caster.left_out[t]) continue;
         const auto& corners = caster.mesh.triangles[t];
@@ -26,10 +29,12 @@ std::vector<EdgeOfTriangle> sorted_edges(const CasterMesh& caster) {
             edges.push_back({low, high, corners[(i + 2) % 3], t});
         }
     }
-    std::sort(edges.begin(), edges.end(), [](const EdgeOfTriangle& a, const EdgeOfTriangle& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-    return edges;
+    return sort_by_number(
+        std::span<const EdgeOfTriangle>(edges), caster.mesh.positions.size(), 1,
+        [](const EdgeOfTriangle& edge) { return edge.low; },
+        [](const EdgeOfTriangle& a, const EdgeOfTriangle& b) {
+            return std::tie(a.high, a.triangle) < std::tie(b.high, b.triangle);
+        });
 }
 
 /// Two triangles that share an edge.
@@ -47,11 +52,16 @@ Pair pair_of(const std::vector<Vec3>& p, const EdgeOfTriangle& a, const EdgeOfTr
 
 }  // namespace
 
-MeshNeighbours::MeshNeighbours(const CasterMesh& caster)
+MeshNeighbours::MeshNeighbours(const CasterMesh& caster, int threads)
     : partners_(caster.mesh.triangles.size(), none) {
-    find_rings(caster);
-    pair_cells(caster);
-    pair_others(caster);
+    parallel_chunks(threads, 2, 1, [&](const Chunk& task) {
+        if (task.index == 0) {
+            find_rings(caster);
+        } else {
+            pair_cells(caster);
+            pair_others(caster);
+        }
+    });
 }
 
 std::span<const std::uint32_t> MeshNeighbours::round(std::uint32_t vertex) const {
@@ -59,19 +69,25 @@ std::span<const std::uint32_t> MeshNeighbours::round(std::uint32_t vertex) const
 }
 
 void MeshNeighbours::find_rings(const CasterMesh& caster) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-    for (std::size_t t = 0; t < caster.mesh.triangles.size(); ++t) {
+    using Way = std::array<std::uint32_t, 2>;  // from, to
+    std::vector<Way> ways;
+    ways.reserve(6 * caster.mesh.triangles.size());
+    for (std::uint32_t t = 0; t < caster.mesh.triangles.size(); ++t) {
         if (caster.left_out[t]) continue;
         const auto& corners = caster.mesh.triangles[t];
         for (std::size_t i = 0; i < 3; ++i) {
-            edges.emplace_back(corners[i], corners[(i + 1) % 3]);
-            edges.emplace_back(corners[(i + 1) % 3], corners[i]);
+            ways.push_back({corners[i], corners[(i + 1) % 3]});
+            ways.push_back({corners[(i + 1) % 3], corners[i]});
         }
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    ways = sort_by_number(
+        std::span<const Way>(ways), caster.mesh.positions.size(), 1,
+        [](const Way& way) { return way[0]; },
+        [](const Way& a, const Way& b) { return a[1] < b[1]; });
+    ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
     first_.assign(caster.mesh.positions.size() + 1, 0);
-    for (const auto& [from, to] : edges) {
+    vertices_.reserve(ways.size());
+    for (const auto& [from, to] : ways) {
         ++first_[from + 1];
         vertices_.push_back(to);
     }

@@ -13,8 +13,10 @@ class MeshNeighbours {
 public:
     static constexpr std::uint32_t none = ~0U;
 
-    explicit MeshNeighbours(const CasterMesh& caster);
+    explicit MeshNeighbours(const CasterMesh& caster, int threads = 1);
 
+    std::size_t vertex_count() const { return first_.size() - 1; }
+    std::size_t triangle_count() const { return partners_.size(); }
     /// Vertices that share an edge with this one, in ascending order.
     std::span<const std::uint32_t> round(std::uint32_t vertex) const;
     /// The other triangle of a pair, or none: the two of a grid's cell, and elsewhere neighbours paired

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <Eigen/Cholesky>
-#include <numeric>
 #include <optional>
 #include <vector>
 
+#include "beamtree/beams/pieces.h"
+#include "core/base/parallel.h"
 #include "core/math/frame.h"
 
 namespace caustics::beamtree {
@@ -17,6 +19,8 @@ namespace {
 // Below this share of the largest, a pivot says that the vertices round one do not tell its derivatives.
 constexpr double least_pivot = 1e-5;
 constexpr std::size_t fewest_neighbours = 5;
+// What threads take at a time.
+constexpr std::size_t together = 512;
 
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 // Of the first surface's height, the ray's place and its direction, by (u, v).
@@ -32,67 +36,72 @@ struct Derivatives {
 class SpreadFit {
 public:
     SpreadFit(const BeamSet& set, std::span<const RayOrigin> origins,
-              const MeshNeighbours& neighbours)
-        : set_(set), origins_(origins), neighbours_(neighbours) {
-        for (std::uint32_t ray = 0; ray < origins.size(); ++ray) {
-            const std::uint32_t vertex = origins[ray].vertex;
-            if (vertex == RayOrigin::no_vertex) continue;
-            if (vertex >= ray_of_.size()) ray_of_.resize(vertex + 1, Beam::none);
-            ray_of_[vertex] = ray;
-        }
-        join();
+              const MeshNeighbours& neighbours, int threads)
+        : set_(set),
+          origins_(origins),
+          neighbours_(neighbours),
+          ray_of_(neighbours.vertex_count(), Beam::none),
+          group_(origins.size()) {
+        join(threads);
     }
 
-    RaySpread spread(std::uint32_t ray) {
+    /// Of a ray; `around` is scratch.
+    RaySpread spread(std::uint32_t ray, std::vector<std::uint32_t>& around) const {
         const RayOrigin& origin = origins_[ray];
         if (origin.vertex == RayOrigin::no_vertex) return {};
         const Frame frame(origin.normal);
-        around_.clear();
-        add_round(origin.vertex, ray);
-        if (around_.size() > fewest_neighbours)
-            if (const auto found = fit(ray, frame)) return spread(ray, frame, *found);
-        const std::size_t inner = around_.size();
-        for (std::size_t i = 0; i < inner; ++i) add_round(origins_[around_[i]].vertex, ray);
-        if (around_.size() >= fewest_neighbours)
-            if (const auto found = fit(ray, frame)) return spread(ray, frame, *found);
+        around.clear();
+        add_round(origin.vertex, ray, around);
+        if (around.size() > fewest_neighbours)
+            if (const auto found = fit(ray, frame, around)) return spread(ray, frame, *found);
+        const std::size_t inner = around.size();
+        for (std::size_t i = 0; i < inner; ++i) add_round(origins_[around[i]].vertex, ray, around);
+        if (around.size() >= fewest_neighbours)
+            if (const auto found = fit(ray, frame, around)) return spread(ray, frame, *found);
         return {};
     }
 
 private:
     // Rays that whole beams join have gone the same way, over no crease.
-    void join() {
-        group_.resize(origins_.size());
-        std::iota(group_.begin(), group_.end(), 0U);
-        for (const Beam& beam : set_.beams)
-            for (std::size_t i = 1; i < 4; ++i)
-                if (beam.corners[i] != Beam::none)
-                    group_[group(beam.corners[i])] = group(beam.corners[0]);
-    }
-    std::uint32_t group(std::uint32_t ray) {
-        while (group_[ray] != ray) ray = group_[ray] = group_[group_[ray]];
-        return ray;
+    void join(int threads) {
+        Pieces groups(origins_.size());
+        parallel_chunks(threads, set_.beams.size(), together, [&](const Chunk& chunk) {
+            for (std::size_t i = chunk.first; i < chunk.end; ++i)
+                for (const std::uint32_t corner : set_.beams[i].corners)
+                    if (corner != Beam::none) groups.join(corner, set_.beams[i].corners[0]);
+        });
+        parallel_chunks(threads, origins_.size(), together, [&](const Chunk& chunk) {
+            for (auto ray = static_cast<std::uint32_t>(chunk.first); ray < chunk.end; ++ray) {
+                group_[ray] = groups.find(ray);
+                // Rays of one set that start at one vertex are one.
+                const std::uint32_t vertex = origins_[ray].vertex;
+                if (vertex != RayOrigin::no_vertex) ray_of_[vertex] = ray;
+            }
+        });
     }
 
     // Rays beside a vertex that have gone the same way as `ray`.
-    void add_round(std::uint32_t vertex, std::uint32_t ray) {
+    void add_round(std::uint32_t vertex, std::uint32_t ray,
+                   std::vector<std::uint32_t>& around) const {
         for (const std::uint32_t other : neighbours_.round(vertex)) {
-            const std::uint32_t found = other < ray_of_.size() ? ray_of_[other] : Beam::none;
-            if (found == Beam::none || found == ray || group(found) != group(ray)) continue;
-            if (std::find(around_.begin(), around_.end(), found) == around_.end())
-                around_.push_back(found);
+            const std::uint32_t found = ray_of_[other];
+            if (found == Beam::none || found == ray || group_[found] != group_[ray]) continue;
+            if (std::find(around.begin(), around.end(), found) == around.end())
+                around.push_back(found);
         }
     }
 
     // By least squares through the ray's own values.
-    std::optional<Derivatives> fit(std::uint32_t ray, const Frame& frame) const {
+    std::optional<Derivatives> fit(std::uint32_t ray, const Frame& frame,
+                                   std::span<const std::uint32_t> around) const {
         const Vec3& centre = origins_[ray].position;
         float reach = 0;
-        for (const std::uint32_t other : around_)
+        for (const std::uint32_t other : around)
             reach = std::max(reach, (origins_[other].position - centre).norm());
         if (!(reach > 0)) return {};
         Matrix5 left = Matrix5::Zero();
         Matrix57 right = Matrix57::Zero();
-        for (const std::uint32_t other : around_) {
+        for (const std::uint32_t other : around) {
             const Vec3d away =
                 (origins_[other].position - centre).cast<double>() / static_cast<double>(reach);
             const double u = away.dot(frame.s.cast<double>());
@@ -146,56 +155,64 @@ private:
     std::span<const RayOrigin> origins_;
     const MeshNeighbours& neighbours_;
     std::vector<std::uint32_t> ray_of_;  ///< one a vertex
-    std::vector<std::uint32_t>
-        group_;  ///< one a ray: another of its group, at last the group itself
-    std::vector<std::uint32_t> around_;
+    std::vector<std::uint32_t> group_;   ///< one a ray: the same for all of a group
 };
 
+bool is_whole(const Beam& beam, std::span<const RayOrigin> origins) {
+    return beam.triangle_count() == 1 &&
+           std::all_of(beam.corners.begin(), beam.corners.begin() + 3, [&](std::uint32_t ray) {
+               return origins[ray].vertex != RayOrigin::no_vertex;
+           });
+}
+
 std::vector<std::uint32_t> find_partners(const BeamSet& set, std::span<const RayOrigin> origins,
-                                         const MeshNeighbours& neighbours) {
-    const auto is_whole = [&](const Beam& beam) {
-        return beam.triangle_count() == 1 &&
-               std::all_of(beam.corners.begin(), beam.corners.begin() + 3, [&](std::uint32_t ray) {
-                   return origins[ray].vertex != RayOrigin::no_vertex;
-               });
-    };
-    std::vector<std::uint32_t> beam_of;
-    for (std::uint32_t i = 0; i < set.beams.size(); ++i) {
-        const Beam& beam = set.beams[i];
-        if (!is_whole(beam)) continue;
-        if (beam.triangle >= beam_of.size()) beam_of.resize(beam.triangle + 1, Beam::none);
-        beam_of[beam.triangle] = i;
-    }
-    std::vector<std::uint32_t> partners;
-    for (const Beam& beam : set.beams) {
-        const std::uint32_t triangle =
-            is_whole(beam) ? neighbours.partner(beam.triangle) : MeshNeighbours::none;
-        partners.push_back(triangle < beam_of.size() ? beam_of[triangle] : Beam::none);
-    }
+                                         const MeshNeighbours& neighbours, int threads) {
+    std::vector<std::uint8_t> whole(set.beams.size());
+    parallel_chunks(threads, whole.size(), together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i)
+            whole[i] = is_whole(set.beams[i], origins) ? 1 : 0;
+    });
+    std::vector<std::uint32_t> beam_of(neighbours.triangle_count(), Beam::none);
+    for (std::uint32_t i = 0; i < set.beams.size(); ++i)
+        if (whole[i] != 0) beam_of[set.beams[i].triangle] = i;
+    std::vector<std::uint32_t> partners(set.beams.size(), Beam::none);
+    parallel_chunks(threads, partners.size(), together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i) {
+            if (whole[i] == 0) continue;
+            const std::uint32_t triangle = neighbours.partner(set.beams[i].triangle);
+            if (triangle != MeshNeighbours::none) partners[i] = beam_of[triangle];
+        }
+    });
     return partners;
 }
 
-std::vector<bool> rays_of(const BeamSet& set, const std::vector<bool>& kept) {
-    std::vector<bool> rays(set.rays.size(), false);
-    for (std::size_t i = 0; i < set.beams.size(); ++i)
-        for (const std::uint32_t corner : set.beams[i].corners)
-            if (kept[i] && corner != Beam::none) rays[corner] = true;
+// One a ray: whether one of its beams is kept.
+std::vector<std::uint8_t> rays_of(const BeamSet& set, const std::vector<bool>& kept, int threads) {
+    std::vector<std::uint8_t> rays(set.rays.size());
+    parallel_chunks(threads, set.beams.size(), together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i)
+            for (const std::uint32_t corner : set.beams[i].corners)
+                if (kept[i] && corner != Beam::none)
+                    std::atomic_ref(rays[corner]).store(1, std::memory_order_relaxed);
+    });
     return rays;
 }
 
 }  // namespace
 
 void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
-            const std::vector<bool>& kept, const ProgressPart& part) {
-    const std::vector<bool> asked = rays_of(set, kept);
-    SpreadFit fit(set, origins, neighbours);
-    set.spreads.clear();
-    ProgressSteps steps(part, set.rays.size());
-    for (std::uint32_t ray = 0; ray < set.rays.size(); ++ray) {
-        set.spreads.push_back(asked[ray] ? fit.spread(ray) : RaySpread{});
-        steps.step();
-    }
-    set.partners = find_partners(set, origins, neighbours);
+            const std::vector<bool>& kept, int threads, const ProgressPart& part) {
+    const std::vector<std::uint8_t> asked = rays_of(set, kept, threads);
+    const SpreadFit fit(set, origins, neighbours, threads);
+    set.spreads.assign(set.rays.size(), {});
+    parallel_chunks(threads, set.rays.size(), together, [&](const Chunk& chunk) {
+        std::vector<std::uint32_t> around;
+        for (auto ray = static_cast<std::uint32_t>(chunk.first); ray < chunk.end; ++ray)
+            if (asked[ray] != 0) set.spreads[ray] = fit.spread(ray, around);
+        part.progress.add(part.share * static_cast<double>(chunk.end - chunk.first) /
+                          static_cast<double>(set.rays.size()));
+    });
+    set.partners = find_partners(set, origins, neighbours, threads);
 }
 
 }  // namespace caustics::beamtree

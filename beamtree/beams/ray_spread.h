@@ -16,6 +16,6 @@ namespace caustics::beamtree {
 /// vertex, or have too few neighbours that whole beams join to them, have no spread; nor those of which no beam
 /// is `kept` (one a beam).
 void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
-            const std::vector<bool>& kept, const ProgressPart& part);
+            const std::vector<bool>& kept, int threads, const ProgressPart& part);
 
 }  // namespace caustics::beamtree

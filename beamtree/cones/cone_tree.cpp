@@ -5,7 +5,7 @@
 
 #include "beamtree/cones/cone_merging.h"
 #include "beamtree/light/find_in_beam.h"
-#include "core/base/interrupt.h"
+#include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 
@@ -36,60 +36,121 @@ NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
     return rays;
 }
 
-ConeTree::ConeTree(const BeamSet& set, std::uint32_t set_index, const Hierarchy& hierarchy,
-                   const ConeTreeSettings& settings, const std::optional<Vec3>& fixed_normal)
-    : set_index_(set_index), fixed_normal_(fixed_normal), height_(hierarchy.height()) {
-    nodes_.resize(hierarchy.nodes.size());
-    const bool from_cones = settings.merging == ConeTreeSettings::Merging::cones;
-    const bool doubles = settings.bound == Bound::double_cone || settings.bound == Bound::hybrid;
-    const double threshold =
-        settings.bound == Bound::hybrid ? settings.spread_threshold * pi_d / 180 : 0;
-    std::vector<MergedCone> merged(from_cones ? nodes_.size() : 0);
-    // Children come after their parents.
-    for (std::size_t i = nodes_.size(); i-- > 0;) {
-        throw_if_interrupted();
-        const Hierarchy::Node& from = hierarchy.nodes[i];
-        Node& node = nodes_[i];
+/// The bounds of some nodes, numbered for themselves.
+struct ConeTree::Bounds {
+    std::vector<SweptSphere> swept;
+    std::vector<DoubleCone> doubles;
+    std::vector<SingleCone> singles;
+};
+
+/// Bounds nodes of a hierarchy.
+class ConeTree::Bounder {
+public:
+    Bounder(const BeamSet& set, const Hierarchy& hierarchy, const ConeTreeSettings& settings)
+        : set_(set),
+          hierarchy_(hierarchy),
+          settings_(settings),
+          doubles_(settings.bound == Bound::double_cone || settings.bound == Bound::hybrid),
+          threshold_(settings.bound == Bound::hybrid ? settings.spread_threshold * pi_d / 180 : 0) {
+    }
+
+    // From the lowest nodes up, one row after the other [CC95 (4)] to [CC95 (10)].
+    void merge_cones(int threads) {
+        const std::vector<Hierarchy::Node>& nodes = hierarchy_.nodes;
+        std::vector<std::vector<std::uint32_t>> rows(hierarchy_.height());
+        std::vector<std::uint32_t> depth(nodes.size(), 0);
+        for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+            rows[depth[i]].push_back(i);
+            for (std::uint32_t c = 0; c < nodes[i].child_count; ++c)
+                depth[nodes[i].first_child + c] = depth[i] + 1;
+        }
+        merged_.resize(nodes.size());
+        for (std::size_t row = rows.size(); row-- > 0;)
+            parallel_chunks(threads, rows[row].size(), 64, [&](const Chunk& chunk) {
+                for (std::size_t k = chunk.first; k < chunk.end; ++k) merge(rows[row][k]);
+            });
+    }
+
+    void add(std::size_t number, Node& node, Bounds& bounds) const {
+        const Hierarchy::Node& from = hierarchy_.nodes[number];
         node.first_child = from.first_child;
         node.child_count = from.child_count;
-        const std::span<const std::uint32_t> beams(hierarchy.order.data() + from.first_beam,
-                                                   from.beam_count);
-        node.beam = beams.front();
-        const NodeRays rays = rays_of(set, beams);
-        Cap cap;
-        DoubleCone wide;
-        if (from_cones) {
-            merged[i] =
-                from.child_count == 0
-                    ? leaf_cone(rays, settings.reach)
-                    : merge_cones(std::span(merged).subspan(from.first_child, from.child_count),
-                                  rays, settings.reach);
-            cap = merged[i].cap;
-            wide = merged[i].wide;
-        } else {
-            cap = smallest_cap(rays.directions);
-        }
-        node.kind = settings.bound;
-        if (doubles) {
-            node.kind = settings.bound == Bound::hybrid && cap.angle() < threshold
+        node.beam = hierarchy_.order[from.first_beam];
+        const NodeRays rays = rays_below(number);
+        const bool from_cones = !merged_.empty();
+        const Cap cap = from_cones ? merged_[number].cap : smallest_cap(rays.directions);
+        node.kind = settings_.bound;
+        if (doubles_)
+            node.kind = settings_.bound == Bound::hybrid && cap.angle() < threshold_
                             ? Bound::single
                             : Bound::double_cone;
-            if (node.kind == Bound::double_cone && !from_cones)
-                wide = double_cone(rays, cap, settings.reach);
+        if (node.kind == Bound::single) {
+            node.bound = static_cast<std::uint32_t>(bounds.singles.size());
+            bounds.singles.emplace_back(rays, cap);
+            return;
         }
-        add_bound(node, rays, cap, wide);
+        node.bound = static_cast<std::uint32_t>(bounds.swept.size());
+        bounds.swept.emplace_back(rays, cap);
+        if (node.kind == Bound::double_cone)
+            bounds.doubles.push_back(from_cones ? merged_[number].wide
+                                                : double_cone(rays, cap, settings_.reach));
     }
+
+private:
+    NodeRays rays_below(std::size_t number) const {
+        const Hierarchy::Node& node = hierarchy_.nodes[number];
+        return rays_of(set_, std::span(hierarchy_.order).subspan(node.first_beam, node.beam_count));
+    }
+    void merge(std::uint32_t number) {
+        const Hierarchy::Node& node = hierarchy_.nodes[number];
+        const NodeRays rays = rays_below(number);
+        merged_[number] = node.child_count == 0
+                              ? leaf_cone(rays, settings_.reach)
+                              : beamtree::merge_cones(
+                                    std::span(merged_).subspan(node.first_child, node.child_count),
+                                    rays, settings_.reach);
+    }
+
+    const BeamSet& set_;
+    const Hierarchy& hierarchy_;
+    const ConeTreeSettings& settings_;
+    bool doubles_;
+    double threshold_;
+    std::vector<MergedCone> merged_;  ///< one a node where cones are merged
+};
+
+ConeTree::ConeTree(const BeamSet& set, std::uint32_t set_index, const Hierarchy& hierarchy,
+                   const ConeTreeSettings& settings, const std::optional<Vec3>& fixed_normal,
+                   int threads)
+    : set_index_(set_index), fixed_normal_(fixed_normal), height_(hierarchy.height()) {
+    nodes_.resize(hierarchy.nodes.size());
+    Bounder bounder(set, hierarchy, settings);
+    if (settings.merging == ConeTreeSettings::Merging::cones) bounder.merge_cones(threads);
+    // The first nodes have most beams: they go one by one, the others many at a time.
+    constexpr std::size_t alone = 256;
+    constexpr std::size_t together = 128;
+    const std::size_t lone = std::min(alone, nodes_.size());
+    const std::size_t parts = lone + chunk_count(nodes_.size() - lone, together);
+    const auto first_of = [&](std::size_t part) {
+        return part < lone ? part : std::min(nodes_.size(), lone + (part - lone) * together);
+    };
+    std::vector<Bounds> bounds(parts);
+    parallel_chunks(threads, parts, 1, [&](const Chunk& chunk) {
+        const std::size_t end = first_of(chunk.index + 1);
+        for (std::size_t i = first_of(chunk.index); i < end; ++i)
+            bounder.add(i, nodes_[i], bounds[chunk.index]);
+    });
+    for (std::size_t part = 0; part < parts; ++part)
+        append(bounds[part], first_of(part), first_of(part + 1));
 }
 
-void ConeTree::add_bound(Node& node, const NodeRays& rays, const Cap& cap, const DoubleCone& wide) {
-    if (node.kind == Bound::single) {
-        node.bound = static_cast<std::uint32_t>(singles_.size());
-        singles_.emplace_back(rays, cap);
-        return;
-    }
-    node.bound = static_cast<std::uint32_t>(swept_.size());
-    swept_.emplace_back(rays, cap);
-    if (node.kind == Bound::double_cone) doubles_.push_back(wide);
+void ConeTree::append(const Bounds& bounds, std::size_t first_node, std::size_t end_node) {
+    for (std::size_t i = first_node; i < end_node; ++i)
+        nodes_[i].bound += static_cast<std::uint32_t>(
+            nodes_[i].kind == Bound::single ? singles_.size() : swept_.size());
+    singles_.insert(singles_.end(), bounds.singles.begin(), bounds.singles.end());
+    swept_.insert(swept_.end(), bounds.swept.begin(), bounds.swept.end());
+    doubles_.insert(doubles_.end(), bounds.doubles.begin(), bounds.doubles.end());
 }
 
 void ConeTree::find(const BeamSet& set, const Vec3& point, const Vec3& normal,

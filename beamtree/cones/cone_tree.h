@@ -29,7 +29,8 @@ public:
     /// `beams`: numbers into the set. With `fixed_normal` beams are tested on planes across it
     /// (it points against their light), otherwise on the plane across the receiver's normal.
     ConeTree(const BeamSet& set, std::uint32_t set_index, const Hierarchy& hierarchy,
-             const ConeTreeSettings& settings, const std::optional<Vec3>& fixed_normal);
+             const ConeTreeSettings& settings, const std::optional<Vec3>& fixed_normal,
+             int threads = 1);
 
     /// Appends the hits at a receiver point with its unit normal. `stack` is scratch.
     void find(const BeamSet& set, const Vec3& point, const Vec3& normal,
@@ -49,7 +50,9 @@ private:
         std::uint32_t bound = 0;  ///< into the arrays of its kind
         Bound kind = Bound::single;
     };
-    void add_bound(Node& node, const NodeRays& rays, const Cap& cap, const DoubleCone& wide);
+    struct Bounds;
+    class Bounder;
+    void append(const Bounds& bounds, std::size_t first_node, std::size_t end_node);
     bool may_hold(const Node& node, const BeamSet& set, const TestPlane& plane) const;
     bool single_holds(const Node& node, const BeamSet& set, const Vec3d& p) const;
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/interrupt.h"
+#include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -14,6 +15,8 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 // What float arithmetic may lose of a place, as a share of the largest coordinate: eleven roundings
 // of 2^-24 or so.
 constexpr float rounding = 1e-6F;
+// Triangles of a branch, which one thread makes.
+constexpr std::uint32_t branch_size = 8192;
 
 SliceBox box_of(const SlicedTriangle& triangle) {
     SliceBox box;
@@ -43,20 +46,87 @@ public:
         margin_ = rounding * largest;
     }
 
-    SliceNodes run() {
-        made_.root = make(0, 1).reference;
-        made_.leaf_width /= static_cast<float>(made_.leaves.size());
-        made_.travel /= static_cast<float>(triangles_.size());
-        return std::move(made_);
+    SliceNodes run(int threads) {
+        find_branches(0, 1);
+        parallel_chunks(threads, branches_.size(), 1, [&](const Chunk& chunk) {
+            Branch& branch = branches_[chunk.index];
+            branch.root = make(branch.node, branch.depth, branch.made);
+        });
+        SliceNodes all;
+        Branch* next = branches_.data();
+        all.root = join(0, 1, next, all).reference;
+        copy_branches(threads, all);
+        all.leaf_width /= static_cast<float>(all.leaves.size());
+        all.travel /= static_cast<float>(triangles_.size());
+        return all;
     }
 
 private:
     /// A node or leaf, and what bounds it.
     struct Made {
-        std::uint32_t reference;
+        std::uint32_t reference = 0;
         SliceBox box;
         float begun_from = infinity;
     };
+    /// A part of the tree that one thread makes, with numbers of its own.
+    struct Branch {
+        std::uint32_t node;
+        std::uint32_t depth;
+        SliceNodes made;
+        Made root;
+        std::size_t first_node = 0;  ///< in the whole tree
+        std::size_t first_leaf = 0;
+    };
+
+    bool is_branch(std::uint32_t node) const { return size(node) <= branch_size; }
+
+    // In the order of a walk from left to right.
+    void find_branches(std::uint32_t node, std::uint32_t depth) {
+        if (is_branch(node)) {
+            branches_.push_back({node, depth, {}, {}});
+            return;
+        }
+        for (const std::uint32_t child : children_of(node)) find_branches(child, depth + 1);
+    }
+
+    static std::uint32_t moved(std::uint32_t reference, const Branch& branch) {
+        const bool is_leaf = (reference & slice_leaf_bit) != 0;
+        return reference +
+               static_cast<std::uint32_t>(is_leaf ? branch.first_leaf : branch.first_node);
+    }
+
+    // The nodes above the branches, with room for these in the order of the whole.
+    Made join(std::uint32_t node, std::uint32_t depth, Branch*& next, SliceNodes& all) {
+        if (!is_branch(node))
+            return make_node(
+                node, all, [&](std::uint32_t child) { return join(child, depth + 1, next, all); });
+        Branch& branch = *next++;
+        branch.first_node = all.nodes.size();
+        branch.first_leaf = all.leaves.size();
+        all.nodes.resize(all.nodes.size() + branch.made.nodes.size());
+        all.leaves.resize(all.leaves.size() + branch.made.leaves.size());
+        all.height = std::max(all.height, branch.made.height);
+        all.leaf_width += branch.made.leaf_width;
+        all.travel += branch.made.travel;
+        branch.root.reference = moved(branch.root.reference, branch);
+        return branch.root;
+    }
+
+    void copy_branches(int threads, SliceNodes& all) const {
+        parallel_chunks(threads, branches_.size(), 1, [&](const Chunk& chunk) {
+            const Branch& branch = branches_[chunk.index];
+            const auto at = [](auto& things, std::size_t first) {
+                return things.begin() + static_cast<std::ptrdiff_t>(first);
+            };
+            std::ranges::copy(branch.made.leaves, at(all.leaves, branch.first_leaf));
+            std::ranges::transform(branch.made.nodes, at(all.nodes, branch.first_node),
+                                   [&](SliceNode node) {
+                                       for (std::uint32_t& child : node.child)
+                                           child = moved(child, branch);
+                                       return node;
+                                   });
+        });
+    }
 
     static std::uint32_t reference(std::size_t number, std::uint32_t taken) {
         return static_cast<std::uint32_t>(number) | (taken - 1) << slice_count_shift;
@@ -67,18 +137,24 @@ private:
         return first_of_[n.first_beam + n.beam_count] - first_of_[n.first_beam];
     }
 
-    Made make(std::uint32_t node, std::uint32_t depth) {
+    Made make(std::uint32_t node, std::uint32_t depth, SliceNodes& made) const {
         throw_if_interrupted();
-        made_.height = std::max(made_.height, depth);
-        if (size(node) <= slice_width) return make_leaf(node);
-        const std::size_t index = made_.nodes.size();
-        made_.nodes.emplace_back();
+        made.height = std::max(made.height, depth);
+        if (size(node) <= slice_width) return make_leaf(node, made);
+        return make_node(node, made,
+                         [&](std::uint32_t child) { return make(child, depth + 1, made); });
+    }
+
+    template <typename Make>
+    Made make_node(std::uint32_t node, SliceNodes& into, const Make& make_child) const {
+        const std::size_t index = into.nodes.size();
+        into.nodes.emplace_back();
         SliceNode wide{};
         const std::vector<std::uint32_t> children = children_of(node);
         const auto taken = static_cast<std::uint32_t>(children.size());
         Made made{reference(index, taken), {}};
         for (std::uint32_t i = 0; i < taken; ++i) {
-            const Made below = make(children[i], depth + 1);
+            const Made below = make_child(children[i]);
             made.box.extend(below.box);
             made.begun_from = std::min(made.begun_from, below.begun_from);
             put(below, wide, i);
@@ -88,7 +164,7 @@ private:
                 wide.low[axis][i] = infinity;
                 wide.high[axis][i] = -infinity;
             }
-        made_.nodes[index] = wide;
+        into.nodes[index] = wide;
         return made;
     }
 
@@ -126,12 +202,12 @@ private:
         wide.child[i] = child.reference;
     }
 
-    Made make_leaf(std::uint32_t node) {
+    Made make_leaf(std::uint32_t node, SliceNodes& into) const {
         const std::uint32_t first = first_of_[from_.nodes[node].first_beam];
         const std::uint32_t taken = size(node);
         SliceLeaf leaf{};
         std::fill_n(leaf.slack, slice_width, -infinity);
-        Made made{reference(made_.leaves.size(), taken) | slice_leaf_bit, {}};
+        Made made{reference(into.leaves.size(), taken) | slice_leaf_bit, {}};
         for (std::uint32_t i = 0; i < taken; ++i) {
             const SlicedTriangle& triangle = triangles_[first + i];
             const SliceBox box = box_of(triangle);
@@ -146,7 +222,7 @@ private:
                 }
                 width = std::max(width, widest(box, axis));
             }
-            made_.travel += std::hypot(leaf.growth[0][0][i], leaf.growth[0][1][i]);
+            into.travel += std::hypot(leaf.growth[0][0][i], leaf.growth[0][1][i]);
             // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin; and
             // moving the point by the reach adds the reach times both extents of the edge.
             leaf.slack[i] = margin_ * (5 * width + 4 * (margin_ + reach_)) + 2 * reach_ * width;
@@ -160,8 +236,8 @@ private:
             leaf.beam[i] = triangle.beam;
         }
         for (const int plane : {0, 1})
-            made_.leaf_width += std::max(made.box.size(0, plane), made.box.size(1, plane)) / 2;
-        made_.leaves.push_back(leaf);
+            into.leaf_width += std::max(made.box.size(0, plane), made.box.size(1, plane)) / 2;
+        into.leaves.push_back(leaf);
         return made;
     }
 
@@ -170,14 +246,14 @@ private:
     std::vector<std::uint32_t> first_of_;  ///< triangles of the beams in their order, and the end
     float reach_;
     float margin_ = 0;
-    SliceNodes made_;
+    std::vector<Branch> branches_;
 };
 
 }  // namespace
 
-SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles,
-                 float reach) {
-    return Widener(hierarchy, triangles, reach).run();
+SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles, float reach,
+                 int threads) {
+    return Widener(hierarchy, triangles, reach).run(threads);
 }
 
 }  // namespace caustics::beamtree

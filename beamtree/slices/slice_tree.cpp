@@ -10,11 +10,13 @@
 #include "beamtree/slices/beam_square.h"
 #include "beamtree/slices/slice_build.h"
 #include "beamtree/slices/slice_hierarchy.h"
+#include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 namespace {
 
-constexpr float rounding = 1e-6F;  // more than a share is rounded by
+constexpr float rounding = 1e-6F;       // more than a share is rounded by
+constexpr std::size_t together = 1024;  // beams or rays that threads take at a time
 
 WalkSlices walk_for([[maybe_unused]] Isa isa) {
 #ifdef CAUSTICS_X86_KERNELS
@@ -57,17 +59,22 @@ SliceFrame frame_of(const SlicedBeams& from) {
 /// The beams' rays on the planes.
 class Slicer {
 public:
-    Slicer(const SlicedBeams& from, const SliceFrame& frame)
+    Slicer(const SlicedBeams& from, const SliceFrame& frame, int threads)
         : from_(from), frame_(frame), slices_(from.sets.size()), drifts_(from.sets.size()) {
-        const float unknown = std::numeric_limits<float>::quiet_NaN();
+        std::vector<std::vector<std::uint8_t>> asked(from.sets.size());
         for (const BeamNumber& number : from.beams) {
-            const std::vector<VertexRay>& rays = from.sets[number.set].rays;
-            std::vector<RaySlices>& of_set = slices_[number.set];
-            of_set.resize(rays.size(), {unknown});
-            drifts_[number.set].resize(rays.size());
-            for_each_ray(from, number, [&](std::uint32_t ray) {
-                if (std::isnan(of_set[ray][0]))
-                    slice(from.sets[number.set], ray, of_set[ray], drifts_[number.set][ray]);
+            std::vector<std::uint8_t>& of_set = asked[number.set];
+            if (of_set.empty()) of_set.resize(from.sets[number.set].rays.size());
+            for_each_ray(from, number, [&](std::uint32_t ray) { of_set[ray] = 1; });
+        }
+        for (std::size_t set = 0; set < asked.size(); ++set) {
+            slices_[set].resize(asked[set].size());
+            drifts_[set].resize(asked[set].size());
+            parallel_chunks(threads, asked[set].size(), together, [&](const Chunk& chunk) {
+                for (std::size_t i = chunk.first; i < chunk.end; ++i)
+                    if (asked[set][i] != 0)
+                        slice(from.sets[set], static_cast<std::uint32_t>(i), slices_[set][i],
+                              drifts_[set][i]);
             });
         }
     }
@@ -80,12 +87,12 @@ public:
         return box;
     }
 
-    void add_triangles(const BeamNumber& number, std::uint32_t place,
-                       std::vector<SlicedTriangle>& triangles) const {
+    /// Writes those of one beam.
+    void triangles(const BeamNumber& number, std::uint32_t place, SlicedTriangle* to) const {
         const BeamSet& set = from_.sets[number.set];
         const Beam& beam = set.beams[number.beam];
         for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
-            SlicedTriangle triangle;
+            SlicedTriangle& triangle = to[i];
             const std::array<std::uint32_t, 3> corners = beam.triangle_corners(i);
             double highest = frame_.bottom();
             double lowest = frame_.top();
@@ -103,7 +110,6 @@ public:
             triangle.begun_from = static_cast<float>(frame_.share(highest)) - rounding;
             triangle.whole_from = static_cast<float>(frame_.share(lowest)) + rounding;
             triangle.beam = place;
-            triangles.push_back(triangle);
         }
     }
 
@@ -129,42 +135,58 @@ private:
 };
 
 // Sorts the beams by the hierarchy.
-Hierarchy split(SlicedBeams& from, const Slicer& slicer) {
-    std::vector<BoxedBeam> boxed;
-    boxed.reserve(from.beams.size());
+Hierarchy split(SlicedBeams& from, const Slicer& slicer, int threads) {
+    std::vector<BoxedBeam> boxed(from.beams.size());
     std::size_t most_triangles = 1;
-    for (std::uint32_t i = 0; i < from.beams.size(); ++i) {
-        const BeamNumber& number = from.beams[i];
-        boxed.push_back({slicer.box(number), i});
+    for (const BeamNumber& number : from.beams)
         most_triangles =
             std::max(most_triangles, from.sets[number.set].beams[number.beam].triangle_count());
-    }
-    Hierarchy tree = binned_slices(boxed, static_cast<std::uint32_t>(slice_width / most_triangles));
+    parallel_chunks(threads, boxed.size(), together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i)
+            boxed[i] = {slicer.box(from.beams[i]), static_cast<std::uint32_t>(i)};
+    });
+    Hierarchy tree =
+        binned_slices(boxed, static_cast<std::uint32_t>(slice_width / most_triangles), threads);
     std::vector<BeamNumber> sorted;
+    sorted.reserve(tree.order.size());
     for (const std::uint32_t place : tree.order) sorted.push_back(from.beams[place]);
     from.beams = std::move(sorted);
     return tree;
 }
 
+// Those of one beam side by side.
+std::vector<SlicedTriangle> triangles_of(const SlicedBeams& from, const Slicer& slicer,
+                                         int threads) {
+    std::vector<std::size_t> first = {0};
+    first.reserve(from.beams.size() + 1);
+    for (const BeamNumber& number : from.beams)
+        first.push_back(first.back() + from.sets[number.set].beams[number.beam].triangle_count());
+    std::vector<SlicedTriangle> triangles(first.back());
+    parallel_chunks(threads, from.beams.size(), together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i)
+            slicer.triangles(from.beams[i], static_cast<std::uint32_t>(i),
+                             triangles.data() + first[i]);
+    });
+    return triangles;
+}
+
 }  // namespace
 
-SliceTree::SliceTree(SlicedBeams beams, Isa isa) : SliceTree(std::move(beams), nullptr, isa) {}
+SliceTree::SliceTree(SlicedBeams beams, Isa isa, int threads)
+    : SliceTree(std::move(beams), nullptr, isa, threads) {}
 
-SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa)
-    : SliceTree(std::move(beams), &hierarchy, isa) {}
+SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa, int threads)
+    : SliceTree(std::move(beams), &hierarchy, isa, threads) {}
 
-SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa)
+SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa, int threads)
     : frame_(frame_of(beams)),
       half_footprint_(static_cast<double>(beams.footprint) / 2),
       plane_(Vec3::Zero(), beams.normal),
       walk_(walk_for(isa)) {
-    const Slicer slicer(beams, frame_);
-    const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer);
-    std::vector<SlicedTriangle> triangles;
-    triangles.reserve(beams.beams.size());
-    for (std::uint32_t place = 0; place < beams.beams.size(); ++place)
-        slicer.add_triangles(beams.beams[place], place, triangles);
-    SliceNodes made = widen(hierarchy, triangles, beams.footprint / 2);
+    const Slicer slicer(beams, frame_, threads);
+    const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer, threads);
+    SliceNodes made =
+        widen(hierarchy, triangles_of(beams, slicer, threads), beams.footprint / 2, threads);
     nodes_ = std::move(made.nodes);
     leaves_ = std::move(made.leaves);
     root_ = made.root;

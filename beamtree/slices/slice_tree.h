@@ -31,9 +31,9 @@ struct SlicedBeams {
 class SliceTree {
 public:
     /// Splits the beams by binned_slices.
-    SliceTree(SlicedBeams beams, Isa isa);
+    SliceTree(SlicedBeams beams, Isa isa, int threads = 1);
     /// With a hierarchy, in the order of which the beams are given.
-    SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa);
+    SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa, int threads = 1);
 
     /// Appends the hits at each point to the list of the same place. Points that follow each other
     /// and lie within half a leaf's width go through the nodes together. `sets` are those that the
@@ -51,7 +51,7 @@ public:
 
 private:
     struct Group;
-    SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa);
+    SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa, int threads);
     bool place(const ReceiverPoint& point, SlicePoint& placed) const;
     void find(const Group& group, std::span<const BeamSet> sets, std::vector<std::uint32_t>& stack,
               std::span<std::vector<BeamHit>> hits, SearchCounts& counts) const;

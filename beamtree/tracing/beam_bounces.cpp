@@ -5,6 +5,7 @@
 #include "beamtree/beams/ray_spread.h"
 #include "beamtree/tracing/kept_beams.h"
 #include "beamtree/tracing/next_bounce.h"
+#include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 constexpr double set_over_beam = 0.1;
 // Of the work on a level and all after it, that on the level itself.
 constexpr double own = 0.3;
+// What threads take at a time.
+constexpr std::size_t beams_together = 1024;
 
 double flux_of(const BeamSet& set) {
     double sum = 0;
@@ -49,7 +52,7 @@ public:
         if (goes_on) {
             NextSets next =
                 next_sets(scene_, boxes_, surface_, level, {settings_.prune * mean_flux, budget_},
-                          traced_.balance, part.of(own));
+                          traced_.balance, settings_.threads, part.of(own));
             const double beams = count_of(next.sets);
             for (Level& one : next.sets) {
                 const double flux = flux_of(one.traced.set);
@@ -63,8 +66,7 @@ public:
                 }
             }
             kept = std::move(next.stays);
-            for (std::size_t i = 0; i < kept.size(); ++i)
-                kept[i] = kept[i] || comes_near_a_receiver(level, set.beams[i]);
+            keep_near_receivers(level, kept);
         }
         if (budget_.is_over()) {
             forget();
@@ -73,7 +75,8 @@ public:
         add_drifts(level, kept);
         traced_.unreceived += leave_out_unreceived(kept, set, boxes_, settings_);
         if (extras_.neighbours != nullptr)
-            refine(set, level.traced.origins, *extras_.neighbours, kept, part.of(goes_on ? 0 : 1));
+            refine(set, level.traced.origins, *extras_.neighbours, kept, settings_.threads,
+                   part.of(goes_on ? 0 : 1));
         keep_only(set, kept);
         traced_.sets[place] = std::move(set);
     }
@@ -85,6 +88,14 @@ private:
 
     void add_drifts(Level& level, const std::vector<bool>& kept) {
         if (extras_.drift != nullptr) traced_.drift.add(extras_.drift->add_to(level, kept));
+    }
+
+    void keep_near_receivers(const Level& level, std::vector<bool>& kept) const {
+        static_assert(beams_together % 64 == 0);  // so that chunks share no word of the flags
+        parallel_chunks(settings_.threads, kept.size(), beams_together, [&](const Chunk& chunk) {
+            for (std::size_t i = chunk.first; i < chunk.end; ++i)
+                if (!kept[i]) kept[i] = comes_near_a_receiver(level, level.traced.set.beams[i]);
+        });
     }
 
     bool comes_near_a_receiver(const Level& level, const Beam& beam) const {
@@ -146,16 +157,20 @@ std::vector<Departure> BeamBounces::first_departures(const TracedSet& first) con
     const std::uint32_t shape = surface_.caster().shape;
     std::vector<Departure> departures;
     for (const RayOrigin& origin : first.origins) departures.push_back({shape, origin.normal, 0});
+    const std::vector<Beam>& beams = first.set.beams;
+    std::vector<float> at_vertices(beams.size());
+    parallel_chunks(settings_.threads, beams.size(), beams_together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i)
+            at_vertices[i] = surface_.corner_offset(beams[i].triangle);
+    });
     // Points between vertices lie below an exact shape's surface.
-    for (const Beam& beam : first.set.beams) {
-        const float at_vertices = surface_.corner_offset(beam.triangle);
-        for (const std::uint32_t corner : beam.corners) {
+    for (std::size_t i = 0; i < beams.size(); ++i)
+        for (const std::uint32_t corner : beams[i].corners) {
             if (corner == Beam::none) continue;
             const bool between = first.origins[corner].vertex == RayOrigin::no_vertex;
             float& offset = departures[corner].offset;
-            offset = std::max(offset, between ? beam.offset : at_vertices);
+            offset = std::max(offset, between ? beams[i].offset : at_vertices[i]);
         }
-    }
     return departures;
 }
 

@@ -20,6 +20,10 @@ public:
     void add(const BeamBudget& other);
     /// Beams with less light [W] are too many. Rises with their number.
     double least() const { return least_; }
+    /// Whether so many more beams could be counted and all be kept.
+    bool has_room_for(std::uint64_t beams) const { return beams <= most_ - total_; }
+    /// How many are kept.
+    std::uint64_t count() const { return total_; }
     /// Whether beams that were counted are too many.
     bool is_over() const { return is_over_; }
     /// Whether all that was counted has so much light.

@@ -26,9 +26,6 @@ struct Level {
     /// One a beam, but for the first level: the beam it comes from, and a place where its light was bent.
     std::vector<std::uint32_t> parents;
     std::vector<RayArrival> places;
-    std::vector<std::uint32_t>
-        ray_of_parent;  ///< for rays of the parent: the one that continues it here
-
     /// One a beam, or none where all are 1: what division for detail (piece_detail.h) has left of the polygon.
     std::vector<float> shares;
     /// Of its beams, were the media clear and they not divided: what they are worth following for [W].

@@ -9,6 +9,10 @@
 namespace caustics::beamtree {
 namespace {
 
+// Casters with so many triangles are traced one after the other, each on all threads; so are few of them.
+constexpr std::size_t large = 2048;
+constexpr std::size_t few = 8;
+
 // One light and caster may need more than its even share, but all together are not counted much more often than
 // there are beams in the end.
 BeamBudget part_of_budget(std::uint64_t most, std::size_t parts, double least) {
@@ -35,7 +39,7 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
                             const RunOptions& options) {
     std::vector<MeshNeighbours> neighbours;
     if (settings.intensity == Intensity::refined)
-        for (const CasterMesh& caster : casters) neighbours.emplace_back(caster);
+        for (const CasterMesh& caster : casters) neighbours.emplace_back(caster, options.threads);
     const bool asks_boxes = settings.max_bounces > 1 || settings.receiver_margin;
     const SceneBoxes boxes = asks_boxes ? scene_boxes(scene) : SceneBoxes{};
     std::vector<TracedBeams> parts(lights.size() * casters.size());
@@ -45,13 +49,24 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
     const auto trace = [&](const std::vector<std::size_t>& which) {
         TraceProgress progress(options);
         const ProgressPart one{progress, 1 / static_cast<double>(which.size())};
-        parallel_for(options.threads, which.size(), [&](std::size_t k, std::size_t) {
-            const std::size_t i = which[k];
+        const auto part = [&](std::size_t i, int threads) {
             const std::size_t caster = i % casters.size();
+            TraceSettings own = settings;
+            own.threads = threads;
             parts[i] = trace_beams(scene, boxes, casters[caster],
                                    neighbours.empty() ? nullptr : &neighbours[caster],
-                                   lights[i / casters.size()], settings, budgets[i], one);
-        });
+                                   lights[i / casters.size()], own, budgets[i], one);
+        };
+        std::vector<std::size_t> small;
+        for (const std::size_t i : which) {
+            const bool is_large = casters[i % casters.size()].mesh.triangles.size() >= large;
+            if (is_large || which.size() < few)
+                part(i, options.threads);
+            else
+                small.push_back(i);
+        }
+        parallel_for(options.threads, small.size(),
+                     [&](std::size_t k, std::size_t) { part(small[k], 1); });
     };
     std::vector<std::size_t> every(parts.size());
     std::iota(every.begin(), every.end(), std::size_t{0});

@@ -9,6 +9,8 @@
 #include "beamtree/beams/ray_spread.h"
 #include "beamtree/tracing/cut_piece.h"
 #include "beamtree/tracing/kept_beams.h"
+#include "beamtree/tracing/set_chunk.h"
+#include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -17,6 +19,9 @@ namespace {
 constexpr int most_splits = 5;
 // How often an edge is halved to find where light stops going on.
 constexpr int bisections = 20;
+// What threads take at a time.
+constexpr std::size_t vertices_together = 1024;
+constexpr std::size_t polygons_together = 256;
 // The rays of a polygon's beam part by less than 60 degrees, those of a quartered one's by less
 // than 30.
 constexpr float widest_cosine = 0.5F;
@@ -41,45 +46,49 @@ bool part_widely(Corners corners, Event event, bool whole) {
     return false;
 }
 
+/// The vertices of a caster's mesh in its light.
+std::vector<MeshPoint> bent_vertices(const LitCaster& surface, int threads) {
+    const TriangleMesh& mesh = surface.caster().mesh;
+    std::vector<MeshPoint> vertices(mesh.positions.size());
+    parallel_chunks(threads, vertices.size(), vertices_together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i) {
+            vertices[i] = surface.bender().at(mesh.positions[i], mesh.normals[i]);
+            vertices[i].vertex = static_cast<std::uint32_t>(i);
+        }
+    });
+    return vertices;
+}
+
+/// Traces some polygons of a caster; keys of their rays are vertices.
 class BeamTracer {
 public:
-    explicit BeamTracer(const LitCaster& surface)
+    BeamTracer(const LitCaster& surface, const std::vector<MeshPoint>& vertices)
         : surface_(surface),
           bender_(surface.bender()),
           caster_(surface.caster()),
           mesh_(surface.caster().mesh),
-          near_light_(surface) {
-        for (const Event event : events) {
-            BeamSet& set = traced_[event].set;
-            set.light = surface.light();
-            set.caster = caster_.shape;
-            set.refracted = event == refraction;
-            set.path = {{caster_.shape, set.refracted}};
-            if (const auto* medium = std::get_if<Dielectric>(&surface.bsdf().model))
-                set.absorption = {medium->ext_absorption, medium->absorption};
-            ray_of_vertex_[event].assign(mesh_.positions.size(), Beam::none);
-        }
-    }
+          near_light_(surface),
+          vertices_(vertices) {}
 
-    std::array<TracedSet, 2> run(const ProgressPart& part) {
-        vertices_.reserve(mesh_.positions.size());
-        for (std::uint32_t i = 0; i < mesh_.positions.size(); ++i) {
-            vertices_.push_back(bender_.at(mesh_.positions[i], mesh_.normals[i]));
-            vertices_.back().vertex = i;
-        }
-        auto quad = caster_.quads.begin();
-        ProgressSteps steps(part, mesh_.triangles.size());
-        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
-            steps.step();
+    // Triangles from `first` to `end`; a quad belongs to its first one.
+    std::array<SetChunk, 2> run(std::size_t first, std::size_t end, const ProgressPart& part) {
+        const auto begins_before = [](const CellQuad& quad, std::size_t triangle) {
+            return quad.triangle < triangle;
+        };
+        auto quad =
+            std::lower_bound(caster_.quads.begin(), caster_.quads.end(), first, begins_before);
+        if (quad != caster_.quads.begin() && std::prev(quad)->triangle + 1 == first) ++first;
+        for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
             if (quad != caster_.quads.end() && quad->triangle == i) {
                 trace_quad(*quad++);
                 ++i;
-                steps.step();
             } else if (!caster_.left_out[i]) {
                 const Facing facing = surface_.facing(i);
                 for (const Event event : events) trace_triangle({i, 1, facing, event});
             }
         }
+        part.progress.add(part.share * static_cast<double>(end - first) /
+                          static_cast<double>(mesh_.triangles.size()));
         return std::move(traced_);
     }
 
@@ -172,7 +181,7 @@ private:
     }
 
     void add_beam(Corners corners, const Origin& origin) {
-        BeamSet& set = traced_[origin.event].set;
+        BeamSet& set = traced_[origin.event].traced.set;
         Beam beam;
         std::array<Spectrum, 2> flux = {black(), black()};
         for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
@@ -195,14 +204,18 @@ private:
 
     // Beams that meet in a vertex share its ray.
     std::uint32_t ray_of(const MeshPoint& point, Event event) {
+        SetChunk& chunk = traced_[event];
         const bool shared = point.vertex != MeshPoint::no_vertex;
-        if (shared && ray_of_vertex_[event][point.vertex] != Beam::none)
-            return ray_of_vertex_[event][point.vertex];
-        auto& [set, origins] = traced_[event];
-        set.rays.push_back({point.position, point.bent.direction[event]});
-        origins.push_back({point.position, point.normal, point.bent.weight[event], point.vertex});
-        const auto ray = static_cast<std::uint32_t>(set.rays.size() - 1);
-        if (shared) ray_of_vertex_[event][point.vertex] = ray;
+        if (shared) {
+            const std::uint32_t found = chunk.rays.find(point.vertex);
+            if (found != Beam::none) return found;
+        }
+        const auto ray = static_cast<std::uint32_t>(chunk.keys.size());
+        chunk.traced.set.rays.push_back({point.position, point.bent.direction[event]});
+        chunk.traced.origins.push_back(
+            {point.position, point.normal, point.bent.weight[event], point.vertex});
+        chunk.keys.push_back(point.vertex);
+        if (shared) chunk.rays.add(point.vertex, ray);
         return ray;
     }
 
@@ -211,10 +224,41 @@ private:
     const CasterMesh& caster_;
     const TriangleMesh& mesh_;
     NearLight near_light_;
-    std::vector<MeshPoint> vertices_;
-    std::array<std::vector<std::uint32_t>, 2> ray_of_vertex_;
-    std::array<TracedSet, 2> traced_;
+    const std::vector<MeshPoint>& vertices_;
+    std::array<SetChunk, 2> traced_;
 };
+
+// A set without beams.
+BeamSet set_of(const LitCaster& surface, Event event) {
+    BeamSet set;
+    set.light = surface.light();
+    set.caster = surface.caster().shape;
+    set.refracted = event == refraction;
+    set.path = {{set.caster, set.refracted}};
+    if (const auto* medium = std::get_if<Dielectric>(&surface.bsdf().model))
+        set.absorption = {medium->ext_absorption, medium->absorption};
+    return set;
+}
+
+// The first events of a caster's light, on all threads.
+std::array<TracedSet, 2> first_sets(const LitCaster& surface, int threads,
+                                    const ProgressPart& part) {
+    const std::vector<MeshPoint> vertices = bent_vertices(surface, threads);
+    const std::size_t triangles = surface.caster().mesh.triangles.size();
+    std::vector<std::array<SetChunk, 2>> chunks(chunk_count(triangles, polygons_together));
+    parallel_chunks(threads, triangles, polygons_together, [&](const Chunk& chunk) {
+        chunks[chunk.index] = BeamTracer(surface, vertices).run(chunk.first, chunk.end, part);
+    });
+    std::array<TracedSet, 2> sets;
+    for (const Event event : events) {
+        sets[event].set = set_of(surface, event);
+        std::vector<SetChunk*> of_event;
+        for (auto& chunk : chunks) of_event.push_back(&chunk[event]);
+        std::vector<Departure> no_departures;
+        join(of_event, vertices.size(), threads, sets[event], no_departures);
+    }
+    return sets;
+}
 
 }  // namespace
 
@@ -222,8 +266,7 @@ std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light) {
     const RunOptions options;
     TraceProgress progress(options);
-    std::array<TracedSet, 2> traced =
-        BeamTracer(LitCaster(scene, caster, light)).run({progress, 1});
+    std::array<TracedSet, 2> traced = first_sets(LitCaster(scene, caster, light), 1, {progress, 1});
     return {std::move(traced[0].set), std::move(traced[1].set)};
 }
 
@@ -235,7 +278,8 @@ TracedBeams trace_beams(const Scene& scene, const SceneBoxes& boxes, const Caste
     std::optional<BeamDrift> drift;
     if (light.drifts) drift.emplace(scene, caster, light);
     const bool follows = settings.max_bounces > 1 || drift;
-    std::array<TracedSet, 2> first = BeamTracer(surface).run(part.of(follows ? 0.1 : 0.9));
+    std::array<TracedSet, 2> first =
+        first_sets(surface, settings.threads, part.of(follows ? 0.1 : 0.9));
     TracedBeams traced;
     if (follows) {
         BeamBounces follower(scene, boxes, surface, {neighbours, drift ? &*drift : nullptr},
@@ -246,7 +290,8 @@ TracedBeams trace_beams(const Scene& scene, const SceneBoxes& boxes, const Caste
         for (auto& [set, origins] : first) {
             std::vector<bool> kept(set.beams.size(), true);
             traced.unreceived += leave_out_unreceived(kept, set, boxes, settings);
-            if (neighbours != nullptr) refine(set, origins, *neighbours, kept, part.of(0.05));
+            if (neighbours != nullptr)
+                refine(set, origins, *neighbours, kept, settings.threads, part.of(0.05));
             keep_only(set, kept);
             traced.sets.push_back(std::move(set));
         }

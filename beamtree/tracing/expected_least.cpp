@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "beamtree/beams/caster_sample.h"
+#include "core/base/parallel.h"
 #include "core/math/rng.h"
 
 namespace caustics::beamtree {
@@ -26,7 +27,11 @@ class Draws {
 public:
     Draws(const Scene& scene, const SceneBoxes& boxes, const std::vector<CasterMesh>& casters,
           const std::vector<LightSample>& lights, const RunOptions& options)
-        : scene_(scene), boxes_(boxes), lights_(lights), progress_(options) {
+        : scene_(scene),
+          boxes_(boxes),
+          lights_(lights),
+          threads_(options.threads),
+          progress_(options) {
         for (const CasterMesh& caster : casters) {
             polygons_ += static_cast<double>(caster.mesh.triangles.size());
             up_to_.push_back(polygons_);
@@ -50,19 +55,33 @@ public:
 
     /// Of the first events' beams on average [W].
     double mean_light() {
-        double light = 0;
-        double count = 0;
-        BeamBudget all;
-        for (const Lot& lot : drawn_)
-            for (const BeamSet& set : trace(lot, {}, all).sets)
+        struct Sum {
+            double light = 0;
+            double count = 0;
+        };
+        std::vector<Sum> sums(drawn_.size());
+        parallel_chunks(threads_, drawn_.size(), 1, [&](const Chunk& chunk) {
+            BeamBudget all;
+            for (const BeamSet& set : trace(drawn_[chunk.index], {}, all).sets)
                 for (const Beam& beam : set.beams) {
-                    light += static_cast<double>(beam.flux.mean());
-                    ++count;
+                    sums[chunk.index].light += static_cast<double>(beam.flux.mean());
+                    ++sums[chunk.index].count;
                 }
-        return count > 0 ? light / count : 0;
+        });
+        Sum all;
+        for (const Sum& sum : sums) {
+            all.light += sum.light;
+            all.count += sum.count;
+        }
+        return all.count > 0 ? all.light / all.count : 0;
     }
     void count(const TraceSettings& settings, BeamBudget& budget) {
-        for (const Lot& lot : drawn_) trace(lot, settings, budget);
+        std::vector<BeamBudget> counts(drawn_.size(),
+                                       BeamBudget(BeamBudget::no_limit, budget.least()));
+        parallel_chunks(threads_, drawn_.size(), 1, [&](const Chunk& chunk) {
+            trace(drawn_[chunk.index], settings, counts[chunk.index]);
+        });
+        for (const BeamBudget& one : counts) budget.add(one);
     }
 
 private:
@@ -79,6 +98,7 @@ private:
     const Scene& scene_;
     const SceneBoxes& boxes_;
     const std::vector<LightSample>& lights_;
+    int threads_;
     TraceProgress progress_;
     std::vector<double> up_to_;  ///< polygons of a caster and those before it
     double polygons_ = 0;

@@ -1,18 +1,26 @@
 #include "beamtree/tracing/kept_beams.h"
 
+#include <numeric>
+
+#include "core/base/parallel.h"
+
 namespace caustics::beamtree {
 
 std::uint64_t leave_out_unreceived(std::vector<bool>& kept, const BeamSet& set,
                                    const SceneBoxes& boxes, const TraceSettings& settings) {
-    std::uint64_t count = 0;
-    if (!settings.receiver_margin) return count;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-        if (!kept[i] || may_meet_receiver(boxes, set, set.beams[i], *settings.receiver_margin))
-            continue;
-        kept[i] = false;
-        ++count;
-    }
-    return count;
+    if (!settings.receiver_margin) return 0;
+    constexpr std::size_t together = 1024;
+    static_assert(together % 64 == 0);  // so that chunks share no word of the flags
+    std::vector<std::uint64_t> counts(chunk_count(kept.size(), together));
+    parallel_chunks(settings.threads, kept.size(), together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i) {
+            if (!kept[i] || may_meet_receiver(boxes, set, set.beams[i], *settings.receiver_margin))
+                continue;
+            kept[i] = false;
+            ++counts[chunk.index];
+        }
+    });
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
 void keep_only(BeamSet& set, const std::vector<bool>& kept) {

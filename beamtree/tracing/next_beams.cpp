@@ -34,26 +34,78 @@ float bulge(const BeamCorners& corners) {
 }
 
 // Beams that meet in a ray of the parent's share the one it goes on as.
-std::uint32_t ray_of(Level& level, const BeamCorner& corner, Event event) {
+std::uint32_t ray_of(SetChunk& chunk, const BeamCorner& corner, Event event) {
     const bool shared = corner.parent_ray != Beam::none;
-    if (shared && level.ray_of_parent[corner.parent_ray] != Beam::none)
-        return level.ray_of_parent[corner.parent_ray];
+    if (shared) {
+        const std::uint32_t found = chunk.rays.find(corner.parent_ray);
+        if (found != Beam::none) return found;
+    }
     const RayArrival& arrival = *corner.arrival;
-    const auto ray = static_cast<std::uint32_t>(level.traced.set.rays.size());
-    level.traced.set.rays.push_back({arrival.position, arrival.direction[event]});
+    const auto ray = static_cast<std::uint32_t>(chunk.keys.size());
+    chunk.traced.set.rays.push_back({arrival.position, arrival.direction[event]});
     RayOrigin origin = *corner.origin;
     origin.weight *= arrival.weight[event];
     origin.left *= arrival.left;
     if (!shared) origin.vertex = RayOrigin::no_vertex;
-    level.traced.origins.push_back(origin);
-    level.departures.push_back({arrival.shape, arrival.geometric_normal, arrival.offset});
-    if (shared) level.ray_of_parent[corner.parent_ray] = ray;
+    chunk.traced.origins.push_back(origin);
+    chunk.departures.push_back({arrival.shape, arrival.geometric_normal, arrival.offset});
+    chunk.keys.push_back(corner.parent_ray);
+    if (shared) chunk.rays.add(corner.parent_ray, ray);
     return ray;
+}
+
+// Without beams.
+Level level_after(const Scene& scene, const Level& parent, std::uint32_t shape, Event event) {
+    Level level;
+    level.parent = &parent;
+    level.event = event;
+    const BeamSet& before = parent.traced.set;
+    BeamSet& set = level.traced.set;
+    set.light = before.light;
+    set.caster = before.caster;
+    set.refracted = event == refraction;
+    set.path = before.path;
+    set.path.push_back({shape, event == refraction});
+    if (const auto* medium = std::get_if<Dielectric>(&scene.shapes()[shape].bsdf.model))
+        set.absorption = {medium->ext_absorption, medium->absorption};
+    return level;
+}
+
+void fill(Level& level, std::span<NextChunk* const> chunks, std::size_t parent_rays, int threads) {
+    std::vector<SetChunk*> beams;
+    for (NextChunk* chunk : chunks) {
+        beams.push_back(&chunk->beams);
+        level.parents.insert(level.parents.end(), chunk->parents.begin(), chunk->parents.end());
+        level.places.insert(level.places.end(), chunk->places.begin(), chunk->places.end());
+        level.shares.insert(level.shares.end(), chunk->shares.begin(), chunk->shares.end());
+        level.worth += chunk->worth;
+    }
+    join(beams, parent_rays, threads, level.traced, level.departures);
 }
 
 }  // namespace
 
-NextBeams::NextBeams(const Scene& scene, const LitCaster& surface, Level& level,
+std::vector<Level> join_levels(const Scene& scene, const Level& parent,
+                               std::vector<std::vector<NextChunk>> parts, int threads) {
+    std::vector<std::vector<NextChunk*>> kinds;
+    for (std::vector<NextChunk>& part : parts)
+        for (NextChunk& chunk : part) {
+            const auto same = [&](const std::vector<NextChunk*>& kind) {
+                return kind.front()->shape == chunk.shape && kind.front()->event == chunk.event;
+            };
+            const auto kind = std::ranges::find_if(kinds, same);
+            (kind == kinds.end() ? kinds.emplace_back() : *kind).push_back(&chunk);
+        }
+    std::vector<Level> levels;
+    for (const std::vector<NextChunk*>& kind : kinds) {
+        const NextChunk& first = *kind.front();
+        levels.push_back(level_after(scene, parent, first.shape, first.event));
+        fill(levels.back(), kind, parent.traced.set.rays.size(), threads);
+    }
+    return levels;
+}
+
+NextBeams::NextBeams(const Scene& scene, const LitCaster& surface, const Level& level,
                      const LeastLight& least, FluxBalance& balance)
     : scene_(scene),
       surface_(surface),
@@ -126,37 +178,25 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
         return;
     }
     least_.budget.count(clear);
-    Level& level = level_of(first.shape, event);
+    NextChunk& chunk = chunk_of(first.shape, event);
     beam.triangle = set_.beams[parent].triangle;
     beam.inside = first.front == (event == refraction);
     for (const BeamCorner& corner : corners)
         beam.offset = std::max(beam.offset, 2 * corner.arrival->offset);
     beam.offset += bulge(corners);
     beam.corners.fill(Beam::none);
-    for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(level, corners[i], event);
-    level.traced.set.beams.push_back(beam);
-    level.worth += worth;
-    level.shares.push_back(share);
-    level.parents.push_back(parent);
-    level.places.push_back(first);
+    for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(chunk.beams, corners[i], event);
+    chunk.beams.traced.set.beams.push_back(beam);
+    chunk.worth += worth;
+    chunk.shares.push_back(share);
+    chunk.parents.push_back(parent);
+    chunk.places.push_back(first);
 }
 
-Level& NextBeams::level_of(std::uint32_t shape, Event event) {
-    for (Level& level : levels_)
-        if (level.traced.set.path.back().shape == shape && level.event == event) return level;
-    Level& level = levels_.emplace_back();
-    level.parent = &level_;
-    level.event = event;
-    level.ray_of_parent.assign(set_.rays.size(), Beam::none);
-    BeamSet& set = level.traced.set;
-    set.light = set_.light;
-    set.caster = set_.caster;
-    set.refracted = event == refraction;
-    set.path = set_.path;
-    set.path.push_back({shape, event == refraction});
-    if (const auto* medium = std::get_if<Dielectric>(&scene_.shapes()[shape].bsdf.model))
-        set.absorption = {medium->ext_absorption, medium->absorption};
-    return level;
+NextChunk& NextBeams::chunk_of(std::uint32_t shape, Event event) {
+    for (NextChunk& chunk : chunks_)
+        if (chunk.shape == shape && chunk.event == event) return chunk;
+    return chunks_.emplace_back(NextChunk{shape, event, {}, {}, {}, {}});
 }
 
 }  // namespace caustics::beamtree

@@ -6,6 +6,7 @@
 #include "beamtree/beams/flux_balance.h"
 #include "beamtree/tracing/beam_budget.h"
 #include "beamtree/tracing/beam_path.h"
+#include "beamtree/tracing/set_chunk.h"
 
 namespace caustics::beamtree {
 
@@ -23,12 +24,28 @@ struct LeastLight {
     BeamBudget& budget;  ///< counts beams
 };
 
-/// The beams that go on from a level's set, in sets of their own: one a caster they meet and event there.
+/// Beams that go on from some of a level's and meet one caster and event next; keys of rays are rays of the level.
+struct NextChunk {
+    std::uint32_t shape;
+    Event event;
+    SetChunk beams;
+    std::vector<std::uint32_t> parents;  ///< this and what follows as in Level
+    std::vector<RayArrival> places;
+    std::vector<float> shares;
+    double worth = 0;
+};
+
+/// The levels after a level, from what parts of its beams have made, in their order: one a caster and event, in the order
+/// in which they are met.
+std::vector<Level> join_levels(const Scene& scene, const Level& parent,
+                               std::vector<std::vector<NextChunk>> parts, int threads);
+
+/// The beams that go on from some of a level's, in chunks of their own: one a caster they meet and event there.
 class NextBeams {
 public:
     /// Beams with less light than `least`, were media clear, are left out and counted by `balance`.
-    NextBeams(const Scene& scene, const LitCaster& surface, Level& level, const LeastLight& least,
-              FluxBalance& balance);
+    NextBeams(const Scene& scene, const LitCaster& surface, const Level& level,
+              const LeastLight& least, FluxBalance& balance);
 
     /// A beam between corners that meet one piece of a surface and leave it by an event. It has `share` of its
     /// polygon, a beam of the level's set.
@@ -37,19 +54,19 @@ public:
     double flux(const Piece& piece) const;
     /// Whether a part of a polygon has too little light for the budget, whatever it meets.
     bool is_too_weak(const Piece& piece) const;
-    std::vector<Level> take() { return std::move(levels_); }
+    std::vector<NextChunk> take() { return std::move(chunks_); }
 
 private:
     Spectrum flux(std::uint32_t parent, const BeamCorners& corners, Event event) const;
-    Level& level_of(std::uint32_t shape, Event event);
+    NextChunk& chunk_of(std::uint32_t shape, Event event);
 
     const Scene& scene_;
     const LitCaster& surface_;
-    Level& level_;
+    const Level& level_;
     const BeamSet& set_;
     LeastLight least_;
     FluxBalance& balance_;
-    std::vector<Level> levels_;
+    std::vector<NextChunk> chunks_;
 };
 
 }  // namespace caustics::beamtree

@@ -1,11 +1,14 @@
 #include "beamtree/tracing/next_bounce.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "beamtree/tracing/cut_edge.h"
 #include "beamtree/tracing/cut_piece.h"
 #include "beamtree/tracing/next_beams.h"
 #include "beamtree/tracing/piece_detail.h"
+#include "core/base/interrupt.h"
+#include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -15,48 +18,68 @@ constexpr int most_splits = 3;
 // What is left of a polygon that is quartered because it is too large for what it meets: ten times.
 constexpr float least_share = 1.0F / (1 << 20);
 constexpr float widest_cosine = 0.5F;
-/// What one set's light does next: the sets of all casters it meets, after each event.
+
+// What threads take at a time.
+constexpr std::size_t rays_together = 256;
+constexpr std::size_t beams_together = 32;
+
+/// What some beams of a set do next.
+struct Followed {
+    std::vector<NextChunk> chunks;
+    std::vector<bool> stays;
+    FluxBalance balance;
+    BeamBudget budget;
+};
+
+/// Sends rays on to the next surfaces.
+void land_all(const Scene& scene, const LitCaster& surface, Level& level, int threads,
+              const ProgressPart& part) {
+    const bool is_first = level.parent == nullptr;
+    const BeamSet& set = level.traced.set;
+    level.arrivals.resize(set.rays.size());
+    parallel_chunks(threads, set.rays.size(), rays_together, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.first; i < chunk.end; ++i) {
+            const VertexRay& ray = set.rays[i];
+            const Departure& from = level.departures[i];
+            const bool blocked =
+                is_first && !sees(scene, {ray.position, from.normal, from.offset}, surface.light());
+            if (!blocked) level.arrivals[i] = land(scene, ray, from, set.light.bin.nm);
+        }
+        part.progress.add(part.share * static_cast<double>(chunk.end - chunk.first) /
+                          static_cast<double>(set.rays.size()));
+    });
+}
+
+/// What the light of some beams of a set, whose rays have arrived, does next: beams of all casters it meets, after each event.
 class NextBounce {
 public:
-    NextBounce(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface, Level& level,
-               const LeastLight& least, FluxBalance& balance, const ProgressPart& part)
+    NextBounce(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
+               const Level& level, double least_of_polygon, BeamBudget budget)
         : scene_(scene),
           boxes_(boxes),
           surface_(surface),
           level_(level),
           set_(level.traced.set),
-          balance_(balance),
-          part_(part),
-          stays_(set_.beams.size(), false),
-          next_(scene, surface, level, least, balance) {
-        land_all();
-    }
+          budget_(std::move(budget)),
+          next_(scene, surface, level, {least_of_polygon, budget_}, balance_) {}
 
-    NextSets run() {
-        ProgressSteps steps(part_.of(0.8), set_.beams.size(), 1);
-        for (std::uint32_t beam = 0; beam < set_.beams.size(); ++beam) {
+    // `goes_on` is asked after each beam.
+    template <typename GoesOn>
+    Followed run(const Chunk& beams, const ProgressPart& part, const GoesOn& more) {
+        first_ = beams.first;
+        stays_.resize(beams.end - beams.first);
+        const ProgressPart one = part.of(1 / static_cast<double>(set_.beams.size()));
+        ProgressSteps steps(one.of(static_cast<double>(stays_.size())), stays_.size(), 8);
+        for (auto beam = static_cast<std::uint32_t>(beams.first); beam < beams.end; ++beam) {
             for (std::size_t i = 0; i < set_.beams[beam].triangle_count(); ++i)
                 follow_triangle(beam, i);
             steps.step();
+            if (!more(budget_)) break;
         }
-        return {next_.take(), std::move(stays_)};
+        return {next_.take(), std::move(stays_), balance_, std::move(budget_)};
     }
 
 private:
-    void land_all() {
-        const bool is_first = level_.parent == nullptr;
-        ProgressSteps steps(part_.of(0.2), set_.rays.size());
-        for (std::size_t i = 0; i < set_.rays.size(); ++i) {
-            steps.step();
-            const VertexRay& ray = set_.rays[i];
-            const Departure& from = level_.departures[i];
-            const bool blocked = is_first && !sees(scene_, {ray.position, from.normal, from.offset},
-                                                   surface_.light());
-            level_.arrivals.push_back(blocked ? RayArrival{}
-                                              : land(scene_, ray, from, set_.light.bin.nm));
-        }
-    }
-
     void follow_triangle(std::uint32_t beam, std::size_t which) {
         const Beam& parent = set_.beams[beam];
         const std::array<std::uint32_t, 3> rays = parent.triangle_corners(which);
@@ -69,7 +92,7 @@ private:
             return;
         }
         count_lit(parent);
-        stays_[beam] = stays_[beam] || (a.goes_on() && is_receiver(scene_.shapes()[a.shape].bsdf));
+        if (a.goes_on() && is_receiver(scene_.shapes()[a.shape].bsdf)) stay(beam);
         if (alike && goes_plainly(a, b, c) && !is_coarse(rays)) {
             for (const Event event : events)
                 if (!is_black(a.weight[event])) {
@@ -81,9 +104,11 @@ private:
                 }
             return;
         }
-        stays_[beam] = stays_[beam] || !alike;
+        if (!alike) stay(beam);
         cut_triangle(beam, rays);
     }
+
+    void stay(std::uint32_t beam) { stays_[beam - first_] = true; }
 
     bool is_coarse(const std::array<std::uint32_t, 3>& rays) const {
         const auto coarse = [this](std::uint32_t i, std::uint32_t j) {
@@ -130,7 +155,7 @@ private:
 
     // Light that goes no further; unless the ray in the middle says another thing than the corners.
     void end(std::uint32_t beam, const std::array<std::uint32_t, 3>& rays) {
-        stays_[beam] = true;
+        stay(beam);
         const Beam& parent = set_.beams[beam];
         const Departure& from = level_.departures[rays[0]];
         VertexRay ray{Vec3::Zero(), Vec3::Zero()};
@@ -184,6 +209,7 @@ private:
     }
     // What becomes of a piece whose corners do different things. It has `share` of its polygon.
     void cut(std::uint32_t beam, const Path& path, const Piece& piece, float share, int splits) {
+        throw_if_interrupted();
         const auto& [a, b, c] = piece;
         if (next_.is_too_weak(piece)) {
             leave_out(piece);
@@ -286,20 +312,96 @@ private:
     const Scene& scene_;
     const SceneBoxes& boxes_;
     const LitCaster& surface_;
-    Level& level_;
-    BeamSet& set_;
-    FluxBalance& balance_;
-    ProgressPart part_;
-    std::vector<bool> stays_;
+    const Level& level_;
+    const BeamSet& set_;
+    FluxBalance balance_;
+    BeamBudget budget_;
     NextBeams next_;
+    std::size_t first_ = 0;    ///< of the beams that are followed
+    std::vector<bool> stays_;  ///< of these
+};
+
+/// Follows all beams of a level.
+class Following {
+public:
+    Following(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
+              const Level& level, const LeastLight& least, int threads, const ProgressPart& part)
+        : scene_(scene),
+          boxes_(boxes),
+          surface_(surface),
+          level_(level),
+          least_(least),
+          threads_(threads),
+          part_(part) {}
+
+    // The budget counts in the order of the beams, and what it has no room for ends the cutting of polygons. So beams are
+    // followed side by side where it has room for all that come of them, and else one after the other.
+    std::vector<Followed> run() {
+        if (!least_.budget.is_over()) {
+            auto followed = side_by_side();
+            if (!followed.empty()) return followed;
+        }
+        std::vector<Followed> one;
+        one.push_back(bounce(least_.budget).run({0, 0, beams()}, part_, [](const BeamBudget&) {
+            return true;
+        }));
+        least_.budget = std::move(one.front().budget);
+        return one;
+    }
+
+private:
+    std::size_t beams() const { return level_.traced.set.beams.size(); }
+
+    NextBounce bounce(BeamBudget budget) const {
+        return {scene_, boxes_, surface_, level_, least_.of_polygon, std::move(budget)};
+    }
+
+    // Nothing where the budget has no room.
+    std::vector<Followed> side_by_side() const {
+        std::vector<Followed> followed(chunk_count(beams(), beams_together));
+        std::atomic<std::uint64_t> made{0};
+        parallel_chunks(threads_, beams(), beams_together, [&](const Chunk& chunk) {
+            std::uint64_t counted = 0;
+            const auto more = [&](const BeamBudget& budget) {
+                made += budget.count() - counted;
+                counted = budget.count();
+                return least_.budget.has_room_for(made);
+            };
+            if (!least_.budget.has_room_for(made)) return;
+            const BeamBudget own(BeamBudget::no_limit, least_.budget.least());
+            followed[chunk.index] = bounce(own).run(chunk, part_, more);
+        });
+        if (!least_.budget.has_room_for(made)) return {};
+        for (const Followed& one : followed) least_.budget.add(one.budget);
+        return followed;
+    }
+
+    const Scene& scene_;
+    const SceneBoxes& boxes_;
+    const LitCaster& surface_;
+    const Level& level_;
+    const LeastLight& least_;
+    int threads_;
+    ProgressPart part_;
 };
 
 }  // namespace
 
 NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                   Level& level, const LeastLight& least, FluxBalance& balance,
+                   Level& level, const LeastLight& least, FluxBalance& balance, int threads,
                    const ProgressPart& part) {
-    return NextBounce(scene, boxes, surface, level, least, balance, part).run();
+    land_all(scene, surface, level, threads, part.of(0.2));
+    std::vector<Followed> followed =
+        Following(scene, boxes, surface, level, least, threads, part.of(0.8)).run();
+    NextSets next;
+    std::vector<std::vector<NextChunk>> chunks;
+    for (Followed& one : followed) {
+        balance.add(one.balance);
+        next.stays.insert(next.stays.end(), one.stays.begin(), one.stays.end());
+        chunks.push_back(std::move(one.chunks));
+    }
+    next.sets = join_levels(scene, level, std::move(chunks), threads);
+    return next;
 }
 
 }  // namespace caustics::beamtree

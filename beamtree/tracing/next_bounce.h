@@ -21,7 +21,7 @@ struct NextSets {
 /// Follows a level's rays to the next surfaces (its `arrivals`) and makes the beams that go on from there;
 /// those with less than `least` are left out and counted by `balance`.
 NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                   Level& level, const LeastLight& least, FluxBalance& balance,
+                   Level& level, const LeastLight& least, FluxBalance& balance, int threads,
                    const ProgressPart& part);
 
 }  // namespace caustics::beamtree

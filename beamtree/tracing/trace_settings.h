@@ -23,6 +23,7 @@ struct TraceSettings {
     std::uint64_t max_beams = BeamBudget::no_limit;
     /// Beams that pass all receivers' bounds by more than this [m] are left out; none: no beams are.
     std::optional<float> receiver_margin = {};
+    int threads = 1;
 };
 
 }  // namespace caustics::beamtree

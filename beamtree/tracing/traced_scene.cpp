@@ -66,7 +66,7 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
     options.phase("beams");
     TracedScene traced;
-    traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons);
+    traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons, options.threads);
     if (disperses(scene)) traced.wavelengths = params.wavelengths;
     const TraceSettings settings{.intensity = intensity,
                                  .max_bounces = params.max_bounces,

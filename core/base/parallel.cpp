@@ -32,6 +32,22 @@ void run_single_threaded(const std::function<void()>& work) {
     work();
 }
 
+std::size_t chunk_count(std::size_t count, std::size_t size) { return (count + size - 1) / size; }
+
+void parallel_chunks(int threads, std::size_t count, std::size_t size,
+                     const std::function<void(const Chunk&)>& body) {
+    const std::size_t chunks = chunk_count(count, size);
+    const auto run = [&](std::size_t i) { body({i, i * size, std::min(count, (i + 1) * size)}); };
+    if (threads > 1 && chunks > 1) {
+        parallel_for(threads, chunks, [&](std::size_t i, std::size_t) { run(i); });
+        return;
+    }
+    for (std::size_t i = 0; i < chunks; ++i) {
+        throw_if_interrupted();
+        run(i);
+    }
+}
+
 #ifdef CAUSTICS_STD_THREADS
 
 void parallel_for(int threads, std::size_t count,

@@ -1,9 +1,12 @@
 #include "core/mesh/vertex_normals.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <tuple>
+
+#include "core/base/sort_by_number.h"
 
 namespace caustics {
 namespace {
@@ -26,6 +29,14 @@ void add_triangle(const std::array<Vec3d, 3>& corners, const std::array<NormalSu
     }
 }
 
+// Of a position; adding zero makes -0 and 0 alike.
+std::uint32_t hash(const Vec3& position) {
+    std::uint32_t hash = 0;
+    for (const float x : position)
+        hash = (hash ^ std::bit_cast<std::uint32_t>(x + 0.0F)) * 0x9E3779B1U ^ hash >> 15U;
+    return hash ^ hash >> 16U;
+}
+
 Vec3 direction(const NormalSum& sum) {
     // Angles are exact to rounding only: less than this is a sum that cancels, not a direction.
     if (sum.weighted.norm() > 1e-9) return sum.weighted.normalized().cast<float>();
@@ -35,15 +46,20 @@ Vec3 direction(const NormalSum& sum) {
 
 }  // namespace
 
-std::vector<std::uint32_t> number_positions(const std::vector<Vec3>& positions) {
+std::vector<std::uint32_t> number_positions(const std::vector<Vec3>& positions, int threads) {
     const auto key = [&](std::uint32_t vertex) {
         const Vec3& p = positions[vertex];
         return std::tuple(p.x(), p.y(), p.z());
     };
     std::vector<std::uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    const std::size_t count = std::bit_ceil(positions.size() + 1);
+    order = sort_by_number(
+        std::span<const std::uint32_t>(order), count, threads,
+        [&](std::uint32_t vertex) { return hash(positions[vertex]) & (count - 1); },
+        [&](std::uint32_t a, std::uint32_t b) {
+            return std::tuple(key(a), a) < std::tuple(key(b), b);
+        });
     std::vector<std::uint32_t> numbers(positions.size());
     std::uint32_t number = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {

@@ -5,7 +5,7 @@
 namespace caustics {
 
 /// For each of the positions a number: equal positions, and they alone, have equal numbers.
-std::vector<std::uint32_t> number_positions(const std::vector<Vec3>& positions);
+std::vector<std::uint32_t> number_positions(const std::vector<Vec3>& positions, int threads = 1);
 
 /// Makes every normal of the mesh unit, and gives each vertex that has none (mesh.normals empty,
 /// or zero there) the sum of its triangles' unit normals weighted by their angles at it [Thürmer

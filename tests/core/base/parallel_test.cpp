@@ -34,6 +34,22 @@ TEST(ParallelFor, RunsEachIndexOnceWithAWorkerBelowTheThreads) {
         }
 }
 
+TEST(ParallelChunks, CoverAllNumbersOnce) {
+    for (const int threads : {1, 3})
+        for (const std::size_t count : {0U, 1U, 9U, 10U, 11U, 1000U}) {
+            std::vector<std::atomic<int>> runs(count);
+            std::vector<std::atomic<int>> chunks(chunk_count(count, 10));
+            parallel_chunks(threads, count, 10, [&](const Chunk& chunk) {
+                ++chunks.at(chunk.index);
+                EXPECT_EQ(chunk.first, 10 * chunk.index);
+                EXPECT_EQ(chunk.end, std::min(count, chunk.first + 10));
+                for (std::size_t i = chunk.first; i < chunk.end; ++i) ++runs[i];
+            });
+            for (const std::atomic<int>& run : runs) EXPECT_EQ(run, 1);
+            for (const std::atomic<int>& run : chunks) EXPECT_EQ(run, 1);
+        }
+}
+
 TEST(ParallelFor, TakesNoThreadsAsOne) {
     for (const int threads : {0, -1}) {
         int runs = 0;
