@@ -113,6 +113,11 @@ void check(const PhotonMapParams& params) {
         throw InputError("photonmap: radius takes the place of max_radius: give one of them");
     if (params.passes < 1 || (params.passes > 1 && !(params.load.empty() && params.save.empty())))
         throw InputError("photonmap: passes must be at least 1, and 1 with load and save");
+    if (!(params.footprint >= 0)) throw InputError("photonmap: footprint must be positive");
+    if (params.footprint > 0 && (params.adaptive || !unbiased || params.filter_alpha > 0))
+        throw InputError(
+            "photonmap: footprint averages over squares, without adaptive, filter_alpha and the "
+            "estimator \"raw\"");
     if (!params.adaptive) return;
     if (params.radius > 0)
         throw InputError("photonmap: a fixed radius leaves no N for adaptive to choose");
@@ -123,15 +128,19 @@ void check(const PhotonMapParams& params) {
 
 GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const PhotonStore& photons,
                     int pass) {
+    const bool positions = params.adaptive || params.footprint > 0;
+    const auto margin =
+        static_cast<float>(RadianceEstimate::margin_of(static_cast<double>(params.footprint)));
     if (params.radius > 0)
-        return {GatherLimits::all, static_cast<float>(params.radius * std::sqrt(pass_share(pass)))};
+        return {GatherLimits::all, static_cast<float>(params.radius * std::sqrt(pass_share(pass))),
+                positions, margin};
     // From the photons in the order of their paths, so that it is the same for every tree.
     const double max_radius =
         params.max_radius > 0
             ? params.max_radius
             : default_max_radius(photons.photons(), scene.bounds(), params.nearest);
-    return {static_cast<std::size_t>(params.nearest), static_cast<float>(max_radius),
-            params.adaptive};
+    return {static_cast<std::size_t>(params.nearest), static_cast<float>(max_radius), positions,
+            margin};
 }
 
 }  // namespace
@@ -155,6 +164,7 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     settings.adaptive = params.adaptive;
     settings.share = params.radius > 0 ? 1 : pass_share(pass);
     settings.limits = limits(params, scene, photons.store, pass);
+    settings.footprint = static_cast<double>(params.footprint);
     settings.flux_unit = photons.flux_per_energy();
 
     BuildReport report;

@@ -95,6 +95,11 @@ std::vector<Parameter<P>> estimate_parameters() {
             {.key = "radius",
              .meaning = "Takes all photons within it, in place of nearest and max_radius."})
             .usually("none"),
+        parameter::optional_length<P>(
+            &P::footprint, "leave it out to ask at points",
+            {.key = "footprint",
+             .meaning = "Side of the square round a point that the estimate is averaged over."})
+            .usually("none"),
         parameter::choice<P>(&P::filter,
                              {{name(FilterKind::none), FilterKind::none},
                               {name(FilterKind::cone), FilterKind::cone},
@@ -189,6 +194,19 @@ void settle_radius(const JsonNode& node, P& params) {
     if (params.adaptive) radius->fail("leaves no N for adaptive to choose: leave one of them out");
 }
 
+void settle_footprint(const JsonNode& node, const P& params) {
+    const auto footprint = node.find("footprint");
+    if (!footprint) return;
+    if (params.adaptive)
+        footprint->fail(
+            "averages over squares, whose photons adaptive does not choose: leave one of them out");
+    if (params.estimator == P::Estimator::raw)
+        footprint->fail(
+            "has no equation of the estimator \"raw\" (leave it out, or take \"unbiased\")");
+    if (const auto alpha = node.find("filter_alpha"))
+        alpha->fail("is of the filter as printed, whose mean is not 1: not with footprint");
+}
+
 void settle(const JsonNode& node, P& params) {
     if (const auto emitted = node.find("emitted")) {
         if (node.has("photons")) emitted->fail("give either photons or emitted, not both");
@@ -197,6 +215,7 @@ void settle(const JsonNode& node, P& params) {
     settle_nearest(node, params);
     settle_radius(node, params);
     settle_filter(node, params);
+    settle_footprint(node, params);
     settle_files(node, params);
 }
 

@@ -5,16 +5,10 @@ namespace caustics::beamtree {
 SliceFrame::SliceFrame(const Vec3& normal, double top, double bottom, const Vec3& origin)
     : normal_(normal),
       up_(normal.cast<double>()),
+      axes_(up_),
       origin_(origin.cast<double>()),
       top_(top),
-      bottom_(bottom) {
-    // The axis of the world that lies best on the planes: grids mostly run along one.
-    Eigen::Index flattest = 0;
-    up_.cwiseAbs().minCoeff(&flattest);
-    const Vec3d axis = Vec3d::Unit(flattest);
-    right_ = (axis - axis.dot(up_) / up_.squaredNorm() * up_).normalized();
-    forward_ = up_.cross(right_).normalized();
-}
+      bottom_(bottom) {}
 
 RaySlices SliceFrame::slices(const VertexRay& ray) const {
     const Vec3d from = ray.position.cast<double>();

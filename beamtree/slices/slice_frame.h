@@ -3,6 +3,7 @@
 #include <array>
 
 #include "beamtree/beams/beam.h"
+#include "core/math/plane_axes.h"
 #include "core/math/vec.h"
 
 namespace caustics::beamtree {
@@ -27,7 +28,7 @@ public:
     double share(double height) const { return (top_ - height) / (top_ - bottom_); }
     /// Of a point on the plane at its own height.
     Vec2d across(const Vec3d& p) const {
-        return {right_.dot(p - origin_), forward_.dot(p - origin_)};
+        return {axes_.right.dot(p - origin_), axes_.forward.dot(p - origin_)};
     }
     /// The ray must come down.
     RaySlices slices(const VertexRay& ray) const;
@@ -35,8 +36,7 @@ public:
 private:
     Vec3 normal_;
     Vec3d up_;
-    Vec3d right_;
-    Vec3d forward_;
+    PlaneAxes axes_;
     Vec3d origin_;
     double top_;
     double bottom_;

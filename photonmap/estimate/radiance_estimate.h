@@ -36,6 +36,10 @@ struct EstimateScratch {
 /// so neither does the outermost one, for `raw` as for `unbiased`, and the mean stays what it is
 /// for `unbiased`.
 ///
+/// With a footprint it is the mean over a square (square_kernel.h), again without bias in a uniform field, where
+/// the maximum radius sets the kernel too: with A its area, the two parts bring d P(a_N < A) + g(A) f_N(A) and
+/// d P(a_N > A) - g(A) f_N(A). f_r is the point's everywhere on the square.
+///
 /// Photons that came from behind the point's geometric normal do not count, and neither do those of
 /// surfaces that face elsewhere: the floor's at the foot of a wall (same_surface.h). Photons carry flux,
 /// so density is per area of the geometric surface, and f_r is taken about the shading normal.
@@ -49,13 +53,15 @@ public:
         bool adaptive = false;  ///< whether N is the largest number (AdaptiveN)
         double share = 1;       ///< of the squared radius within which photons count (pass_share)
         Spectrum flux_unit = Spectrum::Ones();  ///< [W] for an energy of 1
+        /// Side of the square round a point that the estimate is averaged over [m]; 0: the point's. Not with
+        /// adaptive, nor `raw`; limits ask for positions and margin_of(footprint).
+        double footprint = 0;
     };
 
-    RadianceEstimate(const Settings& settings, Isa isa)
-        : settings_(settings),
-          shading_(isa),
-          adaptive_(isa),
-          filter_(settings.filter.polynomial()) {}
+    RadianceEstimate(const Settings& settings, Isa isa);
+
+    /// How far beyond the N-th photon others may weigh on a square of that side [m].
+    static double margin_of(double footprint);
 
     /// [W m^-2 sr^-1] leaving along the point's `wo`, from what a tree gathered at it.
     Spectrum radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
@@ -65,20 +71,27 @@ public:
                         EstimateScratch& scratch) const;
 
 private:
-    /// The photons that count, and the disc over which their flux is spread.
-    struct Disc {
+    /// The photons that count, and the area over which their flux is spread.
+    struct Spread {
         WeightedPhotons photons;
-        double squared_radius = 0;  ///< [m^2]
-        double factor = 1;          ///< of the density
+        double area = 0;    ///< [m^2]
+        double factor = 1;  ///< of the density
     };
-    Disc disc(const ReceiverPoint& point, const GatheredPhotons& gathered,
-              EstimateScratch& scratch) const;
-    Spectrum density(const SpectrumSum& sum, const Disc& disc) const;
+    Spread spread(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                  EstimateScratch& scratch) const;
+    Spread over_disc(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                     EstimateScratch& scratch) const;
+    Spread over_square(const ReceiverPoint& point, const GatheredPhotons& gathered,
+                       EstimateScratch& scratch) const;
+    double squared_radius(const ReceiverPoint& point, const GatheredPhotons& photons,
+                          bool full) const;
+    Spectrum density(const SpectrumSum& sum, const Spread& spread) const;
 
     Settings settings_;
     Shading shading_;
     AdaptiveN adaptive_;
     FilterPolynomial filter_;
+    std::optional<SquareKernel> square_;
 };
 
 }  // namespace caustics::photonmap

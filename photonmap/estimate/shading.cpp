@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "core/math/plane_axes.h"
 #include "photonmap/photons/photon.h"
 
 namespace caustics::photonmap {
@@ -71,6 +72,23 @@ void Shading::weigh(const FilterPolynomial& filter, const GatheredPhotons& photo
     constexpr auto smallest = static_cast<double>(std::numeric_limits<float>::min());
     const auto inverse = static_cast<float>(1 / std::max(squared_radius, smallest));
     kernels_.weigh(filter, {photons.squared_distance, photons.count, inverse, weight});
+}
+
+void Shading::weigh_on_square(const SquareKernel& square, const SquareKernel::Reach& reach,
+                              const ReceiverPoint& point, const GatheredPhotons& photons,
+                              float* weight) const {
+    PhotonsOnSquare on{};
+    std::ranges::copy(photons.position, on.position);
+    on.count = photons.count;
+    std::copy_n(point.position.data(), 3, on.centre);
+    const PlaneAxes axes(point.geometric_normal.cast<double>());
+    const Vec3 right = axes.right.cast<float>(), forward = axes.forward.cast<float>();
+    std::copy_n(right.data(), 3, on.right);
+    std::copy_n(forward.data(), 3, on.forward);
+    on.half = static_cast<float>(reach.half);
+    on.inverse_reach = static_cast<float>(1 / reach.reach);
+    on.weight = weight;
+    kernels_.weigh_on_square(square.profile(), on);
 }
 
 SpectrumSum Shading::arriving(const WeightedPhotons& photons) const {

@@ -4,6 +4,7 @@
 
 #include "core/caustic_estimator.h"
 #include "photonmap/estimate/brdf_lobe_table.h"
+#include "photonmap/estimate/square_kernel.h"
 #include "photonmap/tree/gathered_photons.h"
 
 namespace caustics::photonmap {
@@ -27,6 +28,11 @@ public:
     /// Weights of photons in a disc of that squared radius [m^2], padded as they are.
     void weigh(const FilterPolynomial& filter, const GatheredPhotons& photons,
                double squared_radius, float* weight) const;
+
+    /// Weights of photons on the square round the point, on its tangent plane along PlaneAxes; over 1 / (2 s)^2.
+    void weigh_on_square(const SquareKernel& square, const SquareKernel::Reach& reach,
+                         const ReceiverPoint& point, const GatheredPhotons& photons,
+                         float* weight) const;
 
     /// Sum of flux x weight, in the map's unit of flux.
     SpectrumSum arriving(const WeightedPhotons& photons) const;

@@ -22,6 +22,24 @@ struct ColumnScan {
         return true;
     }
 
+    static float nth(const CopiedPhotons& photons, size_t count, const NearestQuery& query,
+                     float* squared_distance) {
+        const Distances distances(photons, query);
+        const auto limit = Lanes::all(query.max_squared_distance);
+        size_t kept = 0;
+        for (size_t i = 0; i < count; i += Lanes::width) {
+            const Floats d2 = distances.at(i);
+            const uint32_t mask =
+                Lanes::not_above(d2, limit) & Selection<Lanes>::real_lanes(count - i);
+            Lanes::compress(squared_distance + kept, mask, d2);
+            kept += Lanes::count(mask);
+        }
+        if (kept < query.nearest) return -1;
+        return Selection<Lanes>::kth(squared_distance, kept, query.nearest, 0,
+                                     query.max_squared_distance)
+            .value;
+    }
+
 private:
     using Floats = typename Lanes::Floats;
 

@@ -204,8 +204,7 @@ private:
     /// Enlarged by more than rounding can take off.
     float with_margin(float squared_distance) const {
         if (!(query_.margin > 0)) return squared_distance;
-        const float distance = __builtin_sqrtf(squared_distance) + query_.margin;
-        return distance * distance * 1.000004F + 1e-37F;
+        return reached(__builtin_sqrtf(squared_distance) + query_.margin);
     }
 
     static float largest(float a, float b) { return a > b ? a : b; }

@@ -3,6 +3,7 @@
 #include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_avx2.h"
+#include "photonmap/kernels/square_loop.h"
 
 namespace caustics::photonmap {
 
@@ -176,7 +177,11 @@ void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhot
 
 }  // namespace
 
-const ShadingKernels avx2_shading{add_arriving, add_facing, add_schlick, add_phong,
-                                  weigh_photons<Avx2Lanes>};
+const ShadingKernels avx2_shading{add_arriving,
+                                  add_facing,
+                                  add_schlick,
+                                  add_phong,
+                                  weigh_photons<Avx2Lanes>,
+                                  SquareLoop<Avx2Lanes>::weigh};
 
 }  // namespace caustics::photonmap

@@ -3,6 +3,7 @@
 #include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_avx512.h"
+#include "photonmap/kernels/square_loop.h"
 
 namespace caustics::photonmap {
 
@@ -195,7 +196,11 @@ void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhot
 
 }  // namespace
 
-const ShadingKernels avx512_shading{add_arriving, add_facing, add_schlick, add_phong,
-                                    weigh_photons<Avx512Lanes>};
+const ShadingKernels avx512_shading{add_arriving,
+                                    add_facing,
+                                    add_schlick,
+                                    add_phong,
+                                    weigh_photons<Avx512Lanes>,
+                                    SquareLoop<Avx512Lanes>::weigh};
 
 }  // namespace caustics::photonmap

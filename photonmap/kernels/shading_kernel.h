@@ -62,12 +62,29 @@ struct FilteredPhotons {
 /// Writes the photons' weights, by Horner's rule; the same bits on every instruction set.
 using WeighingKernel = void(const FilterPolynomial& filter, const FilteredPhotons& photons);
 
+/// Photons whose weights on a square are wanted. Arrays as in GatheredPhotons.
+struct PhotonsOnSquare {
+    const float* position[3];
+    size_t count;
+    float centre[3];
+    float right[3], forward[3];  ///< unit, along the square's sides
+    float half;                  ///< of a side [m]
+    float inverse_reach;         ///< of half the kernel's width [1/m]
+    float* weight;
+};
+
+/// Writes the photons' weights: along each side the integral of the kernel over the square, the product of both
+/// (square_kernel.h). `profile` times z is the kernel's integral from its middle to z, z = 1 being its end;
+/// a polynomial of z^2, or of |z| where `of_distance`. The same bits on every instruction set.
+using SquareWeighingKernel = void(const FilterPolynomial& profile, const PhotonsOnSquare& photons);
+
 struct ShadingKernels {
     ShadingKernel* arriving;
     ShadingKernel* facing;
     ShadingKernel* schlick;
     ShadingKernel* phong;
     WeighingKernel* weigh;
+    SquareWeighingKernel* weigh_on_square;
 };
 
 extern const ShadingKernels plain_shading;

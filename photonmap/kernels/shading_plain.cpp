@@ -4,6 +4,7 @@
 #include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_plain.h"
+#include "photonmap/kernels/square_loop.h"
 
 namespace caustics::photonmap {
 
@@ -99,7 +100,11 @@ float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t the
     return dot(lobe.normal, decode(tables, theta, phi)) > 0 ? 1.0F : 0.0F;
 }
 
-const ShadingKernels plain_shading{add_arriving, add_facing, add_schlick, add_phong,
-                                   weigh_photons<PlainSimd>};
+const ShadingKernels plain_shading{add_arriving,
+                                   add_facing,
+                                   add_schlick,
+                                   add_phong,
+                                   weigh_photons<PlainSimd>,
+                                   SquareLoop<PlainSimd>::weigh};
 
 }  // namespace caustics::photonmap

@@ -44,6 +44,9 @@ static inline bool counts_at(const SideTest& side, unsigned theta, unsigned phi,
     return on_front_side(side, theta, phi) && is_same_surface(flags, side.normal);
 }
 
+/// A distance squared, enlarged by more than rounding can take off.
+static inline float reached(float distance) { return distance * distance * 1.000004F + 1e-37F; }
+
 /// Leaves, of candidates at equal largest distance, as many as make `nearest` in all.
 using DropTies = void (*)(const void* context, Candidates& found, size_t nearest);
 
@@ -113,6 +116,10 @@ struct TreeKernels {
     /// distances leave a choice; then `found` holds, as places among these photons, more than wanted.
     bool (*find_in_columns)(const CopiedPhotons&, size_t count, const NearestQuery&,
                             Candidates& found, const CopiedPhotons& to);
+    /// The N-th smallest squared distance of photons that are copied out, -1 where fewer than N are within the
+    /// query's; `squared_distance` has room for all.
+    float (*nth_in_columns)(const CopiedPhotons&, size_t count, const NearestQuery&,
+                            float* squared_distance);
     /// Drops candidates until `most` or (ties aside) fewer, but at least `nearest` are left, and
     /// returns the largest squared distance that a further one may have.
     float (*shrink)(Candidates&, size_t nearest, size_t most, float bound);

@@ -13,6 +13,7 @@ struct TreeKernelsOf {
     static constexpr TreeKernels value{
         .find_packed = &PackedWalk<Lanes>::find,
         .find_in_columns = &ColumnScan<Lanes>::find,
+        .nth_in_columns = &ColumnScan<Lanes>::nth,
         .shrink = &CandidateLoops<Lanes>::shrink,
         .farthest = &CandidateLoops<Lanes>::farthest,
         .choose_count = &NChoiceOf<Lanes>::choose,

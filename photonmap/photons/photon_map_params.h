@@ -48,6 +48,8 @@ struct PhotonMapParams {
     bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveN)
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, see the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
+    /// Side of the square round each point, along PlaneAxes, over which the estimate is averaged [m]; 0: the point's.
+    float footprint = 0;
     FilterKind filter = FilterKind::none;
     double filter_k = 1.1;       ///< of the cone
     double filter_beta = 1.953;  ///< of the Gaussian

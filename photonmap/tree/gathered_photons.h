@@ -14,9 +14,12 @@ struct GatheredPhotons {
     const std::uint32_t* energy = nullptr;     ///< Rgbe, its four bytes in order of address
     const std::uint16_t* direction = nullptr;  ///< DirectionCode: theta, then phi, by address
     std::size_t count = 0;
-    std::size_t farthest = 0;  ///< index of a photon at the largest distance; 0 when count is 0
+    /// Index of a photon at the N-th distance, the largest where no margin was asked for; where there are fewer than
+    /// N, at the largest distance, with a margin 0.
+    std::size_t farthest = 0;
     /// World frame [m]; null unless GatherLimits::positions asked for them.
     const float* position[3] = {nullptr, nullptr, nullptr};
+    bool full = false;  ///< whether N photons lie within the maximum radius
 };
 
 }  // namespace caustics::photonmap

@@ -77,14 +77,22 @@ protected:
         const Consumer& consume;
         NearestQuery query{};  ///< without a point: up to the maximum radius, and no side test
         NeighbourBound bound{};
+        float max_radius = 0;  ///< [m]
+        float margin = 0;  ///< beyond the N-th photon [m]; of all photons the maximum radius has it
+        float nth = -1;    ///< with a margin: the N-th photon's squared distance; -1: fewer than N
 
         NearestQuery query_at(const Vec3& point) const;
+        /// Squared distance within which photons belong to the answer; `nth` is known.
+        float reach() const { return reached((nth < 0 ? max_radius : std::sqrt(nth)) + margin); }
     };
     /// Prepares the query and makes room.
     void begin(Batch& batch) const;
     /// Answers one point; the bound is used and renewed.
     void answer(Batch& batch, std::size_t i) const;
-    GatheredPhotons gathered(const Candidates& found, const CopiedPhotons& copied) const;
+    GatheredPhotons gathered(const Batch& batch, const Candidates& found,
+                             const CopiedPhotons& copied) const;
+    /// The next bound, from an answer.
+    static void renew_bound(Batch& batch, std::size_t i, const GatheredPhotons& answer);
 
     /// Of candidates at the largest distance leaves those of the smallest codes, `nearest` in all.
     template <typename CodeOf>
@@ -92,6 +100,10 @@ protected:
 
     const TreeKernels& kernels_;
     ArrivalDirections directions_;
+
+private:
+    void find_all(Batch& batch, std::size_t i, const SideTest* side,
+                  const CopiedPhotons& copied) const;
 };
 
 template <typename CodeOf>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/math/vec.h"
+#include "photonmap/kernels/tree_kernels.h"
 
 namespace caustics::photonmap {
 
@@ -33,9 +34,6 @@ public:
     /// had better test each photon.
     bool met_foreign() const { return met_foreign_; }
     void meet_foreign() { met_foreign_ = true; }
-
-    /// A distance squared, enlarged by more than rounding can take off.
-    static float reached(float distance) { return distance * distance * 1.000004F + 1e-37F; }
 
 private:
     bool known_ = false;

@@ -20,8 +20,9 @@ std::size_t room_for_group(std::size_t nearest, std::size_t photons) {
 }  // namespace
 
 PackedGather::PackedGather(const PackedKdTree& tree, const PackedKdTree::Batch& batch)
-    : tree_(tree), batch_(batch), last_distance_(batch.limits.max_radius) {
+    : tree_(tree), batch_(batch) {
     tree.begin(batch_);
+    last_distance_ = batch_.max_radius;
     batch.scratch.order.resize(batch.points.size());
     std::iota(batch.scratch.order.begin(), batch.scratch.order.end(), 0U);
 }
@@ -33,8 +34,8 @@ void PackedGather::answer(Group group) {
     Box box;
     for (const std::uint32_t i : group) box.extend(batch_.points[i].position);
     const float diagonal = box.diagonal().norm();
-    if (diagonal <= widest_group * last_distance_ && group.size() <= largest_group &&
-        answer_together(group, box))
+    if (diagonal <= widest_group * (last_distance_ + batch_.margin) &&
+        group.size() <= largest_group && answer_together(group, box))
         return;
     if (!(diagonal > 0)) return answer_one_by_one(group);
     Vec3::Index axis = 0;
@@ -52,7 +53,7 @@ void PackedGather::answer(Group group) {
 void PackedGather::answer_one_by_one(Group group) {
     for (const std::uint32_t i : group) {
         tree_.answer(batch_, i);
-        last_distance_ = batch_.bound.known() ? batch_.bound.distance() : batch_.limits.max_radius;
+        last_distance_ = batch_.bound.known() ? batch_.bound.distance() : batch_.max_radius;
     }
 }
 
@@ -86,7 +87,7 @@ bool PackedGather::collect(const Vec3& centre, const Vec3& normal, float radius,
     NearestQuery query = batch_.query_at(centre);
     query.max_squared_distance =
         batch_.bound.at(centre, normal, side != nullptr, query.max_squared_distance);
-    query.margin = 2.00001F * radius + 1e-30F;
+    query.margin = 2.00001F * (radius + 0.5F * batch_.margin) + 1e-30F;
     query.side = side;
     Candidates& collected =
         batch_.scratch.group_found.reserve(room_for_group(query.nearest, tree_.size()));
@@ -141,21 +142,27 @@ void PackedGather::answer_member(std::uint32_t i, const Vec3& centre) {
     NearestQuery query = batch_.query_at(point.position);
     query.max_squared_distance =
         std::min(batch_.bound.at(point.position, normal, tested_, query.max_squared_distance),
-                 NeighbourBound::reached(centre_distance_ + (point.position - centre).norm()));
+                 reached(centre_distance_ + (point.position - centre).norm()));
     Candidates& found = batch_.scratch.found.candidates();
     const CopiedPhotons copied = batch_.scratch.copies.copied(batch_.limits.positions);
+    if (batch_.margin > 0) widen(query, found);
     if (!tree_.kernels_.find_in_columns(columns_, column_count_, query, found, copied))
         choose_among_ties(query.nearest, found, copied);
     ++batch_.scratch.grouped_queries;
-    const GatheredPhotons answer = tree_.gathered(found, copied);
-    if (answer.count == batch_.limits.nearest) {
-        batch_.bound.set(point.position, normal, answer.squared_distance[answer.farthest]);
-        last_distance_ = batch_.bound.distance();
-    } else {
-        batch_.bound.forget();
-        last_distance_ = batch_.limits.max_radius;
-    }
+    const GatheredPhotons answer = tree_.gathered(batch_, found, copied);
+    PackedKdTree::renew_bound(batch_, i, answer);
+    last_distance_ = answer.full ? batch_.bound.distance() : batch_.max_radius;
     batch_.consume(i, answer);
+}
+
+/// Makes the query one for all up to the margin beyond the N-th.
+void PackedGather::widen(NearestQuery& query, Candidates& found) {
+    const bool enough = batch_.limits.nearest <= tree_.size();
+    batch_.nth = enough ? tree_.kernels_.nth_in_columns(columns_, column_count_, query,
+                                                        found.squared_distance)
+                        : -1;
+    query.nearest = GatherLimits::all;
+    query.max_squared_distance = batch_.reach();
 }
 
 void PackedGather::choose_among_ties(std::size_t nearest, Candidates& found,

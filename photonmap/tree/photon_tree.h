@@ -14,7 +14,8 @@
 
 namespace caustics::photonmap {
 
-/// Which photons belong to an answer: the N nearest of those within the maximum radius.
+/// Which photons belong to an answer: the N nearest of those within the maximum radius; with a margin also those
+/// not farther than the margin beyond the N-th, or beyond the maximum radius where there are fewer than N.
 struct GatherLimits {
     /// As N: all photons within the maximum radius.
     static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
@@ -22,6 +23,7 @@ struct GatherLimits {
     std::size_t nearest = 50;  ///< N >= 1
     float max_radius = 1;      ///< [m], > 0; its square must be finite
     bool positions = false;    ///< whether the answers need the photons' positions
+    float margin = 0;          ///< [m]
 };
 
 /// The photons of a map, ordered. Every tree gives the same answers on every instruction set: of

@@ -39,9 +39,12 @@ public:
         }
     }
     GatheredPhotons photons() const {
-        return {distance_.data(),  energy_.data(),
-                direction_.data(), count_,
-                farthest_,         {position_[0].data(), position_[1].data(), position_[2].data()}};
+        return {.squared_distance = distance_.data(),
+                .energy = energy_.data(),
+                .direction = direction_.data(),
+                .count = count_,
+                .farthest = farthest_,
+                .position = {position_[0].data(), position_[1].data(), position_[2].data()}};
     }
 
 private:

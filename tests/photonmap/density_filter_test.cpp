@@ -79,7 +79,8 @@ TEST(DensityFilter, KernelsAreTheFormulaAndTheSameBitsOnEveryInstructionSet) {
     std::vector<float> squared_distance(count + 16);
     for (std::size_t i = 0; i < count; ++i)
         squared_distance[i] = 7 * static_cast<float>(i) / (count - 1);
-    const GatheredPhotons photons{squared_distance.data(), nullptr, nullptr, count, count - 1};
+    const GatheredPhotons photons{
+        .squared_distance = squared_distance.data(), .count = count, .farthest = count - 1};
     for (const FilterKind kind : kinds) {
         std::vector<float> plain(count + 16), weight(count + 16);
         Shading(Isa::plain).weigh(DensityFilter{kind}.polynomial(), photons, 7, plain.data());

@@ -71,6 +71,18 @@ TEST(PhotonMapParams, ChooseTheFilterAndARadiusInPlaceOfTheNearest) {
     }
 }
 
+TEST(PhotonMapParams, AverageOverASquareWhereThatHasAMeaning) {
+    EXPECT_EQ(params_of("{}").footprint, 0);
+    EXPECT_EQ(params_of(R"({"footprint": 0.5, "nearest": 20})").footprint, 0.5F);
+    EXPECT_EQ(params_of(R"({"footprint": 0.5, "radius": 0.1, "tables": true})").footprint, 0.5F);
+    for (const std::string other : {R"("adaptive": true)", R"("estimator": "raw")",
+                                    R"("filter": "gaussian", "filter_alpha": 1)"}) {
+        const std::string line = refusal(R"({"footprint": 0.1, )" + other + "}");
+        EXPECT_NE(line.find("footprint"), std::string::npos) << line;
+    }
+    EXPECT_NE(refusal(R"({"footprint": 0})").find("/footprint"), std::string::npos);
+}
+
 TEST(PhotonMapParams, AdaptiveHasItsOwnLargestNumber) {
     EXPECT_FALSE(params_of("{}").adaptive);
     EXPECT_EQ(params_of(R"({"adaptive": true})").nearest, 200);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <compare>
 #include <cstring>
 #include <span>
@@ -96,19 +97,35 @@ inline bool may_be_on(const Photon& photon, const Vec3& normal) {
     return Vec3d(at.x, at.y, at.z).normalized().dot(normal.cast<double>()) > 0.5;
 }
 
+/// How many of these photons, nearest first, belong to the answer.
+inline std::size_t count_within(const std::vector<Found>& all, const GatherLimits& limits) {
+    const auto not_beyond = [&all](float squared_distance) {
+        return static_cast<std::size_t>(
+            std::ranges::upper_bound(all, squared_distance, {}, &Found::squared_distance) -
+            all.begin());
+    };
+    const bool unlimited = limits.nearest == GatherLimits::all;
+    const float radius = limits.max_radius + (unlimited ? limits.margin : 0);
+    const std::size_t within = not_beyond(radius * radius);
+    if (unlimited || limits.margin == 0) return std::min(within, limits.nearest);
+    const float nth = within < limits.nearest ? limits.max_radius
+                                              : std::sqrt(all[limits.nearest - 1].squared_distance);
+    return not_beyond(reached(nth + limits.margin));
+}
+
 /// The answer at a point by looking at all photons, nearest first.
 inline std::vector<Found> linear_scan(std::span<const Photon> photons, const ReceiverPoint& point,
                                       const GatherLimits& limits) {
+    const float farthest = reached(limits.max_radius + limits.margin);
     std::vector<Found> all;
     for (const Photon& photon : photons) {
         const Found f = found(photon, point.position);
-        if (f.squared_distance <= limits.max_radius * limits.max_radius &&
-            incoming(photon).dot(point.geometric_normal) > 0 &&
+        if (f.squared_distance <= farthest && incoming(photon).dot(point.geometric_normal) > 0 &&
             may_be_on(photon, point.geometric_normal))
             all.push_back(f);
     }
     std::ranges::sort(all);
-    if (all.size() > limits.nearest) all.resize(limits.nearest);
+    all.resize(count_within(all, limits));
     return all;
 }
 

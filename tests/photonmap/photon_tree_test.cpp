@@ -85,7 +85,14 @@ std::vector<std::vector<Found>> answers(const PhotonTree& tree,
         if (!all[i].empty()) {
             const Found farthest = all[i][gathered.farthest];
             std::ranges::sort(all[i]);
-            EXPECT_EQ(farthest, all[i].back());
+            const bool around = limits.margin > 0 && limits.nearest != GatherLimits::all;
+            if (gathered.full || !around) {
+                // With a margin the last of those at the N-th distance.
+                const std::size_t rank = gathered.full ? limits.nearest : all[i].size();
+                const auto as_far = std::ranges::equal_range(
+                    all[i], all[i][rank - 1].squared_distance, {}, &Found::squared_distance);
+                EXPECT_EQ(farthest, as_far.back());
+            }
         }
     });
     EXPECT_EQ(times, std::vector<int>(points.size(), 1));
@@ -105,6 +112,8 @@ void expect_same_as_scan(std::span<const Photon> photons, const std::vector<Name
             const Photon& any = photons[rng.next_word() % photons.size()];
             limits.max_radius = std::max(1e-12F, (position(any) - points[0].position).norm());
         }
+        if (spacing == 0.05F && !photons.empty() && nearest > 1)
+            limits.margin = 0.3F * std::min(limits.max_radius, 1e9F) * rng.next();
         std::vector<std::vector<Found>> expected;
         for (const ReceiverPoint& point : points)
             expected.push_back(linear_scan(photons, point, limits));
@@ -274,6 +283,23 @@ TEST(PhotonTree, LeavesThePhotonsBehindOutOfTiles) {
             expect_scan_at_some(photons, trees, points, {40, 0.05F});
             if (testing::Test::HasFatalFailure()) return;
         }
+    }
+}
+
+// Those up to a margin beyond the N-th, or beyond the largest radius where there are fewer.
+TEST(PhotonTree, TilesGetAllPhotonsOfAMargin) {
+    std::vector<Photon> behind = spot(4'000);
+    for (std::size_t i = 0; i < behind.size(); i += 300) behind[i].theta = 200;
+    for (const auto& photons : {spot(4'000), folds(4'000), behind}) {
+        const auto trees = all_trees(photons);
+        for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.2F, 0.3F, 0)})
+            for (const float spacing : {2e-4F, 2e-3F, 2e-2F})
+                for (const std::size_t nearest :
+                     {std::size_t{2}, std::size_t{60}, GatherLimits::all}) {
+                    const GatherLimits limits{nearest, 0.01F, true, 0.7F * spacing};
+                    expect_scan_at_some(photons, trees, tile(corner, spacing), limits);
+                    if (testing::Test::HasFatalFailure()) return;
+                }
     }
 }
 

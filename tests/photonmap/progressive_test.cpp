@@ -65,7 +65,12 @@ public:
         Rng rng(seed, Stage::test, 0);
         for (float& u : squared_distance_) u = 1 - std::sqrt(1 - rng.next());
         std::ranges::nth_element(squared_distance_, squared_distance_.begin() + nearest - 1);
-        return {squared_distance_.data(), energy_.data(), direction_.data(), nearest, nearest - 1};
+        return {.squared_distance = squared_distance_.data(),
+                .energy = energy_.data(),
+                .direction = direction_.data(),
+                .count = nearest,
+                .farthest = nearest - 1,
+                .full = true};
     }
 
 private:

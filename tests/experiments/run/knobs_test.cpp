@@ -92,6 +92,10 @@ TEST(Knobs, OfThePhotonMap) {
               count(usual, "gathered_photons") / 2);
     const Answer narrow = map({"radius=0.05"}), wide = map({"radius=0.2"});
     EXPECT_NEAR(wide.error() / narrow.error(), 0.25, 0.1);
+    // Squares that hold more photons than the nearest scatter less.
+    const Answer averaged = map({"footprint=0.2"});
+    EXPECT_LT(averaged.error(), 0.8 * usual.error());
+    EXPECT_NEAR(averaged.mean(), 1, 0.05);
     // A kernel that trusts near photons more has fewer of them in effect.
     for (const std::string filter : {"cone", "gaussian", "epanechnikov"}) {
         const Answer filtered = map({"filter=" + filter});
@@ -236,11 +240,11 @@ TEST(Knobs, OfTheReferences) {
 // A parameter that is added and forgotten above is noticed here.
 TEST(Knobs, AreAllTurnedAbove) {
     const std::map<std::string, std::set<std::string>> turned = {
-        {"photonmap",
-         {"preset",      "photons",  "emitted",     "estimator", "adaptive",    "nearest",
-          "max_radius",  "radius",   "filter",      "filter_k",  "filter_beta", "filter_alpha",
-          "max_bounces", "emission", "interaction", "tree",      "tables",      "passes",
-          "save",        "load"}},  // these three: photonmap/progressive_test, kept_photons_test
+        {"photonmap", {"preset",      "photons",     "emitted",      "estimator",   "adaptive",
+                       "nearest",     "max_radius",  "radius",       "footprint",   "filter",
+                       "filter_k",    "filter_beta", "filter_alpha", "max_bounces", "emission",
+                       "interaction", "tree",        "tables",       "passes",      "save",
+                       "load"}},  // these three: photonmap/progressive_test, kept_photons_test
         {"beamtree",
          {"preset", "bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity",
           "footprint", "polygons", "light_samples", "mesh_resolution", "max_bounces", "prune",
