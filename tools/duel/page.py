@@ -1,7 +1,8 @@
 """results/duel: the teacher's page, tables, verdicts and plots, all from records."""
 import json
+import re
 
-from duel import measures, plots, scores, tables, verdicts
+from duel import curves, measures, plots, scores, tables, verdicts
 from duel.curves import Field
 from duel.race import LEFT_OUT, SEARCH, FINAL, cells_of
 from papers.page import comma, latex, markdown_table
@@ -107,10 +108,26 @@ def not_measured(results):
     return Table("not_measured", "Not measured", ["question", "says", "why"], rows)
 
 
+def number(results, found, kind, words):
+    """A number of the page's prose: {error SCENE METHOD SECONDS}, {factor SCENE SECONDS}, {case HYPOTHESIS CASE}."""
+    if kind == "case":
+        name, _, case = words.partition(" ")
+        return next((each["measured"] for each in found[name]["cases"] if each["case"] == case), "not measured")
+    scene, *method, seconds = words.split(" ")
+    field = results.fields.get(scene)
+    if field is None:
+        return "not measured"
+    if kind == "factor":
+        return tables.factor(curves.quantity(field.seeds, lambda draw: measures.errors_at(field, draw, float(seconds))))
+    error = curves.at_time(field.curve(" ".join(method)), float(seconds))
+    return tables.percent(error) if error else "no picture yet"
+
+
 def rendered(results):
     """{file name: text} of all pages."""
     found, every = entries(results), tables.everything(results)
     verdict, lacking = verdict_table(found), not_measured(results)
+    of = {entry["id"]: entry for entry in found}
     kept = [verdict, *every, lacking]
     words = (results.duel.folder / "page.md").read_text(encoding="utf-8")
     tally = ", ".join(f"{sum(entry['verdict'] == each for entry in found)} {'hold' if each == HOLDS else each}" for each in ORDER)
@@ -118,6 +135,7 @@ def rendered(results):
              **{table.name: section(table).lstrip("\n").partition("\n\n")[2].rstrip("\n") for table in kept}}
     for name, text in facts.items():
         words = words.replace("{" + name + "}", text)
+    words = re.sub(r"\{(error|factor|case) ([^}]+)\}", lambda place: number(results, of, *place.groups()), words)
     title = "The duel of photon map and beam tree"
     return {"README.md": words, "verdicts.json": json.dumps(found, indent=1, ensure_ascii=False) + "\n",
             "tables.md": f"# {title}: all tables\n\n{results.machine()}\n" + "".join(map(section, kept)),

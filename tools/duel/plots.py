@@ -9,6 +9,7 @@ from duel.tables import METHODS, shown
 from report.plot_panels import COLOURS, LINES, MARKERS
 from report.record_plots import STYLE, svg
 
+NOISE = "the truth's own error"
 LOOKS = {label: {"color": COLOURS[i], "marker": MARKERS[i], "linestyle": LINES[i % len(LINES)]} for i, label in enumerate(METHODS)}
 
 
@@ -31,7 +32,7 @@ def panel(ax, scene, field):
         line = field.curve(label)
         ax.plot(*zip(*line), color=look["color"], linestyle=look["linestyle"], marker=look["marker"], markersize=3.5, label=label)
     noise = field.cells[0].noise ** 0.5
-    ax.axhline(noise, color="#888888", linewidth=0.7, linestyle=":")
+    ax.axhline(noise, color="#888888", linewidth=0.9, linestyle=":", label=NOISE)
     ax.set(xscale="log", yscale="log")
     ax.set_title(scene.title, loc="left")
 
@@ -51,18 +52,18 @@ def overview(results):
     for ax in panels.flat[max(0, len(found) - columns):len(found)]:
         ax.set_xlabel("CPU seconds, build + query")
     handles = {label: handle for ax in panels.flat[:len(found)] for handle, label in zip(*ax.get_legend_handles_labels())}
-    names = [label for label in METHODS if label in handles]
+    names = [label for label in (*METHODS, NOISE) if label in handles]
     figure.legend([handles[name] for name in names], names, loc="lower center", ncols=len(names), handlelength=3)
     figure.tight_layout(rect=(0, 0.5 / (2.7 * rows + 0.6), 1, 1))
     return figure
 
 
 def single(scene, field):
-    figure, ax = plt.subplots(figsize=(5, 3.6))
+    figure, ax = plt.subplots(figsize=(5, 4))
     panel(ax, scene, field)
     ax.set(xlabel="CPU seconds, build + query", ylabel="error [1]")
-    ax.legend(loc="best", fontsize=7)
-    figure.tight_layout()
+    figure.legend(*ax.get_legend_handles_labels(), loc="lower center", ncols=3, fontsize=7, handlelength=3)
+    figure.tight_layout(rect=(0, 0.13, 1, 1))
     return figure
 
 
