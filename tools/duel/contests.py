@@ -121,6 +121,8 @@ def row_settings(method, row, scene):
     samples = [spp for spp in row["spp"] if spp <= scene.text.get("most_spp", math.inf)]
     for spp, mesh, *chosen in itertools.product(samples, meshes, *values):
         param = tuple(sorted(zip(own, chosen)))
+        if any(value > scene.text.get("most", {}).get(name, math.inf) for name, value in param if not isinstance(value, str)):
+            continue
         yield Setting(label, method["method"], row.get("asks", method["asks"]), spp, mesh, param)
 
 
