@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/light_path/empty_caustic.h"
+#include "core/scene/scene_reader.h"
+#include "tests/cruel/cruel_scene.h"
+#include "tests/cruel/light_check.h"
+#include "tests/cruel/scene_range.h"
+#include "tests/cruel/shrink.h"
+#include "tests/support/temporary_folder.h"
+
+namespace caustics::cruel {
+namespace {
+
+std::filesystem::path write(const Json& scene, const std::filesystem::path& folder) {
+    std::ofstream(folder / "scene.json") << scene.dump(1);
+    return folder / "scene.json";
+}
+
+// What a caustic's light is that there is none of needs no methods.
+std::string disagreement(const std::filesystem::path& file, const std::string& method,
+                         std::uint64_t seed) {
+    const Scene scene(load_scene(file).desc);
+    if (why_nothing_is_aimed(scene)) return "";
+    return LightCheck(scene, seed).disagreement(method);
+}
+
+Json shrunk_scene(const Json& scene, const std::filesystem::path& folder, const std::string& method,
+                  std::uint64_t seed) {
+    return shrunk(scene, [&](const Json& candidate) {
+        try {
+            return !disagreement(write(candidate, folder), method, seed).empty();
+        } catch (const std::exception&) {
+            return false;  // without a floor, or no valid scene
+        }
+    });
+}
+
+// The beams of one setting are much like those of another, and slow.
+bool is_its_turn(const std::string& method, std::uint64_t seed) {
+    if (method == "causticpolygons") return seed % 8 == 0;
+    if (method == "beamtree area") return seed % 3 == 0;
+    if (method == "beamtree refined") return seed % 4 == 0;
+    return true;
+}
+
+TEST(CruelLight, IsTheSameByEveryMethod) {
+    const SceneRange range = SceneRange::asked(3);
+    for (std::uint64_t seed = range.first; seed < range.first + range.count; ++seed) {
+        const support::TemporaryFolder folder("cruel_light" + std::to_string(seed));
+        const Json made = cruel_scene(Purpose::light, seed, folder.path());
+        const Scene scene(load_scene(write(made, folder.path())).desc);
+        if (why_nothing_is_aimed(scene)) continue;
+        LightCheck check(scene, seed);
+        for (const std::string& method : checked_methods()) {
+            if (!is_its_turn(method, seed)) continue;
+            const std::string text = check.disagreement(method);
+            EXPECT_EQ(text, "") << "seed " << seed << ", " << method << ", in "
+                                << shrunk_scene(made, folder.path(), method, seed).dump();
+        }
+    }
+}
+
+// What cruel_light found stays here as scenes of their own.
+TEST(CruelLight, AScenesFileIsAsked) {
+    const char* const file = std::getenv("CAUSTICS_CRUEL_SCENE");
+    if (file == nullptr) GTEST_SKIP() << "give a scene as CAUSTICS_CRUEL_SCENE";
+    for (const std::string& method : checked_methods())
+        EXPECT_EQ(disagreement(file, method, 1), "") << method;
+}
+
+}  // namespace
+}  // namespace caustics::cruel
