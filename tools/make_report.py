@@ -12,7 +12,10 @@ import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
-from report.report_files import report, write
+from report.report_files import Progress, end_on_interrupt, report, write
+
+end_on_interrupt("report")  # what follows may take a while to load
+
 from report_page import scenes, tables
 
 
@@ -43,7 +46,9 @@ def write_report(chosen):
     from report_page import page  # here, so that a broken table is named even without NumPy
 
     folders = [folder for folder in (chosen.references, *page.REFERENCES) if folder]
-    text, notes = page.make(sweeps, found, folders, chosen.megabytes)
+    progress = Progress("report", page.picture_count(found))
+    text, notes = page.make(sweeps, found, folders, chosen.megabytes, progress.step)
+    progress.end()
     write(chosen.output, text)
     written = [chosen.output]
     if chosen.tables:

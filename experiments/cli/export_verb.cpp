@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "experiments/base/atomic_folder.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
@@ -48,8 +49,11 @@ int export_scene(ExportOptions options) {
         throw InputError(
             fmt::format("-o {}: is no folder (a file of that name is there)", options.folder));
     AtomicFolder whole(folder);
-    for (const ExportedScene::File& each : exported.files)
+    for (const ExportedScene::File& each : exported.files) {
+        throw_if_interrupted();
         write_atomic_file(whole.path() / each.name, each.bytes);
+    }
+    throw_if_interrupted();
     whole.commit();
     print_notes(exported.notes);
     write_stderr(fmt::format("{}: {} file{}\n", (folder / exported.files.front().name).string(),

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
 
 #include "core/base/error.h"
@@ -10,12 +11,14 @@
 #include "core/scene/transport_hash.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
+#include "experiments/base/status_line.h"
 #include "experiments/cli/map_info.h"
 #include "experiments/cli/shape_lines.h"
 #include "experiments/cli/verbs.h"
 #include "experiments/picture/beam_picture.h"
 #include "experiments/run/cli_options.h"
 #include "experiments/run/notes.h"
+#include "experiments/run/run_progress.h"
 
 namespace caustics::experiments {
 
@@ -62,7 +65,9 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     text += fmt::format("  power aimed at the casters' bounds: {} W\n",
                         rgb(emission.empty() ? black() : emission.total_power()));
     text += "methods\n";
+    StatusLine asked;
     for (const std::string& name : method_names()) {
+        if (asked.is_on_terminal()) asked.show(fmt::format("asking {} ...", name));
         const Serving serving = try_serving(scene, parse_method(name, parameters_node({})));
         text += fmt::format(
             "  {:<16} {}\n", name,
@@ -81,12 +86,15 @@ struct InfoOptions {
     double dot = 1;
 };
 
-RunOptions drawing_options(const Scene& scene) {
+/// Draws a picture with the whole machine, showing its progress, and writes it.
+void write_drawing(const Scene& scene, const std::string& output,
+                   const std::function<Picture(const RunOptions&)>& draw) {
     RunOptions run;
     run.threads = available_threads();
     run.samples_per_pixel = scene.sampling().sample_count;
     run.adaptive = false;
-    return run;
+    const RunProgress progress(run);
+    write_png(draw(run), output);
 }
 
 void require_png(const std::string& output, const char* what) {
@@ -105,8 +113,9 @@ void info_on_scene(const InfoOptions& options) {
     const SceneFile file = options.scene.load();
     const Scene scene(file.desc);
     if (options.beams)
-        write_png(draw_beams(scene, parameters_node(options.params), drawing_options(scene)),
-                  options.output);
+        write_drawing(scene, options.output, [&](const RunOptions& run) {
+            return draw_beams(scene, parameters_node(options.params), run);
+        });
     write_stdout(describe_scene(options.scene, file, scene));
 }
 
@@ -115,8 +124,9 @@ void draw(const InfoOptions& options, photonmap::SavedPhotons saved) {
     const Scene scene(file.desc);
     photonmap::require_transport(saved.origin, scene, options.scene.file);
     if (options.output.empty()) return;
-    write_png(draw_photons(scene, std::move(saved.photons), options.dot, drawing_options(scene)),
-              options.output);
+    write_drawing(scene, options.output, [&](const RunOptions& run) {
+        return draw_photons(scene, std::move(saved.photons), options.dot, run);
+    });
 }
 
 void info_on_map(const InfoOptions& options) {

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
+#include "experiments/base/status_line.h"
 
 namespace caustics::experiments {
 
@@ -36,7 +37,11 @@ Overrides SceneOptions::overrides() const {
     return all;
 }
 
-SceneFile SceneOptions::load() const { return load_scene(file, overrides()); }
+SceneFile SceneOptions::load() const {
+    StatusLine line;
+    if (line.is_on_terminal()) line.show(fmt::format("reading {} ...", file));
+    return load_scene(file, overrides());
+}
 
 void MethodOptions::add_to(CLI::App& verb, bool required) {
     std::string known;

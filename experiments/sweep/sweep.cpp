@@ -116,6 +116,7 @@ private:
             all.todo = all.share;
             missing = all.references(references_);
         }
+        missing_references_ = missing.size();
         for (const ReferenceRequest* request : missing) {
             try {
                 render_reference(*request);
@@ -127,6 +128,7 @@ private:
                 progress_->note(
                     fmt::format("failed: reference {}: {}", request->key, error.what()));
             }
+            --missing_references_;
         }
     }
 
@@ -134,7 +136,11 @@ private:
         const std::string what =
             fmt::format("reference {} {} for {}", request.request.method.name, request.key,
                         request.request.scene_file.stem().string());
-        progress_->show(what, 0, remaining());
+        const Stopwatch watch;
+        const auto show = [&](double share) {
+            progress_->show(what, share, remaining_after(watch.total().wall, share));
+        };
+        show(0);
         const auto render = [&](const ChildProcess::Tell& tell) {
             RunOptions options;
             options.threads = available_threads();
@@ -144,8 +150,17 @@ private:
             return std::string();
         };
         run_in_child(render, [&](double share) {
-            if (progress_->is_due()) progress_->show(what, share, remaining());
+            if (progress_->is_due()) show(share);
         });
+    }
+
+    /// What a reference still takes that has taken so many seconds, and the trials after it; what is not known yet is
+    /// left out.
+    std::optional<Eta> remaining_after(double seconds, double share) {
+        if (!(share > 0)) return {};
+        const std::optional<double> trials = remaining();
+        return Eta(seconds * (1 - share) / share + trials.value_or(0),
+                   !trials || missing_references_ > 1);
     }
 
     void run_trials() {
@@ -255,7 +270,8 @@ private:
     std::map<std::string, json> unfinished_;
     std::map<std::string, std::string> broken_references_;
     std::size_t ran_ = 0;
-    std::size_t others_ = 0;  ///< trials in the folder that are not in the plan
+    std::size_t missing_references_ = 0;  ///< with the one at work
+    std::size_t others_ = 0;              ///< trials in the folder that are not in the plan
     std::optional<double> waiting_;
     std::chrono::steady_clock::time_point estimated_;
     Stopwatch watch_;

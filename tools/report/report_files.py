@@ -1,6 +1,8 @@
 """What the tools that make reports from records share: whole files, and failures reported in one line."""
 import os
+import signal
 import sys
+import time
 
 from report import records
 
@@ -16,7 +18,7 @@ def write(path, text):
             file.flush()
             os.fsync(file.fileno())  # before it has its name: a disk may take the two in any order
         os.replace(part, path)
-    except OSError:
+    except BaseException:  # Ctrl-C too
         if os.path.isfile(part):
             os.remove(part)
         raise
@@ -25,6 +27,43 @@ def write(path, text):
         os.fsync(folder)
     finally:
         os.close(folder)
+
+
+def end_on_interrupt(tool):
+    """From now on Ctrl-C ends the program with exit code 130 and one line, wherever it is."""
+    def end(*_):
+        print(f"{tool}: interrupted", file=sys.stderr)
+        raise SystemExit(130)
+    signal.signal(signal.SIGINT, end)
+
+
+class Progress:
+    """One line on a terminal about the work on `steps` things of about the same cost; elsewhere nothing."""
+
+    def __init__(self, tool, steps):
+        self.tool, self.steps, self.done, self.shown = tool, steps, 0, 0
+        self.start = time.monotonic()
+        self.terminal = sys.stderr.isatty()
+
+    def step(self, what):
+        """Another thing is begun."""
+        now = time.monotonic()
+        if self.terminal and now - self.shown > 0.2:
+            self.shown = now
+            left = (now - self.start) / self.done * (self.steps - self.done) if self.done else None
+            eta = "-" if left is None else f"{int(left) // 60}:{int(left) % 60:02}"
+            line = f"{self.tool}: [{self.done}/{self.steps}] ETA {eta}, {what}"
+            self.write(line[:os.get_terminal_size(sys.stderr.fileno()).columns - 1])
+        self.done += 1
+
+    def end(self):
+        """Nothing stays of the line."""
+        if self.terminal:
+            self.write("")
+
+    @staticmethod
+    def write(line):
+        print(f"\r\033[K{line}", end="", file=sys.stderr, flush=True)
 
 
 def report(tool, what, output, make):

@@ -57,11 +57,16 @@ class Album:
         return len(self.about) - 1
 
 
-def make(sweeps, scenes, references, megabytes):
-    """(the page's text, what to tell the user)."""
+def picture_count(scenes):
+    """How many pictures make() looks for."""
+    return sum(bool(scene.reference) + sum(len(cell.seeds()) for cell in scene.cells) for scene in scenes)
+
+
+def make(sweeps, scenes, references, megabytes, tell=lambda picture: None):
+    """(the page's text, what to tell the user). `tell` hears of each picture before it is read."""
     album = Album(int(megabytes * 1e6))
     holes = []
-    shown = [SceneData(scene, album, references, holes) for scene in scenes]
+    shown = [SceneData(scene, album, references, holes, tell) for scene in scenes]
     for nth in range(max((len(cell.seeds()) for scene in scenes for cell in scene.cells), default=0)):
         for scene in shown:
             scene.keep_seed(nth)
@@ -90,14 +95,15 @@ def present(columns, kind, shown):
 class SceneData:
     """One scene of the page: its reference's layers and its cells, as JSON."""
 
-    def __init__(self, scene, album, references, holes):
-        self.scene, self.album, self.holes = scene, album, holes
+    def __init__(self, scene, album, references, holes, tell):
+        self.scene, self.album, self.holes, self.tell = scene, album, holes, tell
         self.size, self.rest = None, None
         self.reference = self.read_reference(references) if scene.reference else None
         self.cells = [cell_data(cell) for cell in scene.cells]
 
     def read_reference(self, folders):
         method, _, key = self.scene.reference.partition(":")
+        self.tell(f"the reference of {self.scene.title()}")
         about = {"method": method, "key": key}
         own = [pathlib.Path(sweep) / "references" for sweep in
                dict.fromkeys(cell.sweep.folder for cell in self.scene.cells)]
@@ -127,6 +133,7 @@ class SceneData:
     def picture(self, cell, seed):
         row = next(row for row in cell.rows if row["seed"] == seed)
         path = os.path.join(cell.sweep.folder, "trials", row["trial"], "image.exr")
+        self.tell(row["trial"])
         found = {"seed": seed, "trial": row["trial"], "hash": row.get("picture_hash", "")}
         try:
             layers, texts = pictures.read(path)
