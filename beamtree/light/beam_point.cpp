@@ -246,10 +246,10 @@ inline Tested test_triangle(const Corners& corners, const TestPlane& plane) {
 
 // Four corners that keep their orientation and are lit evenly are one caustic polygon; otherwise each
 // triangle keeps its own flux.
-int test_quad(const BeamSet& set, const Beam& beam, const TestPlane& plane,
+int test_quad(const std::array<const VertexRay*, 4>& rays, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits) {
-    const std::array<Tested, 2> parts = {test_triangle(set.triangle(beam, 0), plane),
-                                         test_triangle(set.triangle(beam, 1), plane)};
+    const std::array<Tested, 2> parts = {test_triangle(Corners{rays[0], rays[1], rays[2]}, plane),
+                                         test_triangle(Corners{rays[0], rays[2], rays[3]}, plane)};
     const bool together =
         !parts[0].apart && !parts[1].apart && parts[0].found.area * parts[1].found.area > 0;
     int written = 0;
@@ -267,13 +267,21 @@ int test_quad(const BeamSet& set, const Beam& beam, const TestPlane& plane,
 
 }  // namespace
 
-int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
+int test_beam(const std::array<const VertexRay*, 4>& rays, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits) {
-    if (beam.triangle_count() == 2) return test_quad(set, beam, plane, hits);
-    const Tested only = test_triangle(set.triangle(beam, 0), plane);
+    if (rays[3] != nullptr) return test_quad(rays, beam, plane, hits);
+    const Tested only = test_triangle(Corners{rays[0], rays[1], rays[2]}, plane);
     if (!only.is_hit()) return 0;
     hits[0] = hit_in(only.found, 0, plane);
     return 1;
+}
+
+int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
+              std::array<BeamHit, 2>& hits) {
+    std::array<const VertexRay*, 4> rays = {};
+    for (std::size_t i = 0; i < 4; ++i)
+        if (beam.corners[i] != Beam::none) rays[i] = &set.rays[beam.corners[i]];
+    return test_beam(rays, beam, plane, hits);
 }
 
 std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, std::size_t number,

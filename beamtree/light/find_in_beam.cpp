@@ -8,20 +8,32 @@ namespace caustics::beamtree {
 
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                   std::vector<BeamHit>& hits, SearchCounts& counts) {
-    const std::size_t before = hits.size();
-    if (set.drifts()) {
-        find_in_drifting_beam(set, number, plane, hits);
-    } else {
-        std::array<BeamHit, 2> found;
-        const int count = test_beam(set, set.beams[number.beam], plane, found);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            found[i].set = number.set;
-            found[i].beam = number.beam;
-            hits.push_back(found[i]);
-        }
+    if (!set.drifts()) {
+        std::array<const VertexRay*, 4> rays = {};
+        const Beam& beam = set.beams[number.beam];
+        for (std::size_t i = 0; i < 4; ++i)
+            if (beam.corners[i] != Beam::none) rays[i] = &set.rays[beam.corners[i]];
+        find_in_beam(set, rays, number, plane, hits, counts);
+        return;
     }
+    const std::size_t before = hits.size();
+    find_in_drifting_beam(set, number, plane, hits);
     ++counts.beam_point_tests;
     counts.beam_point_hits += hits.size() > before ? 1 : 0;
+}
+
+void find_in_beam(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
+                  const BeamNumber& number, const TestPlane& plane, std::vector<BeamHit>& hits,
+                  SearchCounts& counts) {
+    std::array<BeamHit, 2> found;
+    const int count = test_beam(rays, set.beams[number.beam], plane, found);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        found[i].set = number.set;
+        found[i].beam = number.beam;
+        hits.push_back(found[i]);
+    }
+    ++counts.beam_point_tests;
+    counts.beam_point_hits += count > 0 ? 1 : 0;
 }
 
 }  // namespace caustics::beamtree

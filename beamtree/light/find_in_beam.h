@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "beamtree/light/beam_point.h"
@@ -10,5 +11,9 @@ namespace caustics::beamtree {
 /// appends its hits with that number.
 void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
                   std::vector<BeamHit>& hits, SearchCounts& counts);
+/// The same of a beam that does not drift, by copies of its rays (test_beam).
+void find_in_beam(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
+                  const BeamNumber& number, const TestPlane& plane, std::vector<BeamHit>& hits,
+                  SearchCounts& counts);
 
 }  // namespace caustics::beamtree

@@ -90,15 +90,15 @@ Vec3 weights_at(const Vec2d& p, const Triangle& t, double area) {
 
 }  // namespace
 
-void find_on_square(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
-                    const BeamSquare& square, std::vector<BeamHit>& hits, SearchCounts& counts) {
-    const Beam& beam = set.beams[number.beam];
-    const std::size_t count = beam.triangle_count();
+void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
+                    const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,
+                    std::vector<BeamHit>& hits, SearchCounts& counts) {
+    const std::size_t count = rays[3] == nullptr ? 1 : 2;
     std::array<Triangle, 2> triangles;
     std::array<double, 2> areas{};
     for (std::size_t i = 0; i < count; ++i) {
-        const auto projected = project(set.triangle(beam, i), plane, square.frame);
-        if (!projected) return find_in_beam(set, number, plane, hits, counts);
+        const auto projected = project({rays[0], rays[1 + i], rays[2 + i]}, plane, square.frame);
+        if (!projected) return find_in_beam(set, rays, number, plane, hits, counts);
         triangles[i] = *projected;
         areas[i] = area_of(*projected);
     }
@@ -119,7 +119,7 @@ void find_on_square(const BeamSet& set, const BeamNumber& number, const TestPlan
         hit.weights = weights_at(part.middle, triangles[i], areas[i]);
         hit.area = std::abs(together ? areas[0] + areas[1] : areas[i]);
         hit.coverage = std::abs(part.area) / (4 * square.half * square.half);
-        if (count == 2 && !together) hit.flux_share = beam.share_of(i);
+        if (count == 2 && !together) hit.flux_share = set.beams[number.beam].share_of(i);
         hits.push_back(hit);
     }
     counts.beam_point_hits += hits.size() > before ? 1 : 0;

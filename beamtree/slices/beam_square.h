@@ -16,7 +16,9 @@ struct BeamSquare {
 /// for each of the beam's triangles that has one, with the share of the square it covers, and the
 /// middle of that part as the place where the light left. Polygons that the plane cuts, and those
 /// that run towards the horizon, are asked at the point as in find_in_beam.
-void find_on_square(const BeamSet& set, const BeamNumber& number, const TestPlane& plane,
-                    const BeamSquare& square, std::vector<BeamHit>& hits, SearchCounts& counts);
+/// `rays` are the beam's or copies of them (test_beam).
+void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
+                    const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,
+                    std::vector<BeamHit>& hits, SearchCounts& counts);
 
 }  // namespace caustics::beamtree

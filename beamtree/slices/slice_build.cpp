@@ -58,6 +58,10 @@ public:
         copy_branches(threads, all);
         all.leaf_width /= static_cast<float>(all.leaves.size());
         all.travel /= static_cast<float>(triangles_.size());
+        all.room = margin_ + reach_;
+        for (const SlicedTriangle& triangle : triangles_)
+            all.room = std::max({all.room, margin_ + reach_ + triangle.drift[0],
+                                 margin_ + reach_ + triangle.drift[1]});
         return all;
     }
 

@@ -26,6 +26,7 @@ struct SliceNodes {
     std::uint32_t height = 0;  ///< nodes on the longest way down
     float leaf_width = 0;      ///< mean, over both planes [m]
     float travel = 0;          ///< how far rays move from one plane to the other, mean [m]
+    float room = 0;            ///< by how much what is found may lie off a triangle's box [m]
 };
 
 /// Makes a hierarchy eight wide by opening the child with most triangles again and again.

@@ -46,6 +46,11 @@ struct alignas(64) SliceLeaf {
 struct SliceView {
     const SliceNode* nodes;
     const SliceLeaf* leaves;
+    /// What lies beside the leaves, beam by beam: fetched for those that are found.
+    const char* beams;
+    size_t beam_bytes;
+    /// By how much points may lie off a triangle's box.
+    float room;
 };
 
 /// A point of the slab.
@@ -78,11 +83,12 @@ struct SliceWalk {
     uint64_t tests;  ///< boxes, and triangles for each point, that were tested
 };
 
-/// Goes on with a walk until it ends or `found` might not hold what the next leaf has. Every
-/// instruction set visits the same nodes, finds the same beams in the same order, to the bit.
-using WalkSlices = void (*)(const SliceView&, SliceWalk&);
+/// Goes on with some walks, by turns so that one computes while another waits for memory, until each ends or its `found` might
+/// not hold what the next leaf has. Every instruction set visits the same nodes, finds the same beams in the same order, to
+/// the bit.
+using WalkSlices = void (*)(const SliceView&, SliceWalk* walks, size_t count);
 
-void walk_slices_plain(const SliceView&, SliceWalk&);
-void walk_slices_avx2(const SliceView&, SliceWalk&);
+void walk_slices_plain(const SliceView&, SliceWalk* walks, size_t count);
+void walk_slices_avx2(const SliceView&, SliceWalk* walks, size_t count);
 
 }  // namespace caustics::beamtree

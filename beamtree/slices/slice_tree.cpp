@@ -15,7 +15,9 @@
 namespace caustics::beamtree {
 namespace {
 
-constexpr float rounding = 1e-6F;       // more than a share is rounded by
+constexpr float rounding = 1e-6F;  // more than a share is rounded by
+// Groups of points that walk by turns.
+constexpr std::size_t groups_together = 8;
 constexpr std::size_t together = 1024;  // beams or rays that threads take at a time
 
 WalkSlices walk_for([[maybe_unused]] Isa isa) {
@@ -193,7 +195,25 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa, int thr
     height_ = made.height;
     leaf_width_ = made.leaf_width;
     travel_ = made.travel;
+    room_ = made.room;
     beams_ = std::move(beams.beams);
+    keep_corners(beams.sets);
+}
+
+void SliceTree::keep_corners(std::span<const BeamSet> sets) {
+    const auto drifts = [&](const BeamNumber& number) { return sets[number.set].drifts(); };
+    if (std::ranges::any_of(beams_, drifts)) return;
+    const auto is_quad = [&](const BeamNumber& number) {
+        return sets[number.set].beams[number.beam].triangle_count() == 2;
+    };
+    corner_count_ = std::ranges::any_of(beams_, is_quad) ? 4 : 3;
+    corners_.reserve(corner_count_ * beams_.size());
+    for (const BeamNumber& number : beams_)
+        for (std::size_t i = 0; i < corner_count_; ++i) {
+            const std::uint32_t corner = sets[number.set].beams[number.beam].corners[i];
+            corners_.push_back(corner == Beam::none ? VertexRay{Vec3::Zero(), Vec3::Zero()}
+                                                    : sets[number.set].rays[corner]);
+        }
 }
 
 /// Points near each other, each with its number among those that were asked about.
@@ -237,66 +257,96 @@ void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoin
     // Half a leaf across, and no more down than rays move by that.
     const float reach = leaf_width_ / 2;
     const Eigen::Array4f largest(reach, reach, reach / std::max(travel_, reach), 1);
-    Group group;
+    std::array<Group, groups_together> groups;
+    std::size_t count = 0;  // of groups that have points
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         SlicePoint point;
         if (!place(points[i], point)) continue;
-        if (!group.take(point, largest)) {
-            find(group, sets, stack, hits, counts);
-            group.count = 0;
-            group.take(point, largest);
+        if (count == 0 || !groups[count - 1].take(point, largest)) {
+            if (count == groups.size()) {
+                find(groups, sets, stack, hits, counts);
+                count = 0;
+            }
+            groups[count].count = 0;
+            groups[count++].take(point, largest);
         }
+        Group& group = groups[count - 1];
         group.number[group.count - 1] = i;
         group.position[group.count - 1] = &points[i].position;
     }
-    if (group.count > 0) find(group, sets, stack, hits, counts);
+    if (count > 0) find(std::span(groups).first(count), sets, stack, hits, counts);
 }
 
-void SliceTree::find(const Group& group, std::span<const BeamSet> sets,
+void SliceTree::find(std::span<const Group> groups, std::span<const BeamSet> sets,
                      std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
                      SearchCounts& counts) const {
-    std::array<SliceCandidate, 16 * Group::room> found;
+    constexpr std::size_t found_room = 16 * Group::room;
+    std::array<std::array<SliceCandidate, found_room>, groups_together> found;
+    std::array<SliceWalk, groups_together> walks;
     const std::size_t room = 7 * height_ + 8;
-    if (stack.size() < room) stack.resize(room);
-    SliceWalk walk{group.points.data(),
-                   group.count,
-                   {group.low[0], group.low[1]},
-                   {group.high[0], group.high[1]},
-                   group.low[2],
-                   group.high[2],
-                   stack.data(),
-                   0,
-                   found.data(),
-                   found.size(),
-                   0,
-                   0};
-    walk.stack[walk.stacked++] = root_;
-    TestPlane plane = plane_;
-    while (walk.stacked > 0) {
-        walk.found_count = 0;
-        walk_({nodes_.data(), leaves_.data()}, walk);
-        SliceCandidate last{Group::room, 0};
-        for (std::size_t i = 0; i < walk.found_count; ++i) {
-            const SliceCandidate& candidate = found[i];
-            // The other triangle of four corners.
-            if (candidate.point == last.point && candidate.beam == last.beam) continue;
-            last = candidate;
-            const BeamNumber& number = beams_[candidate.beam];
-            plane.move_to(*group.position[candidate.point]);
-            std::vector<BeamHit>& found_here = hits[group.number[candidate.point]];
-            if (half_footprint_ > 0)
-                find_on_square(sets[number.set], number, plane, {frame_, half_footprint_},
-                               found_here, counts);
-            else
-                find_in_beam(sets[number.set], number, plane, found_here, counts);
+    if (stack.size() < groups.size() * room) stack.resize(groups.size() * room);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const Group& group = groups[i];
+        walks[i] = {group.points.data(),
+                    group.count,
+                    {group.low[0], group.low[1]},
+                    {group.high[0], group.high[1]},
+                    group.low[2],
+                    group.high[2],
+                    stack.data() + i * room,
+                    1,
+                    found[i].data(),
+                    found_room,
+                    0,
+                    0};
+        walks[i].stack[0] = root_;
+    }
+    const SliceView view{nodes_.data(), leaves_.data(),
+                         reinterpret_cast<const char*>(corners_.data()),
+                         corner_count_ * sizeof(VertexRay), room_};
+    for (bool more = true; more;) {
+        walk_(view, walks.data(), groups.size());
+        more = false;
+        for (std::size_t i = 0; i < groups.size(); ++i) {
+            test(walks[i], groups[i], sets, hits, counts);
+            walks[i].found_count = 0;
+            more = more || walks[i].stacked > 0;
         }
     }
-    counts.cone_point_tests += walk.tests;
+    for (std::size_t i = 0; i < groups.size(); ++i) counts.cone_point_tests += walks[i].tests;
+}
+
+// Exactly, what a walk has found.
+void SliceTree::test(const SliceWalk& walk, const Group& group, std::span<const BeamSet> sets,
+                     std::span<std::vector<BeamHit>> hits, SearchCounts& counts) const {
+    TestPlane plane = plane_;
+    SliceCandidate last{Group::room, 0};
+    for (std::size_t i = 0; i < walk.found_count; ++i) {
+        const SliceCandidate& candidate = walk.found[i];
+        // The other triangle of four corners.
+        if (candidate.point == last.point && candidate.beam == last.beam) continue;
+        last = candidate;
+        const BeamNumber& number = beams_[candidate.beam];
+        const BeamSet& set = sets[number.set];
+        plane.move_to(*group.position[candidate.point]);
+        std::vector<BeamHit>& found_here = hits[group.number[candidate.point]];
+        if (corner_count_ == 0) {
+            find_in_beam(set, number, plane, found_here, counts);
+            continue;
+        }
+        const VertexRay* const corner = corners_.data() + candidate.beam * corner_count_;
+        std::array<const VertexRay*, 4> rays = {corner, corner + 1, corner + 2, nullptr};
+        if (corner_count_ == 4 && !corner[3].direction.isZero(0)) rays[3] = corner + 3;
+        if (half_footprint_ > 0)
+            find_on_square(set, rays, number, plane, {frame_, half_footprint_}, found_here, counts);
+        else
+            find_in_beam(set, rays, number, plane, found_here, counts);
+    }
 }
 
 std::uint64_t SliceTree::bytes() const {
-    return beams_.size() * sizeof(BeamNumber) + nodes_.size() * sizeof(SliceNode) +
-           leaves_.size() * sizeof(SliceLeaf);
+    return beams_.size() * sizeof(BeamNumber) + corners_.size() * sizeof(VertexRay) +
+           nodes_.size() * sizeof(SliceNode) + leaves_.size() * sizeof(SliceLeaf);
 }
 
 }  // namespace caustics::beamtree

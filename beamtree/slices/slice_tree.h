@@ -53,10 +53,18 @@ private:
     struct Group;
     SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa, int threads);
     bool place(const ReceiverPoint& point, SlicePoint& placed) const;
-    void find(const Group& group, std::span<const BeamSet> sets, std::vector<std::uint32_t>& stack,
+    void keep_corners(std::span<const BeamSet> sets);
+    void find(std::span<const Group> groups, std::span<const BeamSet> sets,
+              std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
+              SearchCounts& counts) const;
+    void test(const SliceWalk& walk, const Group& group, std::span<const BeamSet> sets,
               std::span<std::vector<BeamHit>> hits, SearchCounts& counts) const;
 
     std::vector<BeamNumber> beams_;  ///< in the order of the leaves
+    /// Copies of the beams' corners in that order, `corner_count_` each (the fourth without a direction where there are
+    /// three); none where beams drift.
+    std::vector<VertexRay> corners_;
+    std::size_t corner_count_ = 0;
     SliceFrame frame_;
     double half_footprint_;
     TestPlane plane_;  ///< the direction of all planes
@@ -67,6 +75,7 @@ private:
     std::uint32_t height_ = 0;
     float leaf_width_ = 0;
     float travel_ = 0;
+    float room_ = 0;
 };
 
 }  // namespace caustics::beamtree

@@ -21,7 +21,7 @@ public:
         return bits(_mm256_and_ps(begun, _mm256_and_ps(meets(node, 0), meets(node, 1))));
     }
 
-    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point) {
+    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
         const __m256 share = _mm256_set1_ps(point.share);
         __m256 x[3];
         __m256 y[3];
@@ -41,10 +41,35 @@ public:
         const __m256 holds = _mm256_or_ps(not_above(minus, least), not_above(most, slack));
         const __m256 cut = _mm256_cmp_ps(share, _mm256_load_ps(leaf.whole_from), _CMP_LT_OQ);
         const __m256 begun = not_above(_mm256_load_ps(leaf.begun_from), share);
-        return bits(_mm256_and_ps(begun, _mm256_or_ps(holds, cut)));
+        const uint32_t held = bits(_mm256_and_ps(begun, holds));
+        const uint32_t clipped = bits(_mm256_andnot_ps(holds, _mm256_and_ps(begun, cut)));
+        if (clipped == 0) return held;
+        return held | (clipped & bits(_mm256_and_ps(box_holds(leaf, 0, point, room),
+                                                    box_holds(leaf, 1, point, room))));
     }
 
 private:
+    static __m256 box_holds(const SliceLeaf& leaf, unsigned axis, const SlicePoint& point,
+                            float room) {
+        __m256 top[3];
+        __m256 bottom[3];
+        for (unsigned c = 0; c < 3; ++c) {
+            top[c] = _mm256_load_ps(leaf.corner[c][axis]);
+            bottom[c] = _mm256_add_ps(top[c], _mm256_load_ps(leaf.growth[c][axis]));
+        }
+        const __m256 low = _mm256_min_ps(_mm256_min_ps(top[0], top[1]), top[2]);
+        const __m256 high = _mm256_max_ps(_mm256_max_ps(top[0], top[1]), top[2]);
+        const __m256 low_growth =
+            _mm256_sub_ps(_mm256_min_ps(_mm256_min_ps(bottom[0], bottom[1]), bottom[2]), low);
+        const __m256 high_growth =
+            _mm256_sub_ps(_mm256_max_ps(_mm256_max_ps(bottom[0], bottom[1]), bottom[2]), high);
+        const __m256 share = _mm256_set1_ps(point.share);
+        const __m256 low_here = _mm256_add_ps(low, _mm256_mul_ps(share, low_growth));
+        const __m256 high_here = _mm256_add_ps(high, _mm256_mul_ps(share, high_growth));
+        return _mm256_and_ps(not_above(low_here, _mm256_set1_ps(point.at[axis] + room)),
+                             not_above(_mm256_set1_ps(point.at[axis] - room), high_here));
+    }
+
     __m256 meets(const SliceNode& node, unsigned axis) const {
         const __m256 low = _mm256_min_ps(at(node.low[axis], node.low_growth[axis], least_share_),
                                          at(node.low[axis], node.low_growth[axis], most_share_));
@@ -69,8 +94,8 @@ private:
 
 }  // namespace
 
-void walk_slices_avx2(const SliceView& tree, SliceWalk& walk) {
-    walk_slices<Avx2Eight>(tree, walk);
+void walk_slices_avx2(const SliceView& tree, SliceWalk* walks, size_t count) {
+    walk_slices<Avx2Eight>(tree, walks, count);
 }
 
 }  // namespace caustics::beamtree

@@ -30,8 +30,8 @@ public:
         return bits;
     }
 
-    // The point is on one side of all three edges, but for rounding.
-    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point) {
+    // The point is on one side of all three edges, but for rounding; or the triangle is cut there and its box holds it.
+    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
         uint32_t bits = 0;
         for (unsigned i = 0; i < slice_width; ++i) {
             float x[3];
@@ -45,7 +45,9 @@ public:
             const float c = x[2] * y[0] - y[2] * x[0];
             const float slack = leaf.slack[i];
             const bool holds = -slack <= least(least(a, b), c) || most(most(a, b), c) <= slack;
-            const bool cut = point.share < leaf.whole_from[i];
+            const bool cut = point.share < leaf.whole_from[i] &&
+                             box_holds(leaf, i, 0, point, room) &&
+                             box_holds(leaf, i, 1, point, room);
             const bool begun = leaf.begun_from[i] <= point.share;
             bits |= (begun && (holds || cut) ? 1U : 0U) << i;
         }
@@ -53,13 +55,30 @@ public:
     }
 
 private:
+    // As the boxes of nodes: between those on both planes.
+    static bool box_holds(const SliceLeaf& leaf, unsigned i, unsigned axis, const SlicePoint& point,
+                          float room) {
+        float top[3];
+        float bottom[3];
+        for (unsigned c = 0; c < 3; ++c) {
+            top[c] = leaf.corner[c][axis][i];
+            bottom[c] = top[c] + leaf.growth[c][axis][i];
+        }
+        const float low = least(least(top[0], top[1]), top[2]);
+        const float high = most(most(top[0], top[1]), top[2]);
+        const float low_growth = least(least(bottom[0], bottom[1]), bottom[2]) - low;
+        const float high_growth = most(most(bottom[0], bottom[1]), bottom[2]) - high;
+        return low + point.share * low_growth <= point.at[axis] + room &&
+               point.at[axis] - room <= high + point.share * high_growth;
+    }
+
     const SliceWalk& walk_;
 };
 
 }  // namespace
 
-void walk_slices_plain(const SliceView& tree, SliceWalk& walk) {
-    walk_slices<PlainEight>(tree, walk);
+void walk_slices_plain(const SliceView& tree, SliceWalk* walks, size_t count) {
+    walk_slices<PlainEight>(tree, walks, count);
 }
 
 }  // namespace caustics::beamtree
