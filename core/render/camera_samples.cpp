@@ -11,6 +11,7 @@ CameraSamples::CameraSamples(const Scene& scene, const RunOptions& options, int 
       seed_(options.seed),
       per_pixel_(options.samples_per_pixel),
       most_(most),
+      adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
       disperses_(disperses(scene)) {}
 
 std::uint64_t CameraSamples::pixel_number(int x, int y) const {
@@ -33,7 +34,24 @@ Vec2d CameraSamples::film_point(int x, int y, int sample, Rng& rng) const {
         u = (sample % n + u) / n;
         v = (sample / n + v) / n;
     }
+    if (adaptive_) return Vec2d(x, y) + sequence_point(x, y, sample);
     return {x + u, y + v};
+}
+
+Vec2d CameraSamples::sequence_point(int x, int y, int sample) const {
+    // The words that place the first sample also turn over the digits of all others.
+    Rng rng(seed_, Stage::eye, id(x, y, 0));
+    std::uint32_t across = rng.next_word(), down = rng.next_word();
+    std::uint32_t mirrored = 1U << 31U, column = 1U << 31U;
+    for (auto digits = static_cast<std::uint32_t>(sample); digits != 0; digits >>= 1U) {
+        if ((digits & 1U) != 0) {
+            across ^= mirrored;
+            down ^= column;
+        }
+        mirrored >>= 1U;
+        column ^= column >> 1U;
+    }
+    return {across * 0x1p-32, down * 0x1p-32};
 }
 
 std::optional<double> CameraSamples::wavelength_choice(int x, int y, int sample) const {

@@ -19,17 +19,22 @@ public:
     int most() const { return most_; }
     std::uint64_t pixel_number(int x, int y) const;
     std::uint64_t id(int x, int y, int sample) const;
-    /// The film point of a sample, in pixels (Mitsuba's samplers; [C11] with two numbers an axis).
+    /// The film point of a sample, in pixels (Mitsuba's samplers; [C11] with two numbers an axis). Adaptive samples
+    /// follow a (0, 2)-sequence [Sobol 1967], scrambled at random in every pixel: with each doubling they
+    /// fill the cells of all grids of so many cells, one in each.
     Vec2d film_point(int x, int y, int sample, Rng& rng) const;
     /// The number of [0, 1) that chooses a sample's wavelength; none where no glass disperses. Spread over the
     /// pixel's samples (van der Corput), and at random over the pixels: few samples have all colours.
     std::optional<double> wavelength_choice(int x, int y, int sample) const;
 
 private:
+    Vec2d sequence_point(int x, int y, int sample) const;
+
     const Scene& scene_;
     std::uint64_t seed_;
     int per_pixel_;
     int most_;
+    bool adaptive_;
     bool disperses_;
 };
 

@@ -11,6 +11,9 @@
 namespace caustics {
 namespace {
 
+/// Adaptive sampling: up to so many times the first samples a pixel takes more where a neighbour does.
+constexpr int followed_samples = 4;
+
 /// The three ways to take a picture's samples: a fixed number a pixel, adaptively, or pass by pass.
 class EyePass {
 public:
@@ -153,39 +156,71 @@ private:
         }
     }
 
-    // The base samples of the whole picture first: how bright it is decides what is dark.
+    // The base samples of the whole picture first: how bright it is decides what is dark. Then doubles the samples of
+    // the pixels that need more, until none does or none may have more.
     void sample_adaptively(FilmLayers& layers) {
         std::vector<std::vector<PixelSums>> sums(tiles_.size());
         for_each_tile(0, 0.5, [&](const Tile& tile, std::size_t i, TileWorker& worker) {
             sums[i].resize(tile.pixel_count());
             sample_all(tile, sums[i], worker);
         });
+        const SpectrumSum mean = mean_beauty(sums);
+        double done = 0.5;
+        for (int samples = options_.samples_per_pixel; samples < samples_.most();) {
+            const std::vector<bool> uneven = uneven_pixels(sums, samples, mean);
+            if (std::ranges::find(uneven, true) == uneven.end()) break;
+            const int more = std::min(samples, samples_.most() - samples);
+            const double next = done + (1 - done) / 2;
+            for_each_tile(done, next, [&](const Tile& tile, std::size_t i, TileWorker& worker) {
+                choose_pixels(tile, sums[i], samples, uneven, worker);
+                sampler_.sample(tile, samples, more, sums[i], worker);
+            });
+            samples += more;
+            done = next;
+        }
+        for (std::size_t i = 0; i < tiles_.size(); ++i) write(tiles_[i], sums[i], layers);
+    }
+
+    SpectrumSum mean_beauty(const std::vector<std::vector<PixelSums>>& sums) const {
         SpectrumSum brightness = SpectrumSum::Zero();
         for (const std::vector<PixelSums>& tile : sums)
             for (const PixelSums& pixel : tile) brightness += pixel.beauty() / pixel.samples;
         const Camera& camera = scene_.camera();
-        const SpectrumSum mean = brightness / (double{1} * camera.width * camera.height);
-        for_each_tile(0.5, 1, [&](const Tile& tile, std::size_t i, TileWorker& worker) {
-            refine(tile, mean, sums[i], worker);
-            write(tile, sums[i], layers);
-            sums[i] = {};
-        });
+        return brightness / (double{1} * camera.width * camera.height);
     }
 
-    // Doubles the samples of the pixels whose error is too large, until none is or none may have
-    // more.
-    void refine(const Tile& tile, const SpectrumSum& mean, std::vector<PixelSums>& sums,
-                TileWorker& worker) const {
-        for (int samples = options_.samples_per_pixel; samples < samples_.most();) {
-            worker.pixels.clear();
-            for (std::size_t pixel = 0; pixel < sums.size(); ++pixel)
-                if (sums[pixel].samples == samples && needs_more(sums[pixel], mean))
-                    worker.pixels.push_back(pixel);
-            if (worker.pixels.empty()) return;
-            const int more = std::min(samples, samples_.most() - samples);
-            sampler_.sample(tile, samples, more, sums, worker);
-            samples += more;
-        }
+    // Of the picture's pixels that have so many samples, those whose error is too large.
+    std::vector<bool> uneven_pixels(const std::vector<std::vector<PixelSums>>& sums, int samples,
+                                    const SpectrumSum& mean) const {
+        const Camera& camera = scene_.camera();
+        std::vector<bool> uneven(static_cast<std::size_t>(camera.width) *
+                                 static_cast<std::size_t>(camera.height));
+        for (std::size_t i = 0; i < tiles_.size(); ++i)
+            for (std::size_t pixel = 0; pixel < sums[i].size(); ++pixel)
+                uneven[samples_.pixel_number(tiles_[i].x(pixel), tiles_[i].y(pixel))] =
+                    sums[i][pixel].samples == samples && needs_more(sums[i][pixel], mean);
+        return uneven;
+    }
+
+    // The tile's pixels that take more samples. While they are few, a pixel may have missed what its neighbours met.
+    void choose_pixels(const Tile& tile, const std::vector<PixelSums>& sums, int samples,
+                       const std::vector<bool>& uneven, TileWorker& worker) const {
+        const int reach = samples < followed_samples * options_.samples_per_pixel ? 1 : 0;
+        worker.pixels.clear();
+        for (std::size_t pixel = 0; pixel < sums.size(); ++pixel)
+            if (sums[pixel].samples == samples &&
+                any_around(uneven, tile.x(pixel), tile.y(pixel), reach))
+                worker.pixels.push_back(pixel);
+    }
+
+    bool any_around(const std::vector<bool>& uneven, int x, int y, int reach) const {
+        const Camera& camera = scene_.camera();
+        for (int at_y = std::max(0, y - reach); at_y <= std::min(camera.height - 1, y + reach);
+             ++at_y)
+            for (int at_x = std::max(0, x - reach); at_x <= std::min(camera.width - 1, x + reach);
+                 ++at_x)
+                if (uneven[samples_.pixel_number(at_x, at_y)]) return true;
+        return false;
     }
 
     // A standard error above the allowed share of the pixel's own brightness, or of a tenth of the

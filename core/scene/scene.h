@@ -16,9 +16,10 @@ namespace caustics {
 class Intersector;
 
 /// How the pixel's samples are placed: Mitsuba's `independent` and `stratified` (row C4), and
-/// `adaptive` (row J10), which starts with independent ones and doubles them while a pixel's standard
-/// error exceeds a share of its brightness, as the adaptive integrator of Mitsuba 0.6 does. Samples
-/// that decide about more samples are used as well, so that an adaptive picture is slightly biased.
+/// `adaptive` (row J10), which doubles them while a pixel's standard error, as that of independent ones, exceeds a
+/// share of its brightness, as the adaptive integrator of Mitsuba 0.6 does; they fill finer and finer grids
+/// (CameraSamples). Samples that decide about more samples are used as well, so that an adaptive picture is slightly
+/// biased.
 struct PixelSampling {
     bool stratified = false;
     bool jitter = true;  ///< of stratified samples; false = cell centres

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/math/rng.h"
+#include "core/render/camera_samples.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
 
@@ -302,6 +304,16 @@ protected:
         return Estimate{Spectrum(Spectrum::Constant(point.position.x() > 0.1F ? 1.0F : 0.0F)),
                         black()};
     }};
+    /// The largest value of a plane at the pixel and its eight neighbours.
+    static float brightest_around(const std::vector<float>& plane, std::size_t pixel) {
+        constexpr int width = 33, height = 21;
+        const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
+        float brightest = 0;
+        for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
+            for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i)
+                brightest = std::max(brightest, plane[static_cast<std::size_t>(j * width + i)]);
+        return brightest;
+    }
     /// Mean squared error of red against pixel averages by many samples.
     static double squared_error(const Film& film, const Film& truth) {
         double sum = 0;
@@ -319,9 +331,12 @@ TEST_F(AdaptiveSampling, TakesMoreSamplesWhereThePixelIsNotEven) {
     double sum = 0;
     for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
         const float value = rendering.film.rgb("", pixel)[0];
-        EXPECT_TRUE(samples[pixel] == 4 || samples[pixel] == 64) << samples[pixel];
-        EXPECT_EQ(samples[pixel] > 4, value > 0 && value < 1) << pixel;
-        refined += samples[pixel] > 4 ? 1 : 0;
+        // 16: an even one beside the edge.
+        EXPECT_TRUE(samples[pixel] == 4 || samples[pixel] == 16 || samples[pixel] == 64)
+            << samples[pixel];
+        EXPECT_EQ(samples[pixel] == 64, value > 0 && value < 1) << pixel;
+        EXPECT_EQ(samples[pixel] > 4, brightest_around(samples, pixel) == 64) << pixel;
+        refined += samples[pixel] == 64 ? 1 : 0;
         sum += static_cast<double>(samples[pixel]);
     }
     EXPECT_GT(refined, 15) << "about a pixel a row lies on the edge";
@@ -355,9 +370,41 @@ TEST_F(AdaptiveSampling, LeavesDarkNoiseAloneAndIsTheSameForAnyNumberOfThreads) 
     EXPECT_TRUE(same_planes(one, render(scene, dark, run(4, 3)).film));
     const std::vector<float>& samples = *one.find("samples.Y");
     for (std::size_t pixel = 0; pixel < samples.size(); ++pixel)
-        if (one.rgb("", pixel)[0] < 0.002F) {
+        if (brightest_around(*one.find("R"), pixel) < 0.002F) {
             EXPECT_EQ(samples[pixel], 4);
         }
+}
+
+// The first 4, 8, 16, ... samples of a pixel have one in each cell of every grid of so many cells.
+TEST_F(AdaptiveSampling, FillsTheCellsOfEveryGridOfPowersOfTwo) {
+    const Scene scene(floor(64, 1e-6F));
+    RunOptions options = run(4);
+    const CameraSamples samples(scene, options, 64);
+    double sum_x = 0, sum_y = 0;
+    for (int pixel = 0; pixel < 33 * 21; ++pixel) {
+        const int x = pixel % 33, y = pixel / 33;
+        std::vector<Vec2d> places;
+        for (int sample = 0; sample < 64; ++sample) {
+            Rng rng(options.seed, Stage::eye, samples.id(x, y, sample));
+            places.push_back(samples.film_point(x, y, sample, rng) - Vec2d(x, y));
+            sum_x += places.back().x();
+            sum_y += places.back().y();
+        }
+        for (int count = 1; count <= 64; count *= 2)
+            for (int columns = 1; columns <= count; columns *= 2) {
+                std::set<int> cells;
+                for (int i = 0; i < count; ++i) {
+                    const Vec2d& p = places[static_cast<std::size_t>(i)];
+                    cells.insert(static_cast<int>(p.x() * columns) +
+                                 columns * static_cast<int>(p.y() * count / columns));
+                }
+                ASSERT_EQ(cells.size(), static_cast<std::size_t>(count)) << columns;
+            }
+    }
+    // Their mean is uniform: within its cells of a 64th all samples of a pixel are shifted alike.
+    const double scatter = 4 * std::sqrt(1.0 / 12 / (33 * 21)) / 64;
+    EXPECT_NEAR(sum_x / (64 * 33 * 21), 0.5, scatter);
+    EXPECT_NEAR(sum_y / (64 * 33 * 21), 0.5, scatter);
 }
 
 // Behind dispersive glass a pixel's samples have wavelengths far apart: with so few that each were drawn by
