@@ -109,10 +109,15 @@ def not_measured(results):
 
 
 def number(results, found, kind, words):
-    """A number of the page's prose: {error SCENE METHOD SECONDS}, {factor SCENE SECONDS}, {case HYPOTHESIS CASE}."""
+    """A number of the page's prose: {error SCENE METHOD SECONDS}, {factor SCENE SECONDS}, {case HYPOTHESIS CASE}, {last SCENE METHOD}
+    (seconds at the end of a front)."""
     if kind == "case":
         name, _, case = words.partition(" ")
         return next((each["measured"] for each in found[name]["cases"] if each["case"] == case), "not measured")
+    if kind == "last":
+        scene, _, method = words.partition(" ")
+        field = results.fields.get(scene)
+        return tables.seconds(field.curve(method)[-1][0]) if field else "not measured"
     scene, *method, seconds = words.split(" ")
     field = results.fields.get(scene)
     if field is None:
@@ -135,7 +140,7 @@ def rendered(results):
              **{table.name: section(table).lstrip("\n").partition("\n\n")[2].rstrip("\n") for table in kept}}
     for name, text in facts.items():
         words = words.replace("{" + name + "}", text)
-    words = re.sub(r"\{(error|factor|case) ([^}]+)\}", lambda place: number(results, of, *place.groups()), words)
+    words = re.sub(r"\{(error|factor|case|last) ([^}]+)\}", lambda place: number(results, of, *place.groups()), words)
     title = "The duel of photon map and beam tree"
     return {"README.md": words, "verdicts.json": json.dumps(found, indent=1, ensure_ascii=False) + "\n",
             "tables.md": f"# {title}: all tables\n\n{results.machine()}\n" + "".join(map(section, kept)),
