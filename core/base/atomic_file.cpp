@@ -21,6 +21,13 @@ std::filesystem::path entry_of(int descriptor) {
     return "/proc/self/fd/" + std::to_string(descriptor);
 }
 
+/// A new file of that name, in place of what a killed process may have left; a link is not followed.
+int open_named(const std::filesystem::path& file) {
+    constexpr mode_t mode = 0666;
+    unlink(file.c_str());
+    return open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC | O_NOFOLLOW, mode);
+}
+
 /// A file without a name in the folder, which a killed process leaves nothing of; -1 where the file
 /// system has no such files, or it could not be given a name later.
 int open_nameless(const std::filesystem::path& folder) {
@@ -40,9 +47,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(file), tempora
     temporary_ += ".tmp-" + std::to_string(getpid());
     out_ = open_nameless(folder_above(file));
     is_nameless_ = out_ >= 0;
-    constexpr mode_t mode = 0666;
-    if (!is_nameless_)
-        out_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode);
+    if (!is_nameless_) out_ = open_named(temporary_);
     if (out_ < 0) fail(errno);
 }
 

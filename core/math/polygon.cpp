@@ -1,6 +1,9 @@
 #include "core/math/polygon.h"
 
 #include <numeric>
+#include <string>
+
+#include "core/base/error.h"
 
 namespace caustics {
 
@@ -40,6 +43,9 @@ public:
         // From the second corner on, so that a convex polygon is a fan about the first.
         std::size_t at = 1;
         for (std::size_t refused = 0; left_.size() > 3;) {
+            if (tests_ > most_tests_per_corner * flat_.size())
+                throw InputError("a polygon of " + std::to_string(flat_.size()) +
+                                 " corners is too large or too winding: cut it into smaller ones");
             at %= left_.size();
             // When no corner is an ear, one that turns nowhere may go, and then any.
             const bool desperate = refused >= 2 * left_.size();
@@ -63,12 +69,13 @@ private:
 
     /// Whether the corner turns left (or, if `flat` will do, nowhere) and the triangle with its
     /// neighbours holds no other corner.
-    bool is_ear(std::size_t at, bool flat) const {
+    bool is_ear(std::size_t at, bool flat) {
         const Vec2d &a = flat_[before(at)], &b = flat_[left_[at]], &c = flat_[after(at)];
         const double area = turn(a, b, c);
         if (area < 0 || (area == 0 && !flat)) return false;
         for (const std::uint32_t other : left_) {
             const Vec2d& p = flat_[other];
+            ++tests_;
             if (p == a || p == b || p == c) continue;
             if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
         }
@@ -80,6 +87,10 @@ private:
         left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
     }
 
+    // Enough for 4,000 convex corners; what crosses itself may take the third power of its corners.
+    static constexpr std::size_t most_tests_per_corner = 2048;
+
+    std::size_t tests_ = 0;
     std::vector<Vec2d> flat_;
     std::vector<std::uint32_t> left_;  ///< corners not cut off
     std::vector<std::array<std::uint32_t, 3>> triangles_;

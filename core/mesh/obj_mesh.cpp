@@ -178,10 +178,18 @@ private:
         }
         has_uvs_ = has_uvs_ || corners_[0].uv;
         has_normals_ = has_normals_ || corners_[0].normal;
-        for (const auto& [a, b, c] : triangulate_polygon(polygon_)) {
+        for (const auto& [a, b, c] : cut_face()) {
             const std::uint32_t first = vertex(corners_[a]);
             const std::uint32_t second = vertex(corners_[b]);
             mesh_.triangles.push_back({first, second, vertex(corners_[c])});
+        }
+    }
+
+    std::vector<std::array<std::uint32_t, 3>> cut_face() const {
+        try {
+            return triangulate_polygon(polygon_);
+        } catch (const InputError& error) {
+            fail(error.what());
         }
     }
 

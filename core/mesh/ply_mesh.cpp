@@ -1,6 +1,7 @@
 #include "core/mesh/ply_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "core/base/interrupt.h"
+#include "core/base/error.h"
 #include "core/math/polygon.h"
 #include "core/mesh/ply_file.h"
 #include "core/mesh/quoted_word.h"
@@ -173,14 +175,24 @@ private:
         if (!found) file_.fail("faces have no list 'vertex_indices' or 'vertex_index'");
     }
 
+    std::vector<std::array<std::uint32_t, 3>> cut_face(const std::vector<Vec3>& polygon,
+                                                       std::size_t face) const {
+        try {
+            return triangulate_polygon(polygon);
+        } catch (const InputError& error) {
+            file_.fail("face " + std::to_string(face) + ": " + error.what());
+        }
+    }
+
     // Faces may come before their vertices.
     void cut_polygons() {
         std::vector<Vec3> polygon;
         const std::uint32_t* corners = corners_.data();
-        for (const std::uint32_t size : polygon_sizes_) {
+        for (std::size_t face = 0; face < polygon_sizes_.size(); ++face) {
+            const std::uint32_t size = polygon_sizes_[face];
             polygon.clear();
             for (std::uint32_t i = 0; i < size; ++i) polygon.push_back(mesh_.positions[corners[i]]);
-            for (const auto& [a, b, c] : triangulate_polygon(polygon))
+            for (const auto& [a, b, c] : cut_face(polygon, face))
                 mesh_.triangles.push_back({corners[a], corners[b], corners[c]});
             corners += size;
         }

@@ -13,6 +13,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t max_depth = 64;
+// Ten files that name the next one ten times each would be 10^10.
+constexpr std::size_t most_inclusions = 10'000;
+constexpr std::size_t most_included_bytes = std::size_t{1} << 26;
 
 /// Follows the parser's events to know the pointer of each key, and refuses a key's second time and
 /// control characters: a file's name would end at a NUL, and no name is printed with them.
@@ -123,6 +126,15 @@ private:
         return failed ? file : path;
     }
 
+    std::string take(const std::filesystem::path& file, const std::string& place) {
+        std::string text = read_whole_file(file);
+        bytes_ += text.size();
+        if (++inclusions_ > most_inclusions || bytes_ > most_included_bytes)
+            throw InputError(place + "more than " + std::to_string(most_inclusions) +
+                             " inclusions, or more than 64 MiB of text in them");
+        return text;
+    }
+
     void include(json& value, const std::string& pointer, const std::string& local_pointer,
                  const std::filesystem::path& file) {
         const std::string place =
@@ -142,7 +154,7 @@ private:
             throw InputError(place + "files include each other more than " +
                              std::to_string(max_depth) + " levels deep");
         try {
-            value = parse_json(read_whole_file(target), target.string());
+            value = parse_json(take(target, place), target.string());
         } catch (const std::filesystem::filesystem_error& e) {
             throw InputError(place + e.what());
         } catch (const InputError& e) {
@@ -157,6 +169,8 @@ private:
 
     std::map<std::string, std::filesystem::path>& included_;
     std::vector<std::filesystem::path> open_;
+    std::size_t inclusions_ = 0;
+    std::size_t bytes_ = 0;
 };
 
 }  // namespace

@@ -21,6 +21,16 @@ SineWave read_wave(const JsonNode& node) {
     return wave;
 }
 
+// A ray is marched from crest to crest, and a double resolves none of more.
+void require_few_crests(const JsonNode& node, const SineWave& wave, const Vec2d& half_size) {
+    constexpr double most_crests = 10'000;
+    const double crests = wave.wave_vector.cwiseAbs().dot(half_size) / pi_d;
+    if (!(crests <= most_crests))
+        node.at("wave_vector")
+            .fail(fmt::format("makes {:.3g} crests across the rectangle, more than {:.0f}", crests,
+                              most_crests));
+}
+
 HeightGrid read_fractal(const JsonNode& node, const Vec2d& half_size) {
     FractalField field;
     field.half_size = half_size;
@@ -104,7 +114,10 @@ std::variant<SineHeightfield, HeightGrid> read_heights(const JsonNode& node, Ass
     if (name) return read_picture(*name, height, half_size, assets);
     SineHeightfield field;
     field.half_size = half_size;
-    for (const JsonNode& wave : waves->as_array()) field.waves.push_back(read_wave(wave));
+    for (const JsonNode& wave : waves->as_array()) {
+        field.waves.push_back(read_wave(wave));
+        require_few_crests(wave, field.waves.back(), half_size);
+    }
     return field;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/error.h"
+
 namespace caustics {
 namespace {
 
@@ -97,6 +99,16 @@ TEST(Polygon, WhatHasNoAreaStillGivesItsTriangles) {
     EXPECT_EQ(triangulate_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).size(), 2U);
     EXPECT_EQ(triangulate_polygon({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2U)
         << "crosses itself";
+}
+
+TEST(Polygon, WhatWouldTakeVeryLongIsRefused) {
+    EXPECT_EQ(triangulate_polygon(star(4000, 1)).size(), 3998U);
+    expect_partition(star(1000, 0.5));
+    std::vector<Vec3> tangle;
+    for (int i = 0; i < 20'000; ++i)
+        tangle.emplace_back(static_cast<float>(i * 7919 % 20'011),
+                            static_cast<float>(i * 6997 % 19'997), 0.0F);
+    EXPECT_THROW(triangulate_polygon(tangle), InputError);
 }
 
 }  // namespace

@@ -47,6 +47,16 @@ TEST_F(MeshIo, ObjKeepsNormalsAndTurnsUvAsMitsuba) {
     EXPECT_LT((mesh.normals[1] - Vec3(0, 0.6F, 0.8F)).norm(), 1e-7F);
 }
 
+TEST_F(MeshIo, AFaceThatWouldTakeVeryLongToCutIsNamed) {
+    std::string tangle;
+    for (int i = 0; i < 20'000; ++i)
+        tangle += "v " + std::to_string(i * 7919 % 20'011) + " " +
+                  std::to_string(i * 6997 % 19'997) + " 0\n";
+    tangle += "f 1 2 3\nf";
+    for (int i = 1; i <= 20'000; ++i) tangle += " " + std::to_string(i);
+    expect_refused("a.obj", tangle + "\n", ":20002: a polygon of 20000 corners");
+}
+
 TEST_F(MeshIo, ObjObjectsGroupsAndMaterialsAreOneMesh) {
     const TriangleMesh mesh =
         load("a.obj", "mtllib missing.mtl\no a\n" + corners +

@@ -206,6 +206,22 @@ TEST(JsonInclude, TheSameFileMayBeIncludedTwiceButNotByItself) {
     EXPECT_NE(error.find("includes itself"), std::string::npos) << error;
 }
 
+TEST(JsonInclude, FilesThatIncludeEachOtherTooOftenAreRefused) {
+    write("many9.json", "1");
+    for (int i = 0; i < 9; ++i) {
+        std::string text = "[";
+        for (int k = 0; k < 10; ++k)
+            text += (k > 0 ? ", " : "") + std::string("{\"$include\": \"many") +
+                    std::to_string(i + 1) + ".json\"}";
+        write("many" + std::to_string(i) + ".json", text + "]");
+    }
+    const fs::path few = write("few.json", R"([{"$include": "many7.json"}])");
+    EXPECT_EQ(JsonNode::parse_file(few).as_array()[0].as_array().size(), 10U);
+    const fs::path many = write("many.json", R"([{"$include": "many0.json"}])");
+    const std::string error = error_of([&] { return JsonNode::parse_file(many); });
+    EXPECT_NE(error.find("more than 10000 inclusions"), std::string::npos) << error;
+}
+
 TEST(JsonInclude, WhatIsWrongWithItIsNamed) {
     const auto error = [](const std::string& text) {
         const fs::path file = write("bad.json", text);
