@@ -28,6 +28,12 @@ if(CAUSTICS_SANITIZE)
         -fno-omit-frame-pointer -fno-sanitize-recover=all)
     list(APPEND CAUSTICS_LINK_OPTIONS "-fsanitize=${CAUSTICS_SANITIZE}")
 endif()
+if(CAUSTICS_FUZZ)
+    # Both of LLVM: what libFuzzer goes by, and the lines that llvm-cov reports.
+    list(APPEND CAUSTICS_COMPILE_OPTIONS -fsanitize=fuzzer-no-link
+        -fprofile-instr-generate -fcoverage-mapping)
+    list(APPEND CAUSTICS_LINK_OPTIONS -fprofile-instr-generate)
+endif()
 if(CAUSTICS_COVERAGE)
     list(APPEND CAUSTICS_COMPILE_OPTIONS --coverage -fprofile-update=atomic)
     list(APPEND CAUSTICS_LINK_OPTIONS --coverage)

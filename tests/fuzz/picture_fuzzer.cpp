@@ -1,0 +1,40 @@
+#include <cmath>
+
+#include "core/material/texture.h"
+#include "core/render/film.h"
+#include "tests/fuzz/reading.h"
+
+namespace {
+
+using namespace caustics;
+
+void read_picture(const std::filesystem::path& file) {
+    const Film film = read_exr(file);
+    for (const Plane& plane : film.planes())
+        fuzz::require(plane.values.size() == film.pixel_count(), "a plane that is not whole");
+    // What was read can be written, and is the same when read again.
+    const auto again = fuzz::scratch() / "again.exr";
+    write_exr(film, again);
+    const Film copy = read_exr(again);
+    fuzz::require(copy.planes().size() == film.planes().size() && copy.width() == film.width(),
+                  "another picture when written and read");
+}
+
+void read_texture(const std::filesystem::path& file, bool raw) {
+    const Bitmap bitmap = load_bitmap(file, raw);
+    for (const Spectrum& texel : bitmap.texels)
+        fuzz::require(is_finite(texel) && texel.minCoeff() >= 0, "a texel that is no reflectance");
+    for (const float u : {-1e30F, -1.0F, 0.0F, 0.25F, 1.0F, 1e30F})
+        fuzz::require(is_finite(evaluate(bitmap, Vec2(u, 0.5F))), "no reflectance at a point");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes = fuzz::view(data, size);
+    const bool is_exr = bytes.starts_with("\x76\x2f\x31\x01");
+    const auto file = fuzz::put(is_exr ? "picture.exr" : "picture.png", bytes);
+    fuzz::taken(fuzz::Naming::file, [&] { read_picture(file); });
+    fuzz::taken(fuzz::Naming::file, [&] { read_texture(file, size % 2 == 0); });
+    return 0;
+}

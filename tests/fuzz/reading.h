@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace caustics::fuzz {
+
+/// The folder of this process that inputs are written to; removed at the end.
+const std::filesystem::path& scratch();
+
+/// Writes a file in the scratch folder, whose folders are made.
+std::filesystem::path put(const std::filesystem::path& name, std::string_view bytes);
+inline std::string_view view(const std::uint8_t* data, std::size_t size) {
+    return {reinterpret_cast<const char*>(data), size};
+}
+
+/// Ends the process with the reason: what the fuzzer keeps as a crash.
+[[noreturn]] void fail(const std::string& reason);
+inline void require(bool holds, const char* reason) {
+    if (!holds) fail(reason);
+}
+
+/// Whether the input is taken. One that is not must be refused by InputError or UnsupportedScene,
+/// in one line, which names a file of the scratch folder where `naming` says so.
+enum class Naming { file, nothing };
+bool taken(Naming naming, const std::function<void()>& read);
+
+}  // namespace caustics::fuzz

@@ -1,0 +1,104 @@
+#include <cmath>
+#include <optional>
+
+#include "core/base/hash.h"
+#include "core/base/parallel.h"
+#include "core/render/renderer.h"
+#include "core/scene/scene_keys.h"
+#include "core/scene/scene_reader.h"
+#include "photonmap/photon_map.h"
+#include "tests/fuzz/json_mutator.h"
+#include "tests/fuzz/reading.h"
+
+namespace {
+
+using namespace caustics;
+
+const std::vector<std::string>& words() {
+    static const std::vector<std::string> all = [] {
+        std::vector<std::string> known = fuzz::words_of(scene_file::scene_keys());
+        for (const char* file : {"mesh.ply", "mesh.obj", "texture.png", "heights.exr", "part.json",
+                                 "loop.json", "scene.json", "none.ply", "../scene.json", "."})
+            known.emplace_back(file);
+        return known;
+    }();
+    return all;
+}
+
+/// What scenes may name.
+void put_neighbours() {
+    fuzz::put("mesh.ply",
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+              "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+              "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    fuzz::put("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    fuzz::put("part.json", R"({"type": "diffuse", "reflectance": 0.5})");
+    fuzz::put("loop.json", R"({"a": {"$include": "loop.json"}})");
+    write_png(2, 2, {0, 10, 100, 200, 255, 1, 2, 3, 4, 90, 91, 92},
+              fuzz::scratch() / "texture.png");
+    Film heights(3, 2);
+    heights.plane("Y") = {0, 0.5F, 1, 0.25F, -1, 0};
+    write_exr(heights, fuzz::scratch() / "heights.exr");
+}
+
+/// Valid, but much work: tests of these limits are elsewhere.
+const std::map<std::string, double> limits = {
+    {"resolution", 16}, {"segments", 16}, {"count", 16}, {"levels", 4}, {"split_depth", 1}};
+
+void require_finite(const Film& film) {
+    for (const Plane& plane : film.planes())
+        for (const float value : plane.values)
+            if (!std::isfinite(value)) fuzz::fail("a value that is not finite in " + plane.channel);
+}
+
+/// A tiny picture by the photon map.
+void render_picture(SceneDesc desc) {
+    desc.camera.width = 4;
+    desc.camera.height = 4;
+    const Scene scene(std::move(desc));
+    photonmap::PhotonMapParams params;
+    params.photons = 0;
+    params.emitted = 32;
+    params.nearest = 4;
+    RunOptions options;
+    options.adaptive = false;
+    const auto map = photonmap::build(scene, params, options);
+    require_finite(render(scene, *map, options).film);
+}
+
+void read_scene(std::string_view text) {
+    const auto file = fuzz::put("scene.json", text);
+    std::optional<SceneFile> scene;
+    if (!fuzz::taken(fuzz::Naming::file, [&] { scene = load_scene(file); })) return;
+    // A picture takes as long as reading a hundred files.
+    constexpr std::uint64_t share = 8;
+    if (fnv1a(text) % share != 0) return;
+    fuzz::require(load_scene(file).hash == scene->hash, "another hash the second time");
+    fuzz::taken(fuzz::Naming::nothing, [&] { render_picture(std::move(scene->desc)); });
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    put_neighbours();
+    return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text = fuzz::view(data, size);
+    if (!fuzz::asks_for_much(text, limits)) run_single_threaded([&] { read_scene(text); });
+    return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+    return fuzz::mutate_json(data, size, most, seed, words());
+}
+
+extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* first, std::size_t first_size,
+                                                 const std::uint8_t* second,
+                                                 std::size_t second_size, std::uint8_t* out,
+                                                 std::size_t most, unsigned seed) {
+    return fuzz::cross_json(std::string(fuzz::view(first, first_size)),
+                            std::string(fuzz::view(second, second_size)), out, most, seed);
+}
