@@ -23,10 +23,14 @@ def main():
     parser.add_argument("-o", "--output", metavar="OUT", help="where the report goes (default: DIR/report)")
     arguments = parser.parse_args()
     output = arguments.output or os.path.join(arguments.directory, "report")
-    return report("plot_records", "the plots", output, lambda: write_report(arguments.directory, output))
+    own = [os.path.join(output, "plots")] + ([] if arguments.output else [output])
+    return report("plot_records", "the plots", output, lambda: write_report(arguments.directory, output, own))
 
 
-def write_report(directory, output):
+def write_report(directory, output, own):
+    """Writes into `output`. None of the folders `own` may be a link: results may come from anywhere."""
+    for folder in filter(os.path.islink, own):
+        raise records.RecordsError(f"{folder}: is a symbolic link, which leads out of the results (name a folder by -o)")
     table = records.read(os.path.join(directory, "records.csv"))
     from report import record_plots  # here, so that a broken table is named even without matplotlib
 

@@ -229,6 +229,28 @@ class Plots(unittest.TestCase):
         page = (self.directory / "elsewhere" / "deep" / "index.html").read_text(encoding="utf-8")
         self.assertIn('src="../../report/figures/strip.png"', page)
 
+    def test_names_are_no_formulas_of_matplotlib(self):
+        self.table([record(scene=r"a$\x$b", photons=p) for p in (1000, 10000)])
+        self.succeeds()
+
+    def test_links_do_not_lead_out_of_the_folder(self):
+        elsewhere = self.directory / "elsewhere"
+        elsewhere.mkdir()
+        (elsewhere / "file").write_text("precious")
+        self.table(product())
+        for name in ("report", "report/plots"):
+            place = self.directory / name
+            place.parent.mkdir(exist_ok=True)
+            place.symlink_to(elsewhere)
+            result = self.run_tool()
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f"{name}: is a symbolic link", result.stderr)
+            place.unlink()
+        (self.report / "index.html.part").symlink_to(elsewhere / "file")
+        self.succeeds()
+        self.assertEqual([path.name for path in elsewhere.iterdir()], ["file"])
+        self.assertEqual((elsewhere / "file").read_text(), "precious")
+
     def test_latex_escapes_names(self):
         self.table([record(scene="pool_50%", seed=s) for s in (1, 2)])
         self.succeeds()

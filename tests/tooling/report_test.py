@@ -309,6 +309,9 @@ class Page(unittest.TestCase):
         caustic, rest, _ = sweep.reference_planes()
         for command, wanted in (("causticbench render a; rm b $(c)", "causticbench render 'a;' rm b '$(c)' --threads 1"),
                                 ("causticbench --set '/a={\"b\": 1}'", "causticbench --set '/a={\"b\": 1}' --threads 1"),
+                                ("sh -c 'rm b'", "# the picture's command does more than render it"),
+                                ("causticbench render a --param save=b", "# the picture's command does more"),
+                                ("causticbench render a -o /b", "# the picture's command does more"),
                                 ("causticbench 'open", "# the picture's command is broken")):
             sweep.write_exr(self.sweep / "trials" / self.rows[15]["trial"] / "image.exr", sweep.planes_of(caustic, rest),
                             texts=[("causticbench.command", command)])

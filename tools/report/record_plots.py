@@ -7,6 +7,7 @@ import math
 import urllib.parse
 
 import matplotlib
+import matplotlib.text
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
@@ -285,7 +286,7 @@ def draw_energy(cells, series):
             ax.axvline(value, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
             ax.text(value, 0.1, name, ha="center", va="bottom", color=GREY, fontsize=7)
     ax.set_ylim(y, 0)
-    ax.set_yticks(ticks, scenes)
+    ax.set_yticks(ticks, [scene.replace("$", r"\$") for scene in scenes])
     ax.tick_params(axis="y", length=0)
     ax.ticklabel_format(axis="x", useOffset=False)
     label_figure(figure, "energy: range and median over all trials", FORMULAS["mean_ratio"], "mean_ratio [1]", foot,
@@ -308,6 +309,9 @@ def draw_energy_row(ax, y, cells, style):
 
 def svg(figure):
     text = io.StringIO()
+    for label in figure.findobj(matplotlib.text.Text):
+        if "$" in label.get_text():  # of a name; those of ticks come later, by drawing
+            label.set_parse_math(False)
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": "causticbench"})
     plt.close(figure)
     return text.getvalue()

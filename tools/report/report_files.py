@@ -12,8 +12,10 @@ PACKAGES = "Debian's python3-matplotlib and python3-scipy"
 def write(path, text):
     """Whole files only, whatever stops the program or the machine: a reader never sees half of one."""
     part = f"{path}.part"
+    if os.path.islink(part) or os.path.isfile(part):
+        os.remove(part)  # of a killed process, or a link that leads elsewhere
     try:
-        with open(part, "w", encoding="utf-8", newline="\n") as file:
+        with open(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "w", encoding="utf-8", newline="\n") as file:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())  # before it has its name: a disk may take the two in any order

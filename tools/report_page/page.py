@@ -186,11 +186,15 @@ def cell_data(cell):
 
 
 def one_command(command, *words):
-    """The command with further words, each one word for a shell: a picture may come from anywhere."""
+    """The command with further words, each one word for a shell: a picture may come from anywhere, so that nothing
+    but this program is offered to be run, and no file but the picture is written."""
     try:
-        return shlex.join([*shlex.split(command), *words])
+        given = shlex.split(command)
     except ValueError as error:  # an open quote
         return f"# the picture's command is broken ({error})"
+    if given[:1] != ["causticbench"] or any(word.startswith(("-o", "--output", "save=")) for word in given):
+        return "# the picture's command does more than render it"
+    return shlex.join([*given, *words])
 
 
 def reference_error(rows):
