@@ -21,7 +21,8 @@ fs::path plain(const fs::path& target) {
 
 /// Whether it can have been left by a killed process.
 bool is_part(const fs::path& folder) {
-    return fs::is_directory(folder) && (fs::is_empty(folder) || fs::exists(folder / lock_name));
+    return fs::is_directory(fs::symlink_status(folder)) &&
+           (fs::is_empty(folder) || fs::exists(folder / lock_name));
 }
 
 /// All but the lock, whose name is on the disk before the first other and after the last: so it
@@ -47,7 +48,7 @@ void bring_all_to_disk(const fs::path& folder) {
 
 AtomicFolder::AtomicFolder(const fs::path& target)
     : target_(plain(target)), temporary_(target_.string() + ".part") {
-    if (fs::exists(temporary_) && !is_part(temporary_))
+    if (fs::exists(fs::symlink_status(temporary_)) && !is_part(temporary_))
         throw InputError(
             fmt::format("{}: is in the way of {}", temporary_.string(), target.string()));
     lock_.emplace(temporary_);

@@ -50,7 +50,10 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
             fmt::format("{}: cannot be made ({})", folder.string(), error.code().message()));
     }
     const std::filesystem::path name = lock_file(folder);
-    file_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    // Its content is replaced: a link in a folder from elsewhere must not lead to another file.
+    file_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (file_ < 0 && errno == ELOOP)
+        throw InputError(fmt::format("{}: is a symbolic link, not a lock", name.string()));
     if (file_ < 0)
         throw InputError(fmt::format("{}: cannot be written ({})", folder.string(), reason(errno)));
 

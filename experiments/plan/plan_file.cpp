@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "experiments/base/bounded_json.h"
 #include "experiments/base/file_io.h"
 
 namespace caustics::experiments {
@@ -93,7 +94,7 @@ PlanFile read_plan_of(const std::filesystem::path& folder) {
         return InputError(fmt::format("{}: broken ({})", name.string(), error.what()));
     };
     try {
-        return from_json(json::parse(read_whole_file(name)));
+        return from_json(parse_bounded(read_whole_file(name)));
     } catch (const json::exception& error) {
         throw broken(error);
     } catch (const InputError& error) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/base/csv.h"
+#include "experiments/base/number_option.h"
 #include "experiments/plan/record_columns.h"
 
 namespace caustics::experiments {
@@ -51,9 +52,18 @@ const char* name_of(Kind kind) {
     return "anything";
 }
 
+/// Text that a spreadsheet takes for a formula, which may run commands and read files.
+bool is_formula(const std::string& text) {
+    return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos &&
+           !decimal<double>(text);
+}
+
 std::string cell(const json& value) {
     if (value.is_null()) return {};
-    if (value.is_string()) return value.get<std::string>();
+    if (value.is_string()) {
+        const std::string text = value.get<std::string>();
+        return is_formula(text) ? "'" + text : text;
+    }
     if (value.is_number_float()) return shortest(value.get<double>());
     return value.dump();
 }

@@ -29,7 +29,8 @@ std::vector<std::string> record_columns(const std::vector<std::string>& swept);
 /// One row: the values of a record under those columns; null = not applicable.
 std::vector<nlohmann::json> record_row(const nlohmann::json& record,
                                        const std::vector<std::string>& columns);
-/// The row as cells of records.csv (null = empty) and as a line of records.jsonl (an object with
+/// The row as cells of records.csv (null = empty; an apostrophe goes before text that a spreadsheet would take
+/// for a formula) and as a line of records.jsonl (an object with
 /// all columns).
 std::vector<std::string> csv_cells(const std::vector<nlohmann::json>& row);
 std::string json_line(const std::vector<nlohmann::json>& row,

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "experiments/base/bounded_json.h"
 
 namespace caustics::experiments {
 
@@ -45,9 +46,9 @@ std::string said(const Film& film, const char* name) {
 }
 
 bool belongs_to(const Film& film, const RunRequest& wanted, const SceneFile& scene, int version) {
-    const json theirs = json::parse(said(film, "parameters"), nullptr, false);
+    const json theirs = parse_bounded_or_discard(said(film, "parameters"));
     return theirs.is_object() && said(film, "indirect").empty() &&
-           theirs.contains(samples_name(wanted.method)) &&
+           theirs.value(samples_name(wanted.method), json()).is_number_unsigned() &&
            said(film, "reference_version") == (version > 1 ? fmt::format("{}", version) : "") &&
            said(film, "scene_hash") == scene.hash && said(film, "method") == wanted.method.name &&
            said(film, "seed") == fmt::format("{}", wanted.seed) &&
@@ -89,7 +90,7 @@ std::optional<SmallerReference> find_smaller(const std::vector<std::filesystem::
         for (const std::filesystem::path& file : files) {
             std::optional<Film> film = readable(file);
             if (!film || !belongs_to(*film, wanted, scene, version)) continue;
-            const auto samples = json::parse(said(*film, "parameters"))
+            const auto samples = parse_bounded(said(*film, "parameters"))
                                      .at(samples_name(wanted.method))
                                      .get<std::uint64_t>();
             if (samples < *most && (!best || samples > best->samples))

@@ -136,6 +136,7 @@ std::string slug(const Trial& trial) {
         words += fmt::format("-{}{}", slug_word(key), slug_word(value));
     if (trial.request.indirect) words += "-" + trial.request.indirect->name;
     words.resize(std::min(words.size(), longest));
+    if (words[0] == '.' || words[0] == '-') words[0] = '_';  // no hidden folder, and no option
     words += fmt::format("-s{}", trial.request.seed);
     if (trial.repeat > 1) words += fmt::format("-r{}", trial.repeat);
     return words;

@@ -14,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "experiments/base/bounded_json.h"
 #include "experiments/base/number_option.h"
 
 namespace caustics::experiments {
@@ -54,7 +55,7 @@ std::string plain(const std::string& text) {
     const auto result = std::from_chars(text.data(), end, value);
     if (result.ec == std::errc() && result.ptr == end && std::isfinite(value))
         return fmt::format("{}", value);
-    const nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
+    const nlohmann::json parsed = parse_bounded_or_discard(text);
     if (parsed.is_string()) return parsed.get<std::string>();
     return parsed.is_discarded() ? text : parsed.dump();
 }

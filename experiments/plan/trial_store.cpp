@@ -7,6 +7,7 @@
 
 #include "core/base/disk.h"
 #include "core/base/error.h"
+#include "experiments/base/bounded_json.h"
 #include "experiments/base/file_io.h"
 #include "experiments/plan/record.h"
 
@@ -57,8 +58,8 @@ std::optional<nlohmann::json> TrialStore::record(const std::string& id) const {
     if (error)
         throw InputError(fmt::format("{}: cannot be read ({})", file.string(), error.message()));
     require(fs::is_regular_file(status), "not a file");
-    nlohmann::json record = nlohmann::json::parse(read_whole_file(file), nullptr, false);
-    require(!record.is_discarded(), "not JSON");
+    nlohmann::json record = parse_bounded_or_discard(read_whole_file(file));
+    require(!record.is_discarded(), "not JSON, or nested too deep");
     const std::string flaw = flaw_of(record);
     require(flaw.empty(), flaw);
     require(record.contains("trial") && record.at("trial") == nlohmann::json(id),

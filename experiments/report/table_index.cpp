@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.h"
+#include "experiments/base/bounded_json.h"
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
 
@@ -53,10 +55,11 @@ void write_table_index(const TableIndex& index, const std::filesystem::path& fol
 TableIndex read_table_index(const std::filesystem::path& folder) {
     if (!std::filesystem::is_regular_file(folder / file_name)) return {};
     try {
-        const json file = json::parse(read_whole_file(folder / file_name));
+        const json file = parse_bounded(read_whole_file(folder / file_name));
         // Other code may make other rows of the same records.
         if (file.at("code_version") == code_version()) return from_json(file);
-    } catch (const json::exception&) {}
+    } catch (const json::exception&) {
+    } catch (const InputError&) {}
     return {};
 }
 

@@ -1,5 +1,6 @@
 #include "experiments/report/trial_rows.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/base/hash.h"
@@ -26,10 +27,24 @@ TrialRows::TrialRows(const fs::path& folder, const TrialStore& store)
     : store_(store), index_(read_table_index(folder)), columns_of_all_(record_columns({})) {
     csv_ = content_of(folder / "records.csv", index_.csv);
     const bool has_lines = !content_of(folder / "records.jsonl", index_.jsonl).empty();
-    if (csv_.empty() || !has_lines) index_ = {};
     std::string_view header = csv_;
     columns_ = take_csv_line(header);
+    if (csv_.empty() || !has_lines || !has_rows_of_index()) index_ = {};
     for (const TableIndex::Row& row : index_.rows) rows_.emplace(row.trial, &row);
+}
+
+/// Whether each line that the index names is there, whole, and of its trial, under the columns of all.
+bool TrialRows::has_rows_of_index() const {
+    const auto differ = std::ranges::mismatch(columns_of_all_, columns_);
+    if (differ.in1 != columns_of_all_.end()) return false;
+    return std::ranges::all_of(index_.rows, [&](const TableIndex::Row& row) {
+        const bool begins =
+            row.offset > 0 && row.offset < csv_.size() && csv_[row.offset - 1] == '\n';
+        if (!begins) return false;
+        std::string_view line = std::string_view(csv_).substr(row.offset);
+        const std::vector<std::string> cells = take_csv_line(line);
+        return cells.size() == columns_.size() && cells[0] == row.trial;
+    });
 }
 
 TableRow TrialRows::row_at(std::size_t offset) const {

@@ -37,6 +37,7 @@ public:
 
 private:
     TableRow row_at(std::size_t offset) const;
+    bool has_rows_of_index() const;
 
     const TrialStore& store_;
     TableIndex index_;

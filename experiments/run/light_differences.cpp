@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "experiments/base/bounded_json.h"
+
 namespace caustics::experiments {
 
 namespace {
@@ -15,7 +17,7 @@ using nlohmann::json;
 json attribute(const Film& film, const char* name) {
     const auto found = film.metadata.find(name);
     if (found == film.metadata.end()) return json::object();
-    json value = json::parse(found->second, nullptr, false);
+    json value = parse_bounded_or_discard(found->second);
     return value.is_object() ? value : json::object();
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "experiments/base/bounded_json.h"
 #include "experiments/run/methods.h"
 
 namespace caustics::experiments {
@@ -66,7 +67,7 @@ JsonNode parameters_node(const std::vector<std::string>& assignments, const std:
         const std::string text = assignment.substr(equals + 1);
         if (object.contains(key))
             throw InputError(fmt::format("{} \"{}\": given twice", option, key));
-        json value = json::parse(text, nullptr, false);
+        json value = parse_bounded_or_discard(text);
         object[key] = value.is_discarded() ? json(text) : std::move(value);
     }
     return JsonNode::parse_text(object.dump(), option);

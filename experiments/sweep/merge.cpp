@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "experiments/base/atomic_folder.h"
+#include "experiments/base/bounded_json.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/folder_lock.h"
 #include "experiments/plan/plan_file.h"
@@ -147,7 +148,7 @@ std::string environments(const std::vector<fs::path>& folders) {
         const fs::path file = folder / "environment.json";
         if (!fs::exists(file)) continue;  // a shard without trials
         json environment =
-            fs::is_regular_file(file) ? json::parse(read_whole_file(file), nullptr, false) : json();
+            fs::is_regular_file(file) ? parse_bounded_or_discard(read_whole_file(file)) : json();
         if (!environment.is_object())
             throw InputError(fmt::format("{}: broken (not a JSON object)", file.string()));
         environment["folder"] = folder.string();

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "core/render/film.h"
 #include "experiments/base/file_io.h"
@@ -103,6 +106,71 @@ TEST_F(Surroundings, WhatTheFileSystemRefusesIsOneLineWithItsPlace) {
     EXPECT_EQ(report.exit_code, 2);
     EXPECT_NE(report.err.find("out/report"), std::string::npos) << report.err;
     EXPECT_NE(report.err.find("Not a directory"), std::string::npos) << report.err;
+}
+
+/// Results from elsewhere may hold links: what a sweep, a merge or a report writes and removes is in its folder.
+TEST_F(Surroundings, NoLinkInAFolderLeadsElsewhere) {
+    const auto precious = [&](const std::string& name) {
+        write_atomic_file(folder_ / name, "precious");
+        return folder_ / name;
+    };
+    fs::create_directory(folder_ / "home");
+    const fs::path file = precious("home/file");
+    precious("home/a.tmp-1");
+    fs::create_directory(folder_ / "out");
+    for (const char* name : {".lock", "plan.json", "environment.json", "records.csv",
+                             "records.jsonl", ".table", "records.csv.tmp-1"})
+        fs::create_symlink(file, folder_ / "out" / name);
+    const ProgramResult lock = run("$P sweep $D/sweep.json -o $D/out");
+    EXPECT_EQ(lock.exit_code, 2);
+    EXPECT_NE(lock.err.find("out/.lock: is a symbolic link"), std::string::npos) << lock.err;
+    fs::remove(folder_ / "out/.lock");
+    for (const char* name : {"trials", "report", "report/figures"}) {
+        fs::create_directories((folder_ / "out" / name).parent_path());
+        fs::create_directory_symlink(folder_ / "home", folder_ / "out" / name);
+        const ProgramResult result = run("$P sweep $D/sweep.json -o $D/out");
+        EXPECT_EQ(result.exit_code, 2) << name;
+        EXPECT_NE(result.err.find(std::string("out/") + name + ": is a symbolic link"),
+                  std::string::npos)
+            << result.err;
+        fs::remove(folder_ / "out" / name);
+    }
+    EXPECT_EQ(run("$P sweep $D/sweep.json -o $D/out").exit_code, 0);
+    EXPECT_EQ(read_whole_file(file), "precious");
+    EXPECT_EQ(read_whole_file(folder_ / "home/a.tmp-1"), "precious");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "home"), {}), 2);
+}
+
+/// Names that would leave their folder, their line, their word, their quotes or their element.
+TEST_F(Surroundings, HostileNamesAreNamesAndNothingElse) {
+    const std::vector<std::string> names = {"$(touch pwned)`touch pwned`;touch pwned",
+                                            "=cmd|'pwned'!A1",
+                                            "<script>pwned()",
+                                            "a'b\"c&d",
+                                            "..",
+                                            "-o pwned",
+                                            "%n$x\\"};
+    std::string scenes;
+    nlohmann::json content = nlohmann::json::parse(read_whole_file(scene));
+    for (const std::string& name : names) {
+        content["sensor"]["fov"] = 30 + scenes.size();  // the same scene twice would be one trial
+        write_atomic_file(folder_ / (name + ".json"), content.dump());
+        scenes += (scenes.empty() ? "" : ", ") + nlohmann::json(name + ".json").dump();
+    }
+    write_atomic_file(sweep_, R"({"version": 1, "scenes": [)" + scenes +
+                                  R"(], "spp": 1, "methods": [{"method": "none"}]})");
+    EXPECT_EQ(run("cd $D && $P sweep sweep.json -o out").exit_code, 0);
+    EXPECT_EQ(run("cd $D && for t in $(ls out/trials); do $P explain out $t | sh || exit 1; done")
+                  .exit_code,
+              0);
+    const std::string table = read_whole_file(folder_ / "out/records.csv");
+    EXPECT_EQ(table.find(",=cmd"), std::string::npos) << table;
+    EXPECT_NE(table.find(",'=cmd"), std::string::npos) << table;
+    EXPECT_EQ(run("cd $D && $P merge out -o merged").exit_code, 0);
+    EXPECT_EQ(run("cd $D && $P export './<script>pwned().json' --to mitsuba -o xml").exit_code, 0);
+    EXPECT_EQ(run("cd $D && $P export './-o pwned.json' --to povray -o pov").exit_code, 0);
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
+        EXPECT_NE(entry.path().filename(), "pwned") << entry.path();
 }
 
 TEST_F(Surroundings, SlashesAtTheEndOfAFolderMakeNoDifference) {

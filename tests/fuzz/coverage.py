@@ -4,15 +4,15 @@ import json
 import sys
 
 READERS = """
-core/base/picture_file.cpp core/base/printable.cpp core/scene_file/json_document.cpp core/scene_file/json_reader.cpp
-core/scene_file/values.cpp core/scene/scene_reader.cpp core/scene/shape_reader.cpp core/scene/scene_frame.cpp
-core/material/bsdf_reader.cpp core/material/ior_reader.cpp core/material/texture_reader.cpp core/material/texture.cpp
-core/shapes/cut_shape.cpp core/shapes/heightfield_shape.cpp core/shapes/lathe_shape.cpp core/exact_shapes/shape_keys.cpp
-core/geometry/profile_curve.cpp core/geometry/cut_solid.cpp core/geometry/polytope.cpp
-core/lights/light.cpp core/lights/spot_light.cpp core/lights/point_light.cpp core/lights/directional_light.cpp
-core/mesh/ply_file.cpp core/mesh/ply_source.cpp core/mesh/obj_source.cpp core/mesh/mesh_io.cpp
-core/mesh/vertex_normals.cpp core/math/polygon.cpp core/render/film.cpp core/method/parameter.cpp
-photonmap/photons/photon_map_file.cpp
+" core/picture/picture_file.cpp core/picture/exr_file.cpp core/picture/png_file.cpp core/base/printable.cpp
+core/scene_file/json_document.cpp core/scene_file/json_reader.cpp core/scene_file/values.cpp
+core/scene/scene_reader.cpp core/scene/shape_reader.cpp core/scene/scene_frame.cpp core/material/bsdf_reader.cpp
+core/material/ior_reader.cpp core/material/texture_reader.cpp core/material/texture.cpp core/shapes/cut_shape.cpp
+core/shapes/heightfield_shape.cpp core/shapes/lathe_shape.cpp core/exact_shapes/shape_keys.cpp
+core/geometry/profile_curve.cpp core/geometry/cut_solid.cpp core/geometry/polytope.cpp core/lights/light.cpp
+core/lights/spot_light.cpp core/lights/point_light.cpp core/lights/directional_light.cpp core/mesh/ply_file.cpp
+core/mesh/ply_mesh.cpp core/mesh/obj_mesh.cpp core/mesh/mesh_io.cpp core/mesh/vertex_normals.cpp
+core/math/polygon.cpp core/render/film.cpp core/method/parameter.cpp photonmap/photons/photon_map_file.cpp
 experiments/base/bounded_json.cpp experiments/base/csv.cpp experiments/base/number_option.cpp
 experiments/cli/command_line.cpp experiments/cli/explain.cpp experiments/plan/plan_file.cpp
 experiments/plan/record.cpp experiments/plan/sweep_file.cpp experiments/plan/sweep_plan.cpp

@@ -97,5 +97,15 @@ TEST_F(WholeFolders, RemoveNothingElse) {
     EXPECT_EQ(read_whole_file(folder_ / "target.part/mine"), "mine");
 }
 
+TEST_F(WholeFolders, AreNotWrittenThroughALinkThatSomebodyLeft) {
+    fs::create_directory(folder_ / "other");
+    for (const char* name : {"other/.lock", "other/mine"})
+        write_atomic_file(folder_ / name, "mine");
+    fs::create_directory_symlink(folder_ / "other", folder_ / "target.part");
+    EXPECT_THROW(write(), InputError);
+    EXPECT_EQ(read_whole_file(folder_ / "other/mine"), "mine");
+    EXPECT_EQ(read_whole_file(folder_ / "other/.lock"), "mine");
+}
+
 }  // namespace
 }  // namespace caustics::experiments

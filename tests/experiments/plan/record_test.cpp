@@ -33,6 +33,17 @@ TEST(RecordsCsv, HasTheColumnsThatTheManualTells) {
     EXPECT_EQ(told, record_columns({}));
 }
 
+TEST(RecordsCsv, HoldsNoFormulas) {
+    const std::vector<std::string> columns = {"trial", "scene", "message"};
+    const auto cells = [&](const std::string& text) {
+        return csv_cells(record_row({{"trial", "a"}, {"scene", {{"name", text}}}}, columns));
+    };
+    for (const std::string text : {"=1+1", "+cmd", "-2+3", "@SUM(A1)", "\t=1", "\r=1"})
+        EXPECT_EQ(cells(text)[1], "'" + text);
+    for (const std::string text : {"ring", "-0.5", "-1e-5", "", "a=b", "'=1"})
+        EXPECT_EQ(cells(text)[1], text);
+}
+
 TEST(RecordsCsv, LeavesEmptyWhatDoesNotApply) {
     const nlohmann::json record = {
         {"trial", "a, b"},

@@ -47,6 +47,12 @@ protected:
         if (!unreached.empty()) film.plane("unreached.Y") = unreached;
         return film;
     }
+    /// Of the second row, in the index.
+    void set_offset(std::size_t offset) const {
+        json index = json::parse(text(".table"));
+        index["rows"][1][2] = offset;
+        write_atomic_file(folder_ / ".table", index.dump());
+    }
     /// A done trial.
     void add(const std::string& id, const Film& film, const std::string& reference = "") {
         write_picture(film, store_.begin(id) / "image.exr");
@@ -128,6 +134,19 @@ TEST_F(RecordTables, NoticeWhateverChanges) {
              json index = json::parse(text(".table"));
              index["code_version"] = "another";
              write_atomic_file(folder_ / ".table", index.dump());
+         }},
+        {"an index whose offsets lead out of the table", [&] { set_offset(1'000'000'000); }},
+        {"an index whose offsets lead into a row", [&] { set_offset(1); }},
+        {"an index of other trials' rows",
+         [&] {
+             json index = json::parse(text(".table"));
+             std::swap(index["rows"][0][2], index["rows"][1][2]);
+             write_atomic_file(folder_ / ".table", index.dump());
+         }},
+        {"an index nested so deep that reading it would end the stack",
+         [&] {
+             write_atomic_file(folder_ / ".table",
+                               std::string(1'000'000, '[') + std::string(1'000'000, ']'));
          }},
         {"another order of the plan", [&] { std::swap(plan_.trials[0], plan_.trials[1]); }},
         {"another column", [&] { plan_.swept.emplace_back("other"); }},

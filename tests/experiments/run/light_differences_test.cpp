@@ -42,6 +42,13 @@ TEST(LightDifferences, AreNotGuessed) {
         << "a method without that parameter";
 }
 
+TEST(LightDifferences, AreNotSoughtInTextThatIsNestedWithoutEnd) {
+    const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+    EXPECT_EQ(light_differences(film_with("{}", "{\"ball\":" + deep + "}"),
+                                film_with("{}", R"({"ball": 1})")),
+              Lines{"/ball: absent against 1"});
+}
+
 TEST(LightDifferences, AreOneLineWhateverTheKeys) {
     EXPECT_EQ(light_differences(film_with("{}", R"({"a\nb": 1})"), film_with("{}")),
               Lines{"/a\\nb: 1 against absent"});

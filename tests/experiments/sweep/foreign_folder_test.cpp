@@ -157,6 +157,18 @@ TEST_F(ForeignFolders, MayHoldAnyValueAnywhere) {
     }
 }
 
+TEST_F(ForeignFolders, MayNestValuesSoDeepThatPrintingThemWouldEndTheStack) {
+    const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+    for (const std::string& name : {std::string("plan.json"), std::string("environment.json"),
+                                    std::string(".table"), "trials/" + trial() + "/record.json"})
+        for (const char* key : {"version", "swept", "status", "method"})
+            check(name + ": " + key, [&](const fs::path& folder) {
+                std::string text = read_whole_file(folder / name);
+                text.insert(text.find('{') + 1, "\"" + std::string(key) + "\":" + deep + ",");
+                write_atomic_file(folder / name, text);
+            });
+}
+
 TEST_F(ForeignFolders, MayLackAnyFileOrHoldAnythingInItsPlace) {
     const std::vector<std::pair<std::string, std::function<void(const fs::path&)>>> changes = {
         {"removed", [](const fs::path& file) { fs::remove_all(file); }},

@@ -1,0 +1,99 @@
+#include "experiments/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "experiments/base/environment.h"
+#include "experiments/base/file_io.h"
+#include "experiments/cli/verbs.h"
+
+namespace caustics::experiments {
+
+namespace {
+
+std::string verb_names(const std::vector<Verb>& verbs) {
+    std::string names;
+    for (const Verb& verb : verbs) names += (names.empty() ? "" : ", ") + verb.app->get_name();
+    return names;
+}
+
+std::string option_names(const CLI::App& app) {
+    std::string names;
+    for (const CLI::Option* option : app.get_options())
+        if (!option->get_positional())
+            names += (names.empty() ? "" : ", ") + option->get_name(false, true);
+    return names;
+}
+
+/// The parser's own messages name no alternatives, and it complains of what is missing before what
+/// is misspelt; so unknown words are looked for first.
+void require_known_words(const CLI::App& app, const std::vector<Verb>& verbs,
+                         const std::vector<std::string>& words) {
+    if (words.empty()) throw InputError("no verb given (known: " + verb_names(verbs) + ")");
+    const CLI::App* scope = &app;
+    if (words[0][0] != '-') {
+        const auto verb = std::ranges::find_if(
+            verbs, [&](const Verb& each) { return each.app->get_name() == words[0]; });
+        if (verb == verbs.end())
+            throw InputError(
+                fmt::format("unknown verb \"{}\" (known: {})", words[0], verb_names(verbs)));
+        scope = verb->app;
+    }
+    for (const std::string& word : words) {
+        if (word.size() < 3 || word.compare(0, 2, "--") != 0) continue;
+        const std::string name = word.substr(0, word.find('='));
+        if (scope->get_option_no_throw(name) == nullptr)
+            throw InputError(
+                fmt::format("unknown option {} (known: {})", name, option_names(*scope)));
+    }
+}
+
+std::function<int()> work_of(const std::vector<Verb>& verbs) {
+    for (const Verb& verb : verbs)
+        if (verb.app->parsed()) return verb.run;
+    throw InputError("no verb given (known: " + verb_names(verbs) + ")");
+}
+
+}  // namespace
+
+std::function<int()> parse_command_line(int argc, const char* const* argv) {
+    CLI::App app(
+        "Caustic rendering methods compared: pictures, probes, sweeps with errors "
+        "against references.",
+        "causticbench");
+    app.require_subcommand(0, 1);  // a topic, a file or a folder may be named like a verb
+    app.set_version_flag("--version", "causticbench " + code_version());
+    app.footer(
+        "Exit codes: 0 done, 1 some trials failed, 2 bad input or usage, 3 the method cannot "
+        "serve the scene, 130 interrupted.\nExample:\n  causticbench VERB --help");
+    const std::vector<Verb> verbs = add_verbs(app);
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    for (const std::string& word : words)
+        if (!is_utf8(word))
+            throw InputError(
+                fmt::format("\"{}\" is not valid UTF-8, which records and pictures hold "
+                            "(rename the file, or use a link)",
+                            word));
+    require_known_words(app, verbs, words);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) {  // --help, --version
+            std::ostringstream text;
+            app.exit(error, text, text);
+            return [answer = text.str()] {
+                write_stdout(answer);
+                return 0;
+            };
+        }
+        throw InputError(one_line(error.what()) + " (see --help)");
+    }
+    return work_of(verbs);
+}
+
+}  // namespace caustics::experiments
