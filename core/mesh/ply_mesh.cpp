@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/interrupt.h"
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "core/math/polygon.h"
 #include "core/mesh/ply_file.h"
 #include "core/mesh/quoted_word.h"
