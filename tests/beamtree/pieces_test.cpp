@@ -1,5 +1,7 @@
 #include "beamtree/beams/pieces.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "core/base/parallel.h"

@@ -1,4 +1,6 @@
 #include "core/render/film.h"
+
+#include <algorithm>
 #include "tests/cruel/parts.h"
 
 namespace caustics::cruel {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/mesh/mesh_io.h"
 #include "tests/fuzz/reading.h"
 

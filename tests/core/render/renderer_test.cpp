@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "core/math/rng.h"
