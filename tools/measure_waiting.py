@@ -49,7 +49,7 @@ WAITS = {
     "`export`, the same mesh": ["export", "mesh.json", "--to", "mitsuba", "-o", "exported"],
     "`verify` a scene": ["verify", ROOT / "tests/experiments/scenes/ball.json", "--method", "photonmap"],
     "`sweep`": ["sweep", ROOT / "experiments/sweeps/tiny.json", "-o", "swept"],
-    "`report`": ["report", ROOT / "results/quickstart-2026-11", "-o", "report.html"],
+    "`report`": ["report", "tiny", "-o", "report.html"],
 }
 
 
@@ -117,7 +117,7 @@ def left_in(folder):
                   if path.is_file() and path.relative_to(folder).parts[0] not in ("swept", *PREPARED))
 
 
-PREPARED = ("points.csv", "mesh.json", "mesh.obj")
+PREPARED = ("points.csv", "mesh.json", "mesh.obj", "tiny")
 
 
 def prepare(folder):
