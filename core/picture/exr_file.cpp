@@ -83,6 +83,22 @@ std::size_t value_count(int width, int height, std::size_t channels) {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels;
 }
 
+// OpenEXR may keep to itself that it had no memory to compress a block, or to end the file.
+void require_encoded(const std::string& bytes,
+                     const std::vector<ExrChannel<const float>>& channels) {
+    ExrFile file(bytes);
+    const std::size_t count = value_count(file.width(), file.height(), 1);
+    std::vector<float> values(count * channels.size());
+    std::vector<ExrChannel<float>> found;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        found.push_back({channels[i].name, values.data() + i * count});
+    file.read(found);
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        if (std::memcmp(found[i].values, channels[i].values, count * sizeof(float)) != 0)
+            throw std::runtime_error("what was encoded of channel " + channels[i].name +
+                                     " is not what was given");
+}
+
 }  // namespace
 
 std::string encode_exr(int width, int height, const std::vector<ExrChannel<const float>>& channels,
@@ -104,6 +120,7 @@ std::string encode_exr(int width, int height, const std::vector<ExrChannel<const
         file.setFrameBuffer(buffer);
         file.writePixels(height);
     }  // writes the table of offsets
+    require_encoded(memory.bytes, channels);
     return std::move(memory.bytes);
 }
 

@@ -15,7 +15,7 @@ struct ExrChannel {
 };
 
 /// An OpenEXR file of float32 channels (zip, scan lines, data window at the origin) with attributes of text. The same
-/// picture gives the same bytes. Throws std::runtime_error.
+/// picture gives the same bytes, which are read back before they are returned. Throws std::runtime_error.
 std::string encode_exr(int width, int height, const std::vector<ExrChannel<const float>>& channels,
                        const std::map<std::string, std::string>& texts);
 
