@@ -47,15 +47,50 @@ inline void visit(const SliceView& tree, SliceWalk& walk) {
         }
 }
 
-/// The walks, for the tests of one instruction set.
+/// Goes on with one walk until it ends or pauses: of points side by side, whose nodes are in the cache mostly.
+template <typename Eight>
+void walk_alone(const SliceView& tree, SliceWalk& walk) {
+    const Eight eight(walk);
+    uint32_t* const stack = walk.stack;
+    size_t stacked = walk.stacked;
+    size_t count = walk.found_count;
+    uint64_t tests = walk.tests;
+    const size_t room = walk.found_room - slice_width * walk.point_count;
+    while (stacked > 0 && count <= room) {
+        const uint32_t next = stack[--stacked];
+        const uint32_t taken = (next >> slice_count_shift) % slice_width + 1;
+        if ((next & slice_leaf_bit) == 0) {
+            const SliceNode& node = tree.nodes[next & slice_number_mask];
+            tests += taken;
+            for (uint32_t met = eight.meets(node); met != 0; met &= met - 1)
+                stack[stacked++] = node.child[__builtin_ctz(met)];
+            continue;
+        }
+        const SliceLeaf& leaf = tree.leaves[next & slice_number_mask];
+        tests += static_cast<uint64_t>(taken) * walk.point_count;
+        for (uint32_t point = 0; point < walk.point_count; ++point)
+            for (uint32_t held = Eight::may_hold(leaf, walk.points[point], tree.room); held != 0;
+                 held &= held - 1)
+                walk.found[count++] = {point, leaf.beam[__builtin_ctz(held)]};
+    }
+    walk.stacked = stacked;
+    walk.found_count = count;
+    walk.tests = tests;
+}
+
+/// The walks, for the tests of one instruction set: those of several points one after the other, those of scattered points by
+/// turns.
 template <typename Eight>
 void walk_slices(const SliceView& tree, SliceWalk* walks, size_t count) {
+    constexpr uint32_t several = 3;
+    for (size_t i = 0; i < count; ++i)
+        if (walks[i].point_count >= several) walk_alone<Eight>(tree, walks[i]);
     for (bool more = true; more;) {
         more = false;
         for (size_t i = 0; i < count; ++i) {
             SliceWalk& walk = walks[i];
-            if (walk.stacked == 0 ||
-                walk.found_count + slice_width * walk.point_count > walk.found_room)
+            const size_t room = walk.found_room - slice_width * walk.point_count;
+            if (walk.stacked == 0 || walk.point_count >= several || walk.found_count > room)
                 continue;
             visit<Eight>(tree, walk);
             more = true;
