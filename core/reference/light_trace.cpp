@@ -13,26 +13,64 @@ namespace caustics {
 namespace {
 
 // Sums of what paths brought to each of a number of cells (pixels or probe points).
-struct Tally {
-    std::vector<SpectrumSum> sum, squares;
-    std::uint64_t added = 0;
-
+class Tally {
+public:
     explicit Tally(std::size_t cells)
-        : sum(cells, SpectrumSum::Zero()), squares(cells, SpectrumSum::Zero()) {}
+        : sum_(cells, SpectrumSum::Zero()), squares_(cells, SpectrumSum::Zero()) {}
 
+    // Of a random path.
     void add(std::size_t cell, const Spectrum& value) {
         const SpectrumSum v = value.cast<double>();
-        sum[cell] += v;
-        squares[cell] += v * v;
-        ++added;
+        sum_[cell] += v;
+        squares_[cell] += v * v;
+        ++added_;
     }
-    // Mean over n paths, each of which brought at most one value to a cell (or, of whole paths, seldom two).
-    Estimate estimate(std::size_t cell, double n) const {
-        const SpectrumSum mean = sum[cell] / n;
-        const SpectrumSum variance = (squares[cell] / n - mean.square()).max(0) / n;
-        return {mean.cast<float>(), variance.sqrt().cast<float>()};
+    // Of a path of the batch, whose paths depend on each other.
+    void add_to_batch(std::size_t cell, const Spectrum& value) {
+        batch_.resize(sum_.size(), SpectrumSum::Zero());
+        batch_[cell] += value.cast<double>();
+        ++added_;
     }
+    // Batches are alike and independent.
+    void end_batch() {
+        batch_.resize(sum_.size(), SpectrumSum::Zero());
+        batch_sum_.resize(sum_.size(), SpectrumSum::Zero());
+        batch_squares_.resize(sum_.size(), SpectrumSum::Zero());
+        for (std::size_t cell = 0; cell < batch_.size(); ++cell) {
+            batch_sum_[cell] += batch_[cell];
+            batch_squares_[cell] += batch_[cell].square();
+            batch_[cell].setZero();
+        }
+        ++batches_;
+    }
+
+    std::uint64_t added() const { return added_; }
+    // Mean over n paths, `random` of them outside of batches; such a path brought at most one value to a cell
+    // (or, of whole paths, seldom two).
+    Estimate estimate(std::size_t cell, double n, double random) const {
+        if (batches_ == 0) {
+            const SpectrumSum mean = sum_[cell] / n;
+            const SpectrumSum variance = (squares_[cell] / n - mean.square()).max(0) / n;
+            return {mean.cast<float>(), variance.sqrt().cast<float>()};
+        }
+        const SpectrumSum mean = (batch_sum_[cell] + sum_[cell]) / n;
+        const double count = batches_;
+        SpectrumSum variance =
+            (batch_squares_[cell] - batch_sum_[cell].square() / count).max(0) * count / (count - 1);
+        if (random > 0) variance += (squares_[cell] - sum_[cell].square() / random).max(0);
+        return {mean.cast<float>(), (variance.sqrt() / n).cast<float>()};
+    }
+
+private:
+    std::vector<SpectrumSum> sum_, squares_;  // of random paths
+    std::vector<SpectrumSum> batch_, batch_sum_, batch_squares_;
+    int batches_ = 0;
+    std::uint64_t added_ = 0;
 };
+
+// Of stratified paths. The fewer there are, the finer are the strata; the variance of a pixel's mean grows as the
+// root of their number.
+constexpr std::uint64_t batches = 4;
 
 struct LightTraceContext : QueryContext {
     LightPathCounts counts;
@@ -59,9 +97,12 @@ public:
           params_(params),
           paths_(paths),
           options_(options),
-          emission_(scene, Isa::plain, paths.whole ? Aim::everywhere : Aim::casters),
+          emission_(scene, options.isa, paths.whole ? Aim::everywhere : Aim::casters),
           film_(scene.camera()),
-          eye_absorption_(eye_medium(scene).absorption) {}
+          eye_absorption_(eye_medium(scene).absorption) {
+        if (params.emission == LightTraceParams::Emission::stratified)
+            strata_ = StratifiedSquare::at_most(params.paths / batches);
+    }
 
     std::optional<CameraLayer> camera_layer(const RunOptions& options) const override {
         const Camera& camera = scene_.camera();
@@ -74,9 +115,9 @@ public:
         const Tally tally = trace(cells, options, collect, counts);
         CameraLayer layer;
         counts.add_to(layer.counters);
-        layer.counters["photons_connected"] = tally.added;
+        layer.counters["photons_connected"] = tally.added();
         for (std::size_t i = 0; i < cells; ++i) {
-            const Estimate e = tally.estimate(i, static_cast<double>(params_.paths));
+            const Estimate e = estimate(tally, i);
             layer.radiance.push_back(e.value);
             layer.standard_error.push_back(e.standard_error);
         }
@@ -105,12 +146,44 @@ private:
     Tally trace(std::size_t cells, const RunOptions& options, const Collect& collect,
                 LightPathCounts& total) const {
         Tally tally(cells);
-        const OrderedPaths paths{scene_,        emission_,    params_.paths, params_.max_bounces,
-                                 options_.seed, paths_.stage, paths_.whole};
+        OrderedPaths paths{scene_,        emission_,    params_.paths, params_.max_bounces,
+                           options_.seed, paths_.stage, paths_.whole};
+        for (std::uint64_t batch = 0; strata_ && batch < batches; ++batch) {
+            paths.paths = strata_->size();
+            paths.strata = strata_;
+            if (disperses(scene_))
+                paths.wavelength_shift = Rng(options_.seed, Stage::wavelength, batch).next_fine();
+            total.add(trace_in_order<Arrival>(paths, part_of(options, paths), collect,
+                                              [&tally](const Arrival& arrival) {
+                                                  tally.add_to_batch(arrival.cell, arrival.value);
+                                              }));
+            tally.end_batch();
+            paths.first += paths.paths;
+        }
+        paths.paths = params_.paths - paths.first;
+        paths.strata.reset();
+        paths.wavelength_shift.reset();
         total.add(trace_in_order<Arrival>(
-            paths, options, collect,
+            paths, part_of(options, paths), collect,
             [&tally](const Arrival& arrival) { tally.add(arrival.cell, arrival.value); }));
         return tally;
+    }
+
+    // Progress of some of the paths as that of all.
+    RunOptions part_of(const RunOptions& options, const OrderedPaths& part) const {
+        RunOptions own = options;
+        const auto all = static_cast<double>(params_.paths);
+        const double from = static_cast<double>(part.first) / all;
+        const double share = static_cast<double>(part.paths) / all;
+        if (options.progress)
+            own.progress = [=, &options](double done) { options.progress(from + share * done); };
+        return own;
+    }
+
+    Estimate estimate(const Tally& tally, std::size_t cell) const {
+        const std::uint64_t stratified = strata_ ? batches * strata_->size() : 0;
+        return tally.estimate(cell, static_cast<double>(params_.paths),
+                              static_cast<double>(params_.paths - stratified));
     }
 
     // The pixel average of the radiance a deposit sends to the pinhole: with film area dp at unit
@@ -158,8 +231,7 @@ private:
         };
         const Tally tally = trace(points.size(), options_, collect,
                                   static_cast<LightTraceContext&>(context).counts);
-        for (std::size_t i = 0; i < points.size(); ++i)
-            out[i] = tally.estimate(i, static_cast<double>(params_.paths));
+        for (std::size_t i = 0; i < points.size(); ++i) out[i] = estimate(tally, i);
     }
 
     const Scene& scene_;
@@ -169,6 +241,7 @@ private:
     AimedEmission emission_;
     FilmProjection film_;
     Spectrum eye_absorption_;
+    std::optional<StratifiedSquare> strata_;  // of a batch
 };
 
 template <class P>
@@ -198,9 +271,31 @@ MethodFacts facts(const std::string& summary) {
             .effort = {"paths=400000"}};
 }
 
+std::vector<Parameter<LightTraceParams>> caustic_parameters() {
+    using P = LightTraceParams;
+    std::vector<Parameter<P>> parameters = path_parameters<P>();
+    parameters.push_back(
+        parameter::choice<P>(
+            &P::emission,
+            {{"random", P::Emission::random}, {"stratified", P::Emission::stratified}},
+            {.key = "emission",
+             .meaning = "Draws light paths at random, or in four batches of jittered strata."})
+            .only_if([](const P& p) { return p.emission != P::Emission::random; }));
+    return parameters;
+}
+
 template <class P>
 void check_radius(const JsonNode& node, P&) {
     if (const auto radius = node.find("radius")) radius->as_number_in(0, 1e12);
+}
+
+void settle(const JsonNode& node, LightTraceParams& params) {
+    check_radius(node, params);
+    if (const auto emission = node.find("emission");
+        emission && params.emission == LightTraceParams::Emission::stratified &&
+        params.paths < batches)
+        emission->fail(
+            "\"stratified\" takes four paths or more, one in each batch (or take \"random\")");
 }
 
 }  // namespace
@@ -210,8 +305,8 @@ const DescribedMethod<LightTraceParams>& lighttrace_method() {
     static const DescribedMethod<P> method(
         {.facts = facts("particle tracing connected to the camera; `probe` gathers its particles "
                         "over a disc at each point"),
-         .parameters = path_parameters<P>(),
-         .settle = check_radius<P>,
+         .parameters = caustic_parameters(),
+         .settle = settle,
          .disc_radius = &P::radius});
     return method;
 }

@@ -14,9 +14,14 @@ namespace caustics {
 /// average; serves every light; cannot reach pixels that see the receiver through a specular
 /// surface. Counters: those of LightPathCounts and, in render, `photons_connected` to the pinhole.
 struct LightTraceParams {
+    enum class Emission {
+        random,
+        stratified  ///< most of the paths in four batches of jittered strata, whose scatter is the standard error
+    };
     std::uint64_t paths = 1'000'000;  ///< emitted, thinned ones included
     int max_bounces = 16;             ///< specular events between light and receiver
     double radius = 0;                ///< [m] of the disc in `probe` for points without their own
+    Emission emission = Emission::random;  ///< of caustics
 };
 /// The same of indirect light: whole paths, from the second receiver on.
 struct IndirectLightTraceParams : LightTraceParams {

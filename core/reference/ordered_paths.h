@@ -9,11 +9,12 @@
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/light_path/light_path.h"
+#include "core/light_path/stratified_square.h"
 #include "core/light_path/whole_path.h"
 
 namespace caustics {
 
-/// Light paths 0, 1, ..., paths - 1 of a scene.
+/// Light paths first, first + 1, ..., first + paths - 1 of a scene.
 struct OrderedPaths {
     const Scene& scene;
     const AimedEmission& emission;
@@ -23,6 +24,11 @@ struct OrderedPaths {
     Stage stage;  ///< of their random numbers
     /// Where given: of all events; what is left after a diffuse reflection counts.
     std::optional<WholePathSettings> whole = {};
+    std::uint64_t first = 0;
+    /// Where given, as many as there are paths, one in each; they start side by side and are followed in packets.
+    /// Not of whole paths.
+    std::optional<StratifiedSquare> strata = {};
+    std::optional<double> wavelength_shift = {};  ///< LightPathSettings
 
     static constexpr std::uint64_t chunk = 4096;
     static constexpr std::uint64_t chunks_per_round = 256;
@@ -30,9 +36,20 @@ struct OrderedPaths {
     /// Follows the paths of a chunk and calls sink(deposit) for what arrives.
     template <typename Sink>
     void trace_chunk(std::uint64_t index, LightPathCounts& counts, const Sink& sink) const {
-        const std::uint64_t end = std::min((index + 1) * chunk, paths);
+        const std::uint64_t begin = first + index * chunk;
+        const std::uint64_t end = std::min(begin + chunk, first + paths);
+        if (strata)
+            trace_together(begin, end, counts, sink);
+        else
+            trace_one_by_one(begin, end, counts, sink);
+    }
+
+private:
+    template <typename Sink>
+    void trace_one_by_one(std::uint64_t begin, std::uint64_t end, LightPathCounts& counts,
+                          const Sink& sink) const {
         std::vector<Deposit> deposits;
-        for (std::uint64_t path = index * chunk; path < end; ++path) {
+        for (std::uint64_t path = begin; path < end; ++path) {
             throw_if_interrupted();
             Rng rng(seed, stage, path);
             ++counts.emitted;
@@ -46,6 +63,31 @@ struct OrderedPaths {
                 trace_light_path(scene, *particle, {max_bounces}, rng, counts, deposits);
             for (const Deposit& deposit : deposits)
                 if (!whole || deposit.diffuse_bounces > 0) sink(deposit);
+        }
+    }
+
+    // Neighbours in the square start side by side.
+    template <typename Sink>
+    void trace_together(std::uint64_t begin, std::uint64_t end, LightPathCounts& counts,
+                        const Sink& sink) const {
+        const LightPathSettings settings{.max_bounces = max_bounces,
+                                         .wavelength_shift = wavelength_shift};
+        EmissionSamples samples;
+        std::vector<LightPathStart> starts;
+        std::vector<DepositOfMany> deposits;
+        for (; begin < end; begin += samples.size()) {
+            throw_if_interrupted();
+            const std::size_t count = std::min<std::uint64_t>(end - begin, EmissionSamples::most);
+            samples.draw({seed, static_cast<std::uint32_t>(stage), begin, count},
+                         emission.kernels());
+            strata->place(begin - first, samples.x(), samples.y());
+            starts.clear();
+            deposits.clear();
+            emission.emit(samples, starts);
+            counts.emitted += count;
+            counts.aimed += starts.size();
+            trace_light_paths(scene, starts, settings, counts, deposits);
+            for (const DepositOfMany& one : deposits) sink(one.deposit);
         }
     }
 };

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/light_path/empty_caustic.h"
-#include "photonmap/photons/stratified_square.h"
+#include "core/light_path/stratified_square.h"
 
 namespace caustics::photonmap {
 

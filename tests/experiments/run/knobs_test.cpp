@@ -228,6 +228,10 @@ TEST(Knobs, OfTheReferences) {
         light({"paths=50000", "radius=0.2", "max_bounces=2"}).stderr_share / usual.stderr_share,
         0.5, 0.05);
     EXPECT_LT(light({"paths=50000", "radius=0.1", "max_bounces=1"}).mean(), 0.01);
+    const Answer stratified =
+        light({"paths=50000", "radius=0.1", "max_bounces=2", "emission=stratified"});
+    EXPECT_LT(stratified.stderr_share, 0.8 * usual.stderr_share);
+    EXPECT_NEAR(stratified.mean(), 1, 0.05);
     const auto path = [](const std::vector<std::string>& parameters) {
         return ask("furnace", "pathtrace", parameters);
     };
@@ -253,7 +257,7 @@ TEST(Knobs, AreAllTurnedAbove) {
          {"polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
           "wavelengths", "receiver_resolution"}},
         {"illuminationmap", {"emitted", "resolution", "max_bounces"}},
-        {"lighttrace", {"paths", "radius", "max_bounces"}},
+        {"lighttrace", {"paths", "radius", "emission", "max_bounces"}},
         {"pathtrace", {"spp", "max_bounces"}},
         {"none", {"shadows"}}};  // core/render/direct_light_test
     for (const MethodDescription* method : all_methods()) {

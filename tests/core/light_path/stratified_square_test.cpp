@@ -1,4 +1,4 @@
-#include "photonmap/photons/stratified_square.h"
+#include "core/light_path/stratified_square.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "core/math/rng.h"
 #include "tests/support/statistics.h"
 
-namespace caustics::photonmap {
+namespace caustics {
 namespace {
 
 Vec2d point(const StratifiedSquare& square, std::uint64_t stratum, Vec2d jitter) {
@@ -79,4 +79,4 @@ TEST(StratifiedSquare, NeighboursInTheWalkAreNeighboursInTheSquare) {
 }
 
 }  // namespace
-}  // namespace caustics::photonmap
+}  // namespace caustics

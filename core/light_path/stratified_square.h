@@ -5,7 +5,7 @@
 
 #include "core/math/vec.h"
 
-namespace caustics::photonmap {
+namespace caustics {
 
 /// The unit square in equal strata, walked so that consecutive strata are near each other: square
 /// blocks of up to 64 x 64 strata row by row, to and fro, and within a block in Morton order.
@@ -35,4 +35,4 @@ private:
     Vec2d stratum_;        ///< a stratum's sides
 };
 
-}  // namespace caustics::photonmap
+}  // namespace caustics

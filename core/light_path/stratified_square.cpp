@@ -1,9 +1,9 @@
-#include "photonmap/photons/stratified_square.h"
+#include "core/light_path/stratified_square.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace caustics::photonmap {
+namespace caustics {
 
 namespace {
 
@@ -90,4 +90,4 @@ void StratifiedSquare::place_in_block(const Vec2d& corner, std::uint32_t code, s
     }
 }
 
-}  // namespace caustics::photonmap
+}  // namespace caustics
