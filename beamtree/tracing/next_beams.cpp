@@ -8,7 +8,7 @@ namespace caustics::beamtree {
 namespace {
 
 // Where corners' weights do not give the mean, this many parts of a side do.
-constexpr int parts = 5;
+constexpr int parts_of_side = 5;
 
 // What media have left of a beam's light. Where they absorb much, all light that passes is weak.
 double left_of(const BeamCorners& corners) {
@@ -150,18 +150,18 @@ Spectrum NextBeams::flux(std::uint32_t parent, const BeamCorners& corners, Event
     const Path path(scene_, surface_, level_, parent);
     Spectrum sum = black();
     const auto add = [&](int i, int j, float to_middle) {
-        const float u = (static_cast<float>(i) + to_middle) / parts;
-        const float v = (static_cast<float>(j) + to_middle) / parts;
+        const float u = (static_cast<float>(i) + to_middle) / parts_of_side;
+        const float v = (static_cast<float>(j) + to_middle) / parts_of_side;
         const PathPoint point = path.inside(at, {1 - u - v, u, v});
         if (goes_on(point) && same_piece(point.next, *corners[0].arrival))
             sum += point.origin.weight * point.next.weight[event];
     };
-    for (int i = 0; i < parts; ++i)
-        for (int j = 0; i + j < parts; ++j) {
+    for (int i = 0; i < parts_of_side; ++i)
+        for (int j = 0; i + j < parts_of_side; ++j) {
             add(i, j, 1.0F / 3);
-            if (i + j + 2 <= parts) add(i, j, 2.0F / 3);
+            if (i + j + 2 <= parts_of_side) add(i, j, 2.0F / 3);
         }
-    return sum * (whole / (parts * parts));
+    return sum * (whole / (parts_of_side * parts_of_side));
 }
 
 void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event event, float share) {
