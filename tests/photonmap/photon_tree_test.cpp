@@ -89,9 +89,9 @@ std::vector<std::vector<Found>> answers(const PhotonTree& tree,
             if (gathered.full || !around) {
                 // With a margin the last of those at the N-th distance.
                 const std::size_t rank = gathered.full ? limits.nearest : all[i].size();
-                const auto as_far = std::ranges::equal_range(
+                const auto beyond = std::ranges::upper_bound(
                     all[i], all[i][rank - 1].squared_distance, {}, &Found::squared_distance);
-                EXPECT_EQ(farthest, as_far.back());
+                EXPECT_EQ(farthest, *std::prev(beyond));
             }
         }
     });
