@@ -41,7 +41,8 @@ struct Joined {
 
 Joined in_chunks(int of_beams, int threads) {
     Rng rng(2, Stage::test, 0);
-    std::vector<SetChunk> chunks((beams + of_beams - 1) / of_beams);
+    const auto chunk_count = static_cast<std::size_t>((beams + of_beams - 1) / of_beams);
+    std::vector<SetChunk> chunks(chunk_count);
     for (int i = 0; i < beams; ++i)
         add_beam(chunks[static_cast<std::size_t>(i / of_beams)], static_cast<std::uint32_t>(i),
                  rng);
