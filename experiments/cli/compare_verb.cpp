@@ -57,8 +57,7 @@ void append_text(std::string& text, const char* title, const nlohmann::json& met
 /// What the reference's own standard error leaves of a difference, in one line; empty where it has none.
 std::string said_of_reference(const Film& reference, const std::string& layer,
                               const PixelMask& reached, const nlohmann::json& metrics) {
-    const auto share =
-        layer == "caustic" ? relative_standard_error(reference, reached) : std::optional<double>();
+    const auto share = relative_standard_error(reference, layer, reached);
     if (!share || !metrics.at("rmse").is_number()) return "";
     const double error = *share * mean(reference, layer, reached);
     const double rmse = metrics.at("rmse").get<double>();
@@ -112,8 +111,7 @@ int compare(const CompareOptions& options) {
     const std::string name = layer.empty() ? "beauty" : layer;
     const double unreached = 1 - fraction(reached);
     if (options.json) {
-        const std::optional<double> own =
-            layer == "caustic" ? relative_standard_error(reference, reached) : std::nullopt;
+        const std::optional<double> own = relative_standard_error(reference, layer, reached);
         const nlohmann::json all = {
             {"layer", name},
             {"unreached_fraction", unreached},

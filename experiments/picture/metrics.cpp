@@ -136,11 +136,18 @@ void require_finite(const Film& film, const std::string& layer, const std::strin
     }
 }
 
-std::optional<double> relative_standard_error(const Film& reference, const PixelMask& counted) {
-    const bool coloured = reference.has_layer("stderr") && reference.find("stderr.R") != nullptr;
-    const std::vector<float>* const grey = reference.find("stderr.Y");
-    if ((!coloured && grey == nullptr) || !reference.has_layer("caustic")) return {};
-    const double mean_r = mean(reference, "caustic", counted);
+std::string error_layer(const std::string& layer) {
+    if (layer == "caustic") return "stderr";
+    return layer == "indirect" ? "indirect_stderr" : "";
+}
+
+std::optional<double> relative_standard_error(const Film& reference, const std::string& layer,
+                                              const PixelMask& counted) {
+    const std::string errors = error_layer(layer);
+    if (errors.empty() || !reference.has_layer(layer)) return {};
+    const std::vector<float>* const grey = reference.find(errors + ".Y");
+    if (grey == nullptr && !reference.has_layer(errors)) return {};
+    const double mean_r = mean(reference, layer, counted);
     if (!(mean_r > 0)) return {};
     double squares = 0;
     std::size_t count = 0;
@@ -150,7 +157,7 @@ std::optional<double> relative_standard_error(const Film& reference, const Pixel
         if (grey != nullptr) {
             squares += static_cast<double>((*grey)[i]) * static_cast<double>((*grey)[i]);
         } else {
-            const SpectrumSum s = reference.rgb("stderr", i).cast<double>();
+            const SpectrumSum s = reference.rgb(errors, i).cast<double>();
             squares += s.square().sum() / 3;
         }
     }

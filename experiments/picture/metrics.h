@@ -50,8 +50,13 @@ void require_finite(const Film& film, const std::string& name);
 /// The same of one layer.
 void require_finite(const Film& film, const std::string& layer, const std::string& name);
 
-/// Standard error of a reference as a share of its mean: sqrt(mean s^2) / mean(r), s the standard
-/// error of a pixel's caustic (layer stderr). Empty without these layers, or without light.
-std::optional<double> relative_standard_error(const Film& reference, const PixelMask& counted);
+/// The layer with the standard error of another: "stderr" of caustic, "indirect_stderr" of indirect; empty for
+/// layers that have none.
+std::string error_layer(const std::string& layer);
+
+/// Standard error of a layer of a reference as a share of its mean: sqrt(mean s^2) / mean(r), s the standard
+/// error of a pixel (error_layer). Empty without these layers, or without light.
+std::optional<double> relative_standard_error(const Film& reference, const std::string& layer,
+                                              const PixelMask& counted);
 
 }  // namespace caustics::experiments

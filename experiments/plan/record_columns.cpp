@@ -140,6 +140,11 @@ constexpr RecordColumn columns[] = {
      "`mean_ratio` of it"},
     {"indirect_s", "/seconds/indirect/wall", Kind::number, "s, wall",
      "the precompute pass of the indirect method"},
+    {"indirect_cpu_s", "/seconds/indirect/cpu", Kind::number, "s, CPU", "as `indirect_s`"},
+    {"reference_indirect_mean", "/reference/indirect_mean", Kind::number, "W m⁻² sr⁻¹",
+     "mean of the reference's indirect layer"},
+    {"reference_indirect_stderr", "/reference/indirect_stderr", Kind::number, "1",
+     "standard error of a pixel of that layer over its mean"},
     {"why_empty", "/why_empty", Kind::text, "", "why the caustic is black all over"},
     {"message", "/message", Kind::text, "", "why the trial failed"},
 };

@@ -17,6 +17,16 @@ namespace caustics::experiments {
 
 namespace {
 
+/// Keeps a layer's standard error, its root mean square over the channels.
+void keep_error(const Film& rendered, const std::string& errors, Film& film) {
+    if (!rendered.has_layer(errors)) return;
+    std::vector<float>& grey = film.plane(errors + ".Y");
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        const SpectrumSum s = rendered.rgb(errors, i).cast<double>();
+        grey[i] = static_cast<float>(std::sqrt(s.square().sum() / 3));
+    }
+}
+
 /// What is kept of a rendered picture.
 Film reference_film(const Film& rendered) {
     Film film(rendered.width(), rendered.height());
@@ -28,14 +38,17 @@ Film reference_film(const Film& rendered) {
     }
     if (const std::vector<float>* const unreached = rendered.find("unreached.Y"))
         film.plane("unreached.Y") = *unreached;
-    if (rendered.find("stderr.R") == nullptr) return film;
-    std::vector<float>& grey = film.plane("stderr.Y");
-    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        const SpectrumSum s = rendered.rgb("stderr", i).cast<double>();
-        grey[i] = static_cast<float>(std::sqrt(s.square().sum() / 3));
-    }
+    for (const char* const layer : {"caustic", "indirect"})
+        keep_error(rendered, error_layer(layer), film);
     return film;
 }
+
+Reference::Light light_of(const Film& film, const std::string& layer, const PixelMask& reached) {
+    return {mean(film, layer, reached), relative_standard_error(film, layer, reached)};
+}
+
+/// Pictures of version 1 keep no standard error of their indirect layer.
+constexpr int indirect_version = 2;
 
 }  // namespace
 
@@ -48,6 +61,7 @@ std::string reference_key(const RunRequest& request, const SceneFile& scene, int
         {"spp", request.samples_per_pixel}, {"seed", request.seed},
         {"width", scene.desc.camera.width}, {"height", scene.desc.camera.height}};
     if (request.indirect) {
+        configuration["indirect_version"] = indirect_version;
         configuration["indirect"] = request.indirect->name;
         configuration["indirect_parameters"] = identity(*request.indirect);
     }
@@ -100,7 +114,7 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
 std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& request) {
     if (last_ && last_->key == request.key) return last_;
     const std::filesystem::path file = file_of(request);
-    auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), 0, {}});
+    auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), {}, {}});
     for (const char* layer : {"", "caustic"})
         if (!reference->film.has_layer(layer))
             throw InputError(
@@ -108,8 +122,9 @@ std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& req
                             "--references rebuild)",
                             file.string(), layer));
     const PixelMask reached = reached_pixels(reference->film, reference->film);
-    reference->mean = mean(reference->film, "caustic", reached);
-    reference->standard_error = relative_standard_error(reference->film, reached);
+    reference->caustic = light_of(reference->film, "caustic", reached);
+    if (reference->film.has_layer("indirect"))
+        reference->indirect = light_of(reference->film, "indirect", reached);
     last_ = reference;
     return reference;
 }

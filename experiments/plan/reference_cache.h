@@ -22,12 +22,17 @@ int reference_version(const Scene& scene);
 std::string reference_key(const RunRequest& request, const SceneFile& scene, int version);
 
 /// A picture that trials are judged by: layers caustic, R G B (beauty), stderr.Y (root mean square
-/// over the channels) and, where it applies, unreached.
+/// over the channels) and, where they apply, indirect, indirect_stderr.Y and unreached.
 struct Reference {
+    /// A layer over reached pixels and channels.
+    struct Light {
+        double mean = 0;
+        std::optional<double> standard_error = {};  ///< sqrt(mean s^2) / mean(r)
+    };
     std::string key;
     Film film;
-    double mean = 0;  ///< of the caustic layer over reached pixels and channels
-    std::optional<double> standard_error;  ///< sqrt(mean s^2) / mean(r) of the caustic layer
+    Light caustic;
+    std::optional<Light> indirect;  ///< none in a reference without that layer
 };
 
 /// What is done about references that are there: used; rendered anew; or used, and one that differs only in

@@ -73,11 +73,16 @@ void record_errors(json& record, const Film& film, const Reference& reference) {
     record["mask_metrics"] = to_json(measure(film, reference.film, "caustic", bright));
     record["mask_fraction"] = fraction(bright);
     record["beauty_rmse"] = to_json(measure(film, reference.film, "", reached))["rmse"];
-    if (film.has_layer("indirect") && reference.film.has_layer("indirect"))
-        record["indirect_metrics"] = to_json(measure(film, reference.film, "indirect", reached));
     record["unreached_fraction"] = 1 - fraction(reached);
-    record["reference"]["mean"] = reference.mean;
-    if (reference.standard_error) record["reference"]["stderr"] = *reference.standard_error;
+    record["reference"]["mean"] = reference.caustic.mean;
+    if (const auto& error = reference.caustic.standard_error)
+        record["reference"]["stderr"] = *error;
+    if (film.has_layer("indirect") && reference.indirect) {
+        record["indirect_metrics"] = to_json(measure(film, reference.film, "indirect", reached));
+        record["reference"]["indirect_mean"] = reference.indirect->mean;
+        if (const auto& error = reference.indirect->standard_error)
+            record["reference"]["indirect_stderr"] = *error;
+    }
     const auto empty = reference.film.metadata.find("why_empty");
     if (empty != reference.film.metadata.end()) record["reference"]["why_empty"] = empty->second;
 }

@@ -24,7 +24,8 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "casters_with_face_normals", "flux_share_captured", "flux_share_pruned", "flux_share_over_budget",
             "beams_unreceived", "photons_aimed", "photons_reflected",
             "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points", "indirect_rmse",
-            "indirect_relmse", "indirect_mean_ratio", "indirect_s")
+            "indirect_relmse", "indirect_mean_ratio", "indirect_s", "indirect_cpu_s", "reference_indirect_mean",
+            "reference_indirect_stderr")
 RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "other_cores", "jobs", "timeout_s",
        "memory_limit_bytes", "message", "why_empty")  # of one run of a trial
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN

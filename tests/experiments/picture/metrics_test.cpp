@@ -99,18 +99,25 @@ TEST(Masks, KeepPixelsAtLeastAsBrightAsTheMean) {
 TEST(StandardError, IsEmptyWhereThereIsNoCaustic) {
     Film film(1, 1);
     film.set_rgb("", 0, Spectrum::Constant(1));
-    EXPECT_FALSE(relative_standard_error(film, {true}));
+    EXPECT_FALSE(relative_standard_error(film, "caustic", {true}));
     film.plane("stderr.Y")[0] = 1;
-    EXPECT_FALSE(relative_standard_error(film, {true}));
+    EXPECT_FALSE(relative_standard_error(film, "caustic", {true}));
     EXPECT_THROW(static_cast<void>(film.rgb("caustic", 0)), std::logic_error);
 }
 
 TEST(StandardError, IsTheRootMeanSquareOverTheMean) {
     Film r = grey_film("caustic", {1, 1, 1, 5});
-    EXPECT_FALSE(relative_standard_error(r, all)) << "no layer stderr";
+    EXPECT_FALSE(relative_standard_error(r, "caustic", all)) << "no layer stderr";
     r.plane("stderr.Y") = {1, 2, 2, 9};
-    EXPECT_DOUBLE_EQ(*relative_standard_error(r, {true, true, true, false}), std::sqrt(3.0));
+    EXPECT_DOUBLE_EQ(*relative_standard_error(r, "caustic", {true, true, true, false}),
+                     std::sqrt(3.0));
     EXPECT_DOUBLE_EQ(mean(r, "caustic", all), 2);
+    EXPECT_FALSE(relative_standard_error(r, "indirect", all));
+    for (std::size_t i = 0; i < 4; ++i) r.set_rgb("indirect", i, Spectrum::Constant(4));
+    EXPECT_FALSE(relative_standard_error(r, "indirect", all)) << "that is the caustic's";
+    for (std::size_t i = 0; i < 4; ++i) r.set_rgb("indirect_stderr", i, {1, 2, 2});
+    EXPECT_NEAR(*relative_standard_error(r, "indirect", all), std::sqrt(3.0) / 4, 1e-7);
+    EXPECT_FALSE(relative_standard_error(r, "direct", all));
 }
 
 }  // namespace

@@ -59,9 +59,9 @@ TEST(ReferenceExtension, BeginsWithTheSamplesThatAreThere) {
                 0.25F * small.film.rgb("caustic", i)[c] + 0.75F * added.film.rgb("caustic", i)[c],
                 1e-6F);
     // The error falls as one over the root of the samples, and tells how far both are apart.
-    EXPECT_NEAR(*small.standard_error / *large.standard_error, 2, 0.3);
+    EXPECT_NEAR(*small.caustic.standard_error / *large.caustic.standard_error, 2, 0.3);
     const double apart = std::abs(total(small.film) / total(large.film) - 1);
-    EXPECT_LT(apart, 4 * *small.standard_error);
+    EXPECT_LT(apart, 4 * *small.caustic.standard_error);
 }
 
 TEST(ReferenceExtension, TakesTheLargestOfTheSameKindOnly) {
@@ -94,6 +94,36 @@ TEST(ReferenceKeys, DifferWhereTheEyeIsInAMediumThatAbsorbs) {
     EXPECT_EQ(version("pool.json"), 2);
     EXPECT_EQ(version("pool_overhead.json"), 1);
     EXPECT_EQ(version("ball.json"), 1);
+}
+
+// Of caustics and of light between surfaces: what pictures of other seeds scatter.
+TEST(ReferenceKeys, AreOfPicturesThatKeepTheirErrors) {
+    const support::TemporaryFolder folder;
+    ReferenceCache cache(std::string(folder / "references"), ReferencePolicy::keep);
+    const SceneFile file = load_scene(scene_file, {});
+    const Scene scene(file.desc);
+    std::vector<Reference> both;
+    for (const std::uint64_t seed : {std::uint64_t{1}, std::uint64_t{2}}) {
+        ReferenceRequest wanted = request(20'000, seed);
+        const std::string without = wanted.key;
+        wanted.request.indirect = parse_indirect("lighttrace", parameters_node({"paths=20000"}));
+        wanted.key = reference_key(wanted.request, file, reference_version(scene));
+        EXPECT_NE(wanted.key, without);
+        both.push_back(rendered(cache, wanted));
+        EXPECT_EQ(both.back().film.find("stderr.R"), nullptr);
+        EXPECT_FALSE(rendered(cache, request(20'000, seed)).indirect);
+    }
+    ASSERT_TRUE(both[0].indirect && both[0].indirect->standard_error);
+    const auto value = [](const Reference& of, std::size_t i) {
+        return of.film.rgb("indirect", i).cast<double>().eval();
+    };
+    double squares = 0, told = 0;
+    for (std::size_t i = 0; i < both[0].film.pixel_count(); ++i) {
+        squares += (value(both[0], i) - value(both[1], i)).square().sum() / 3;
+        for (const Reference& of : both)
+            told += std::pow(static_cast<double>((*of.film.find("indirect_stderr.Y"))[i]), 2);
+    }
+    EXPECT_NEAR(squares / told, 1, 0.25);
 }
 
 TEST(ReferenceExtension, IsOnlyDoneWhenAskedFor) {
