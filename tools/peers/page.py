@@ -63,7 +63,7 @@ def factor(ratio, ranged=True):
     if ratio is None:
         return "–"
     sign = {"bound": "≥ ", "law": "~ "}.get(ratio.kind, "")
-    spread = f" ({ratio.low:.2g} to {ratio.high:.2g})" if ranged and ratio.kind == "measured" else ""
+    spread = f" ({ratio.low:.3g} to {ratio.high:.3g})" if ranged and ratio.kind == "measured" else ""
     return f"{sign}{ratio.value:.3g} ×{spread}"
 
 
@@ -194,7 +194,7 @@ def against_us(results):
 
 def method(results):
     undone = [each for each in results.records if each["status"] != scores.DONE]
-    over = sorted({f"{each['scene']}: {results.held.titles[each['contestant']]} ({each['setting']})" for each in undone})
+    over = sorted({f"{each['scene']}: {results.held.titles[each['contestant']]} ({each['setting']}), {each['status']}" for each in undone})
     return ["## How, and what was not measured", "",
             "- The same question for all: the caustic's mean over each pixel that sees nothing but the floor, green channel, without light from floor to floor. "
             "Error is √mean((x − r)² / (r² + 0.01 mean(r)²)).",
@@ -208,5 +208,5 @@ def method(results):
             "- Plain splatting is an ideal rival: it knows the one caster's shape and has no intersector, no scene, no other light. It cannot serve "
             "the cut bowl; `lighttrace` stands for it there.",
             "- Pools: each contestant chooses among meshes of the water; the truth is the smooth surface.",
-            f"- Settings tried and chosen: peers.csv. Beyond {results.held.text['longest_s']} CPU s: {'; '.join(over) or 'none'}.",
+            f"- Settings tried and chosen: peers.csv. Ended for their CPU time: {'; '.join(over) or 'none'}.",
             "- Not measured: larger pictures, several threads, area lights, glossy floors, longer runs; at most three repeats, so ratios below 1.2 are noise."]
