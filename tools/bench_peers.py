@@ -66,7 +66,7 @@ class Race:
         from peers import contest
 
         found = [cell for cell in self.scores.cells(self.records, scene.name, self.scores.SEARCH) if cell.name == name]
-        chosen = self.scores.chosen(found, self.held.text["keep"])
+        chosen = self.scores.chosen(found, scene.text.get("keep", self.held.text["keep"]))
         return [setting for setting in self.held.settings(scene, name) if contest.words(setting) in chosen]
 
     def measure(self, scene, truth, name, settings, seeds, phase):

@@ -133,7 +133,6 @@ class Splat(unittest.TestCase):
         self.assertLess(np.abs(splat - radiance).max() / radiance.mean(), 0.02)
 
 
-@unittest.skipUnless((RESULTS / "peers.csv").is_file(), "no records")
 class Committed(unittest.TestCase):
     def test_the_page_follows_from_its_records(self):
         self.assertEqual((RESULTS / "peers.md").read_text(encoding="utf-8"), page.text(page.Results(RESULTS)))
