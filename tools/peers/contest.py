@@ -137,11 +137,11 @@ def outline(around):
     if kind == "box":
         steps = [np.linspace(-1, 1, 9)] * 2 + [np.array([-1, 1])]
         return np.stack([grid.ravel() for grid in np.meshgrid(*steps)], axis=1) * numbers
-    turn = np.linspace(0, 2 * np.pi, 256, endpoint=False)
+    turn = np.linspace(0, 2 * np.pi, 128, endpoint=False)
     if kind == "cylinder":
         radius, low, high = numbers
         return np.array([(radius * np.cos(t), radius * np.sin(t), z) for t in turn for z in (low, high)])
-    tilt = np.linspace(0, np.pi, 128)
+    tilt = np.linspace(0, np.pi, 65)
     centre, radius = np.array(numbers[:3]), numbers[3]
     return np.array([centre + radius * np.array((np.sin(p) * np.cos(t), np.sin(p) * np.sin(t), np.cos(p))) for p in tilt for t in turn])
 
@@ -152,7 +152,7 @@ def cone(around, lamp_position):
     ways = outline(around) - np.array(lamp_position)
     ways /= np.linalg.norm(ways, axis=1)[:, None]
     axis = ways.mean(axis=0)
-    for step in range(1, 2000):
+    for step in range(1, 500):
         axis /= np.linalg.norm(axis)
         axis += (ways[np.argmin(ways @ axis)] - axis) / (step + 1)
     axis /= np.linalg.norm(axis)

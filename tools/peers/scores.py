@@ -30,7 +30,7 @@ class Cell:
         self.error = error([row[measure] for row in rows], rows[0][f"{measure}_noise"])
         self.range = [error([extreme(row[measure] for row in rows)], rows[0][f"{measure}_noise"]) for extreme in (min, max)]
         self.seconds_range = [extreme(row["cpu_s"] for row in rows) for extreme in (min, max)]
-        self.mean_ratio = statistics.mean(row["mean_ratio"] for row in rows)
+        self.mean_ratio = statistics.fmean(row["mean_ratio"] for row in rows)
 
     def of_seed(self, index, measure):
         row = self.rows[index]
@@ -38,7 +38,7 @@ class Cell:
 
 
 def error(squares, noise):
-    return curves.error_of(statistics.mean(squares), noise)
+    return curves.error_of(statistics.fmean(squares), noise)
 
 
 def cells(records, scene, phase, measure=RELATIVE):
