@@ -24,10 +24,11 @@ namespace caustics {
 }
 
 /// The equal-area map of the unit disc onto the directions within an angle of +z, given as 1 - cos
-/// (Lambert's azimuthal projection).
+/// (Lambert's azimuthal projection). A point on the rim may lie a rounding outside of it.
 [[gnu::always_inline]] inline void map_to_cap(float one_minus_cos, float x, float y,
                                               float (&direction)[3]) {
-    const float height = one_minus_cos * (x * x + y * y);
+    const float rounded = one_minus_cos * (x * x + y * y);
+    const float height = rounded < 2 ? rounded : 2;  // below the pole -z a root has no value
     const float scale = __builtin_sqrtf(one_minus_cos * (2 - height));
     direction[0] = scale * x;
     direction[1] = scale * y;

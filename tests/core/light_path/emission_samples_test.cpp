@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/light_path/aimed_emission.h"
 #include "tests/support/build_scene.h"
 
@@ -73,6 +75,30 @@ TEST(EmissionSamples, MakeTheParticlesOfSinglePaths) {
         EXPECT_TRUE(start == starts.end());
         EXPECT_LT(starts.size(), end - far);
         EXPECT_GT(starts.size(), 2'000U);
+    }
+}
+
+// All directions, from the rim of the square: its far side rounds to 1 in float.
+TEST(EmissionSamples, AreAimedInUnitDirectionsFromTheRimToo) {
+    constexpr std::size_t count = 1 << 18;
+    const EmissionCone whole{2, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const std::vector<std::uint32_t> cone(count, 0);
+    std::vector<double> end(count), along(count);
+    std::vector<float> disc_x(count), disc_y(count), x(count), y(count), z(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        end[i] = i % 2 == 0 ? 0 : 1 - 0x1p-32;
+        along[i] = static_cast<double>(i) / count;
+    }
+    for (const Isa isa : supported_isas()) {
+        const auto aim = [&](const std::vector<double>& u0, const std::vector<double>& u1) {
+            emission_kernels(isa).aim(
+                {count, u0.data(), u1.data(), &whole, cone.data()},
+                {{disc_x.data(), disc_y.data()}, {x.data(), y.data(), z.data()}});
+            for (std::size_t i = 0; i < count; ++i)
+                ASSERT_NEAR(std::hypot(x[i], y[i], z[i]), 1, 1e-6F) << name(isa) << " " << i;
+        };
+        aim(end, along);
+        aim(along, end);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/math/frame.h"
@@ -97,6 +98,36 @@ TEST(Sampling, CapsFromADiscAreUniformBySolidAngle) {
                   }),
                   1e-3)
             << one_minus_cos;
+}
+
+// The rim of the disc is where a rounding carries a point outside. Both ends of [0, 1] count: a double
+// below 1 may round to 1 in float.
+TEST(Sampling, CapsFromTheRimOfADiscAreUnitDirections) {
+    constexpr int steps = 1 << 18;
+    const float below_one = std::nextafter(1.0F, 0.0F);
+    for (const float one_minus_cos : {1e-6F, 0.1F, 1.0F, std::nextafter(2.0F, 0.0F), 2.0F})
+        for (const float end : {0.0F, std::nextafter(0.0F, 1.0F), below_one, 1.0F})
+            for (int i = 0; i <= steps; ++i) {
+                const float along = static_cast<float>(i) / steps;
+                for (const Vec2& u : {Vec2(end, along), Vec2(along, end)}) {
+                    const Vec2 disc = concentric_disc(u.x(), u.y());
+                    float cap[3];
+                    map_to_cap(one_minus_cos, disc.x(), disc.y(), cap);
+                    const float norm = std::hypot(cap[0], cap[1], cap[2]);
+                    ASSERT_NEAR(norm, 1, 1e-6F) << one_minus_cos << ": " << u.transpose();
+                }
+            }
+}
+
+TEST(Sampling, MapsOfTheSquareAreFiniteToBothEnds) {
+    const float below_one = std::nextafter(1.0F, 0.0F);
+    for (const float u0 : {0.0F, std::nextafter(0.0F, 1.0F), 0.5F, below_one, 1.0F})
+        for (const float u1 : {0.0F, 0.125F, 0.25F, 0.5F, 0.75F, below_one, 1.0F}) {
+            EXPECT_NEAR(cosine_hemisphere(u0, u1).norm(), 1, 1e-6F);
+            EXPECT_NEAR(uniform_cap(2, u0, u1).norm(), 1, 1e-6F);
+            EXPECT_LE(uniform_disc(u0, u1).norm(), 1 + 1e-6F);
+            EXPECT_LE(concentric_disc(u0, u1).norm(), 1 + 1e-6F);
+        }
 }
 
 TEST(Sampling, ConesAreUniformBySolidAngle) {
