@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 
 namespace caustics {
 namespace {
@@ -18,15 +19,25 @@ Eigen::Matrix3d cofactors(const Eigen::Matrix3d& a) {
     return c;
 }
 
+// Calls `visit` with each item; throws Interrupted between two of them when somebody asked.
+template <typename Item, typename Visit>
+void visit_all(std::vector<Item>& items, const Visit& visit) {
+    constexpr std::size_t items_between_looks = 1 << 16;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i % items_between_looks == 0) throw_if_interrupted();
+        visit(items[i]);
+    }
+}
+
 void turn_triangles(TriangleMesh& mesh) {
-    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    visit_all(mesh.triangles, [](auto& triangle) { std::swap(triangle[1], triangle[2]); });
 }
 
 }  // namespace
 
 void flip(TriangleMesh& mesh) {
     turn_triangles(mesh);
-    for (Vec3& normal : mesh.normals) normal = -normal;
+    visit_all(mesh.normals, [](Vec3& normal) { normal = -normal; });
 }
 
 void transform(TriangleMesh& mesh, const Transform& to_world) {
@@ -35,15 +46,15 @@ void transform(TriangleMesh& mesh, const Transform& to_world) {
     if (determinant == 0 || !to_world.matrix().allFinite())
         throw InputError("the transform of a mesh must be finite and invertible");
     const Eigen::Matrix3d to_normal = std::copysign(1.0, determinant) * cofactors(linear);
-    for (Vec3& position : mesh.positions) {
+    visit_all(mesh.positions, [&](Vec3& position) {
         const Vec3d moved = to_world * position.cast<double>();
         position = moved.cast<float>();
-    }
-    for (Vec3& normal : mesh.normals) {
+    });
+    visit_all(mesh.normals, [&](Vec3& normal) {
         const Vec3d turned = to_normal * normal.cast<double>();
         // stableNormalized: cofactors are squares of scales, whose squares may leave double.
         normal = turned.stableNormalized().cast<float>();
-    }
+    });
     if (determinant < 0) turn_triangles(mesh);
 }
 

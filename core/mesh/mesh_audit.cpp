@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/interrupt.h"
 #include "core/mesh/vertex_normals.h"
 
 namespace caustics {
 namespace {
 
 using Place = std::array<float, 3>;
+
+constexpr std::size_t triangles_between_looks = 1 << 16;
+constexpr std::size_t comparisons_between_looks = 1 << 20;
 
 std::vector<std::array<Place, 3>> sorted_triangles(const TriangleMesh& mesh) {
     std::vector<std::array<Place, 3>> all;
@@ -30,13 +34,20 @@ std::vector<std::array<Place, 3>> sorted_triangles(const TriangleMesh& mesh) {
 std::size_t open_edge_count(const TriangleMesh& mesh) {
     const std::vector<std::uint32_t> places = number_positions(mesh.positions);
     std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, int>> edges;
-    for (const auto& triangle : mesh.triangles)
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (t % triangles_between_looks == 0) throw_if_interrupted();
+        const auto& triangle = mesh.triangles[t];
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t a = places[triangle[i]];
             const std::uint32_t b = places[triangle[(i + 1) % 3]];
             if (a != b) edges.push_back({std::minmax(a, b), a < b ? 1 : -1});
         }
-    std::ranges::sort(edges);
+    }
+    std::size_t compared = 0;
+    std::ranges::sort(edges, [&](const auto& one, const auto& other) {
+        if (++compared % comparisons_between_looks == 0) throw_if_interrupted();
+        return one < other;
+    });
     std::size_t open = 0;
     for (std::size_t i = 0; i < edges.size();) {
         int balance = 0;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/base/interrupt.h"
+
 namespace caustics {
 
 Vec2d on_circle(int step, int steps) {
@@ -17,6 +19,8 @@ Vec2d on_circle(int step, int steps) {
 
 std::uint32_t add_vertex(TriangleMesh& mesh, const Vec3d& position, const Vec3d& normal,
                          const Vec2d& uv) {
+    constexpr std::size_t vertices_between_looks = 1 << 12;
+    if (mesh.positions.size() % vertices_between_looks == 0) throw_if_interrupted();
     mesh.positions.emplace_back(position.cast<float>());
     mesh.normals.emplace_back(normal.cast<float>());
     mesh.uvs.emplace_back(uv.cast<float>());
@@ -31,6 +35,7 @@ void add_patch(TriangleMesh& mesh, int columns, int rows, std::uint32_t cell_tri
 }
 
 void add_row_triangles(TriangleMesh& mesh, std::uint32_t lower, std::uint32_t upper, int columns) {
+    throw_if_interrupted();
     for (std::uint32_t column = 0; column < static_cast<std::uint32_t>(columns); ++column) {
         const std::uint32_t a = lower + column;
         const std::uint32_t d = upper + column;

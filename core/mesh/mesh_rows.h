@@ -6,7 +6,8 @@
 
 namespace caustics {
 
-/// What meshes of rows of vertices are put together from.
+/// What meshes of rows of vertices are put together from. All that adds vertices or rows throws
+/// Interrupted when somebody asked.
 
 /// Unit vector at `step` of `steps` round the circle. The last step is the first one bit for bit,
 /// and the axes are met exactly, so that seams close without a gap.

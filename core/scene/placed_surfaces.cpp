@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/interrupt.h"
 #include "core/geometry/surface_offset.h"
 
 namespace caustics {
@@ -27,7 +28,9 @@ PlacedMesh::PlacedMesh(const Shape& shape)
     : shape_(&shape), smooth_(!shape.mesh.normals.empty()), mapped_(!shape.mesh.uvs.empty()) {
     const TriangleMesh& mesh = shape.mesh;
     vertices_.reserve(mesh.positions.size());
+    constexpr std::size_t vertices_between_looks = 1 << 16;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        if (i % vertices_between_looks == 0) throw_if_interrupted();
         const Vec2 uv = mapped_ ? mesh.uvs[i] : Vec2(Vec2::Zero());
         const Vec3 normal = smooth_ ? mesh.normals[i] : Vec3(Vec3::Zero());
         vertices_.push_back({mesh.positions[i], uv.x(), normal, uv.y()});

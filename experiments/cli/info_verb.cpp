@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
@@ -110,8 +111,8 @@ void info_on_scene(const InfoOptions& options) {
     if (options.beams == options.output.empty() || (!options.beams && !options.params.empty()))
         throw InputError("--beams and -o belong together, for a scene; --param is for them");
     if (options.beams) require_png(options.output, "beams");
-    const SceneFile file = options.scene.load();
-    const Scene scene(file.desc);
+    SceneFile file = options.scene.load();
+    const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     if (options.beams)
         write_drawing(scene, options.output, [&](const RunOptions& run) {
             return draw_beams(scene, parameters_node(options.params), run);
@@ -120,8 +121,8 @@ void info_on_scene(const InfoOptions& options) {
 }
 
 void draw(const InfoOptions& options, photonmap::SavedPhotons saved) {
-    const SceneFile file = load_scene(options.map_scene, options.scene.overrides());
-    const Scene scene(file.desc);
+    SceneFile file = load_scene(options.map_scene, options.scene.overrides());
+    const Scene scene(std::move(file.desc));
     photonmap::require_transport(saved.origin, scene, options.scene.file);
     if (options.output.empty()) return;
     write_drawing(scene, options.output, [&](const RunOptions& run) {
