@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "beamtree/beams/caster_mesh.h"
 #include "beamtree/beams/specular_vertex.h"
@@ -31,6 +32,9 @@ public:
     const LightSample& light() const { return light_; }
     const Bsdf& bsdf() const { return bsdf_; }
     const LightBender& bender() const { return bender_; }
+    const std::string& name() const { return scene_.shapes()[caster_.shape].name; }
+    /// A place of the scene's frame, in the world [m].
+    Vec3d world(const Vec3& place) const { return scene_.origin() + place.cast<double>(); }
     Facing facing(std::uint32_t triangle) const;
     /// How far off a triangle rays to and from its corners end, so that they do not meet it [m].
     float corner_offset(std::uint32_t triangle) const;

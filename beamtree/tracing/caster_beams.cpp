@@ -62,12 +62,13 @@ std::vector<MeshPoint> bent_vertices(const LitCaster& surface, int threads) {
 /// Traces some polygons of a caster; keys of their rays are vertices.
 class BeamTracer {
 public:
-    BeamTracer(const LitCaster& surface, const std::vector<MeshPoint>& vertices)
+    BeamTracer(const LitCaster& surface, const NearLight& near_light,
+               const std::vector<MeshPoint>& vertices)
         : surface_(surface),
           bender_(surface.bender()),
           caster_(surface.caster()),
           mesh_(surface.caster().mesh),
-          near_light_(surface),
+          near_light_(near_light),
           vertices_(vertices) {}
 
     // Triangles from `first` to `end`; a quad belongs to its first one.
@@ -223,7 +224,7 @@ private:
     const LightBender& bender_;
     const CasterMesh& caster_;
     const TriangleMesh& mesh_;
-    NearLight near_light_;
+    const NearLight& near_light_;
     const std::vector<MeshPoint>& vertices_;
     std::array<SetChunk, 2> traced_;
 };
@@ -244,10 +245,12 @@ BeamSet set_of(const LitCaster& surface, Event event) {
 std::array<TracedSet, 2> first_sets(const LitCaster& surface, int threads,
                                     const ProgressPart& part) {
     const std::vector<MeshPoint> vertices = bent_vertices(surface, threads);
+    const NearLight near_light(surface);
     const std::size_t triangles = surface.caster().mesh.triangles.size();
     std::vector<std::array<SetChunk, 2>> chunks(chunk_count(triangles, polygons_together));
     parallel_chunks(threads, triangles, polygons_together, [&](const Chunk& chunk) {
-        chunks[chunk.index] = BeamTracer(surface, vertices).run(chunk.first, chunk.end, part);
+        chunks[chunk.index] =
+            BeamTracer(surface, near_light, vertices).run(chunk.first, chunk.end, part);
     });
     std::array<TracedSet, 2> sets;
     for (const Event event : events) {

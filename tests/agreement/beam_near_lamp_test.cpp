@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "beamtree/beam_tree.h"
+#include "core/base/error.h"
 #include "core/geometry/tessellate.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/flat_pool.h"
@@ -69,6 +71,57 @@ TEST(NearLamp, ShinesThroughWaterAsItDoesFromAfar) {
                 // Reflected and refracted beams of 8192 triangles, and three times as many at most.
                 EXPECT_LT(tree->build_report().counters["beams"], 3 * 2 * 8192U) << light;
             }
+}
+
+// Waves so slight that the floor's light is that of still water, on a mesh so coarse that edges are just flat, just
+// not flat, and both in one triangle.
+TEST(NearLamp, ShinesThroughCoarseWaterThatIsHardlyFlat) {
+    using namespace support::flat_pool;
+    for (const double amplitude : {3e-4, 4e-4, 1e-3, 3e-3})
+        for (const double light : {1.0, 0.5, 0.2}) {
+            SineHeightfield field;
+            field.half_size = Vec2d::Constant(3);
+            field.waves = {{amplitude, {3, 1}, 0}};
+            SceneDesc desc;
+            desc.shapes = {support::horizontal("floor", -depth, 5, true, support::diffuse(0.5F)),
+                           support::mesh("water", tessellate_heightfield(field, {24, 24}),
+                                         Transform::Identity(), support::glass(1.333F))};
+            desc.lights = {
+                support::point_light({lamp_x, lamp_y, light}, static_cast<float>(intensity))};
+            const Scene scene(std::move(desc));
+            const auto tree = build(scene, beamtree::BeamTreeParams{}, {});
+            const Ratio found =
+                ratio(scene, *tree, -depth, [&](double r) { return floor_irradiance(r, light); });
+            // Water focuses by 1 + (n - 1) depth times its curvature or less.
+            const double focus = 0.333 * depth * 10 * amplitude;
+            EXPECT_NEAR(found.mean, 1, 0.01 + focus) << amplitude << ' ' << light;
+            EXPECT_LT(found.worst, 0.05 + 2 * focus) << amplitude << ' ' << light;
+        }
+}
+
+// A curtain of water 1e17 m high past a lamp needs as many pieces as it is longer than wide.
+TEST(NearLamp, RefusesPolygonsThatNeedTooManyPieces) {
+    SineHeightfield field;
+    field.waves = {{1e17, {3, 1}, 0}};
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", -1, 1, true, support::diffuse(0.5F)),
+                   support::mesh("curtain", tessellate_heightfield(field, {16, 16}),
+                                 Transform::Identity(), support::glass(1.333F))};
+    desc.lights = {support::point_light({0, 0, 3}, 1)};
+    const Scene scene(std::move(desc));
+    for (const int threads : {1, 2}) {
+        RunOptions options;
+        options.threads = threads;
+        try {
+            build(scene, beamtree::BeamTreeParams::chuang1995(), options);
+            FAIL() << "not refused";
+        } catch (const UnsupportedScene& refusal) {
+            EXPECT_EQ(std::string(refusal.what()),
+                      "curtain: the light at (0, 0, 3) is so near to polygons so long that beams "
+                      "would need more than 1048576 pieces of them (give them a more even length "
+                      "and width, move the light away, or use photonmap)");
+        }
+    }
 }
 
 // From the image of the light: I h / d^3.
