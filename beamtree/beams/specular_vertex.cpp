@@ -11,16 +11,20 @@ MeshPoint LightBender::at(const Vec3& position, const Vec3& normal) const {
     const Vec3& n = point.normal;
     const Vec3 w = to_light(light_, position);
     if (w.isZero(0) || n.isZero(0)) return point;
-    SpecularVertex& bent = point.bent;
-    bent.front = n.dot(w) > 0;
-    const SpecularSplit split = split_specular(bsdf_, n, n, w, light_.bin.nm);
-    const Spectrum* const medium = medium_absorption(bsdf_, n, w);
+    point.bent = along(n, w, distance_from(light_, position));
+    return point;
+}
+
+SpecularVertex LightBender::along(const Vec3& normal, const Vec3& to_light, float distance) const {
+    SpecularVertex bent;
+    bent.front = normal.dot(to_light) > 0;
+    const SpecularSplit split = split_specular(bsdf_, normal, normal, to_light, light_.bin.nm);
+    const Spectrum* const medium = medium_absorption(bsdf_, normal, to_light);
     const Spectrum arriving =
-        strength_along(light_, w) *
-        segment_transmittance(nullptr, medium, distance_from(light_, position));
+        strength_along(light_, to_light) * segment_transmittance(nullptr, medium, distance);
     bent.direction = {split.reflected, split.refracted};
     bent.weight = {split.reflected_weight * arriving, split.refracted_weight * arriving};
-    return point;
+    return bent;
 }
 
 MeshPoint LightBender::between(const MeshPoint& a, const MeshPoint& b, float t) const {

@@ -40,6 +40,9 @@ public:
 
     /// The point with this normal, of any length.
     MeshPoint at(const Vec3& position, const Vec3& normal) const;
+    /// What the surface does with light that has gone `distance` [m] to it, where the unit normal
+    /// is this and the light lies along the unit direction `to_light`.
+    SpecularVertex along(const Vec3& normal, const Vec3& to_light, float distance) const;
     /// (1 - t) a + t b; the same bits for (b, a, 1 - t) where t is 1/2.
     MeshPoint between(const MeshPoint& a, const MeshPoint& b, float t) const;
     /// The point of the piece with these barycentric weights.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <variant>
 
 #include "beamtree/light/beam_point.h"
@@ -13,6 +14,8 @@ namespace {
 constexpr int most_steps = 10;
 // How near to the point a ray has to come, for the length of its way.
 constexpr double tolerance = 1e-10;
+// What rounding leaves of a place in double, for its distance from the origin.
+constexpr double place_rounding = 4 * std::numeric_limits<double>::epsilon();
 // Of the lengths over which the surface changes: central differences err by its square.
 constexpr double relative_step = 1e-5;
 
@@ -32,8 +35,15 @@ struct SpecularSearch::Exit {
     Vec3d to_light;   ///< unit
     Vec3d direction;  ///< unit
     double distance;  ///< from the light; 1 where it is at no place
+    double eta = 1;   ///< relative refractive index, of refraction
 
     bool from_front() const { return normal.dot(to_light) > 0; }
+};
+
+/// The surface's first derivatives by its two coordinates.
+struct SpecularSearch::Tangents {
+    std::array<Vec3d, 2> position;
+    std::array<Vec3d, 2> normal;
 };
 
 /// The plane across the guessed ray through the point, and the surface's tangent plane at the guess.
@@ -59,8 +69,13 @@ public:
     }
     /// Where a ray meets the plane, from the point.
     Vec2d miss(const Vec3d& position, const Vec3d& direction) const {
-        const Vec3d at = position + way(position, direction) * direction - point_;
-        return {across_[0].dot(at), across_[1].dot(at)};
+        return on_plane(position + way(position, direction) * direction - point_);
+    }
+    /// How that place moves with the ray.
+    Vec2d miss_change(const Exit& exit, const Vec3d& by_position, const Vec3d& by_direction) const {
+        const Vec3d moved = by_position + way(exit.position, exit.direction) * by_direction;
+        return on_plane(moved -
+                        direction_.dot(moved) / direction_.dot(exit.direction) * exit.direction);
     }
 
 private:
@@ -68,6 +83,7 @@ private:
         const Vec3d s = n.unitOrthogonal();
         return {s, n.cross(s)};
     }
+    Vec2d on_plane(const Vec3d& at) const { return {across_[0].dot(at), across_[1].dot(at)}; }
 
     Vec3d point_;
     Vec3d direction_;
@@ -97,12 +113,16 @@ SpecularSearch::SpecularSearch(const Scene& scene, const BeamSet& set)
       step_(relative_step *
             ask_exact(shape_, [](const auto& kind) { return kind.feature_size(); })) {}
 
+Vec3d SpecularSearch::normal_at(const Vec3d& on) const {
+    const Vec3d normal = (to_local_.linear().transpose() * exact_normal(shape_, on)).normalized();
+    return shape_.flip_normals ? Vec3d(-normal) : normal;
+}
+
 std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const Vec3d& local) const {
     const Vec3d on = exact_onto(shape_, local);
     Exit exit;
     exit.position = shape_.to_world * on;
-    exit.normal = (to_local_.linear().transpose() * exact_normal(shape_, on)).normalized();
-    if (shape_.flip_normals) exit.normal = -exit.normal;
+    exit.normal = normal_at(on);
     exit.to_light = -light_.travel.cast<double>();
     exit.distance = 1;
     if (light_.kind != LightSample::Kind::directional) {
@@ -117,27 +137,61 @@ std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const Vec3d& local) 
         exit.direction = 2 * cosine * n - w;
         return exit;
     }
-    const double eta = relative_index(shape_.bsdf, exit.from_front(), light_.bin.nm);
-    const double inner = 1 - (1 - cosine * cosine) / (eta * eta);
+    exit.eta = relative_index(shape_.bsdf, exit.from_front(), light_.bin.nm);
+    const double inner = 1 - (1 - cosine * cosine) / (exit.eta * exit.eta);
     if (!(inner > 0)) return {};
-    exit.direction = (cosine * n - w) / eta - std::sqrt(inner) * n;
+    exit.direction = (cosine * n - w) / exit.eta - std::sqrt(inner) * n;
     return exit;
 }
 
-std::optional<SpecularSearch::Derivatives> SpecularSearch::derivatives(const Sheet& sheet,
-                                                                       const Vec2d& at) const {
-    Derivatives found;
+SpecularSearch::Tangents SpecularSearch::tangents(const Sheet& sheet, const Vec2d& at) const {
+    Tangents found;
     for (int i = 0; i < 2; ++i) {
-        const auto before = exit_at(sheet.place(at - step_ * Vec2d::Unit(i)));
-        const auto after = exit_at(sheet.place(at + step_ * Vec2d::Unit(i)));
-        if (!before || !after) return {};
-        found.miss.col(i) = (sheet.miss(after->position, after->direction) -
-                             sheet.miss(before->position, before->direction)) /
-                            (2 * step_);
-        found.position[static_cast<std::size_t>(i)] =
-            (after->position - before->position) / (2 * step_);
+        const Vec3d before = exact_onto(shape_, sheet.place(at - step_ * Vec2d::Unit(i)));
+        const Vec3d after = exact_onto(shape_, sheet.place(at + step_ * Vec2d::Unit(i)));
+        const auto k = static_cast<std::size_t>(i);
+        found.position[k] = shape_.to_world.linear() * (after - before) / (2 * step_);
+        found.normal[k] = (normal_at(after) - normal_at(before)) / (2 * step_);
     }
     return found;
+}
+
+// The laws of reflection and of refraction, differentiated: a light may be much nearer to the
+// surface than any step over which differences of directions would be taken.
+Vec3d SpecularSearch::direction_change(const Exit& exit, const Vec3d& by_position,
+                                       const Vec3d& by_normal) const {
+    const Vec3d& w = exit.to_light;
+    Vec3d by_light = Vec3d::Zero();
+    if (light_.kind != LightSample::Kind::directional)
+        by_light = (w.dot(by_position) * w - by_position) / exit.distance;
+    const double side = exit.from_front() ? 1 : -1;
+    const Vec3d n = side * exit.normal;
+    const Vec3d by_n = side * by_normal;
+    const double cosine = n.dot(w);
+    const double by_cosine = by_n.dot(w) + n.dot(by_light);
+    if (event_ == reflection) return 2 * (by_cosine * n + cosine * by_n) - by_light;
+    const double eta = exit.eta;
+    const double inner = std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
+    const double by_inner = cosine * by_cosine / (eta * eta * inner);
+    return (by_cosine * n + cosine * by_n - by_light) / eta - by_inner * n - inner * by_n;
+}
+
+SpecularSearch::Derivatives SpecularSearch::derivatives(const Sheet& sheet, const Vec2d& at,
+                                                        const Exit& exit) const {
+    const Tangents by = tangents(sheet, at);
+    Derivatives found;
+    found.position = by.position;
+    for (std::size_t i = 0; i < 2; ++i)
+        found.miss.col(static_cast<Eigen::Index>(i)) = sheet.miss_change(
+            exit, by.position[i], direction_change(exit, by.position[i], by.normal[i]));
+    return found;
+}
+
+// What rounding of the surface's place may make of the miss.
+double SpecularSearch::miss_rounding(const Vec3d& local, const Exit& exit,
+                                     const Derivatives& found) const {
+    const double scale = std::max(found.position[0].norm(), found.position[1].norm());
+    return place_rounding * (local.norm() + exit.position.norm() / scale) * found.miss.norm();
 }
 
 SpecularPoint SpecularSearch::made(const Sheet& sheet, const Exit& exit,
@@ -147,7 +201,12 @@ SpecularPoint SpecularSearch::made(const Sheet& sheet, const Exit& exit,
     point.position = exit.position.cast<float>();
     point.normal = exit.normal.cast<float>();
     point.direction = exit.direction.cast<float>();
-    point.weight = bender_.at(point.position, point.normal).bent.weight[event_];
+    // A light may be so near that the place in float does not tell where it lies.
+    const float distance = light_.kind == LightSample::Kind::directional
+                               ? distance_from(light_, point.position)
+                               : static_cast<float>(exit.distance);
+    point.weight =
+        bender_.along(point.normal, exit.to_light.cast<float>(), distance).weight[event_];
     // On the sheet, which the ray may come to at a slant.
     point.density = area / (exit.distance * exit.distance * std::abs(found.miss.determinant()) *
                             sheet.direction().dot(exit.direction));
@@ -182,17 +241,17 @@ std::optional<SpecularPoint> SpecularSearch::find(const std::array<const VertexR
     if (!start || !whole) return {};
     Vec2d at = Vec2d::Zero();
     for (int step = 0; step < most_steps && at.norm() <= whole->reach; ++step) {
-        const auto exit = exit_at(sheet.place(at));
+        const Vec3d local = sheet.place(at);
+        const auto exit = exit_at(local);
         if (!exit || exit->from_front() != start->from_front()) return {};
-        const auto found = derivatives(sheet, at);
-        if (!found) return {};
+        const Derivatives found = derivatives(sheet, at, *exit);
         const double way = sheet.way(exit->position, exit->direction);
         const Vec2d miss = sheet.miss(exit->position, exit->direction);
-        if (miss.norm() <= tolerance * way) {
-            if ((found->miss.determinant() < 0) != whole->turned) return {};
-            return made(sheet, *exit, *found);
+        if (miss.norm() <= tolerance * way + miss_rounding(local, *exit, found)) {
+            if ((found.miss.determinant() < 0) != whole->turned) return {};
+            return made(sheet, *exit, found);
         }
-        at -= found->miss.inverse() * miss;
+        at -= found.miss.inverse() * miss;
     }
     return {};
 }

@@ -33,12 +33,18 @@ public:
 
 private:
     struct Exit;
+    struct Tangents;
     struct Derivatives;
     struct Image;
     class Sheet;
 
+    Vec3d normal_at(const Vec3d& on) const;
     std::optional<Exit> exit_at(const Vec3d& local) const;
-    std::optional<Derivatives> derivatives(const Sheet& sheet, const Vec2d& at) const;
+    Tangents tangents(const Sheet& sheet, const Vec2d& at) const;
+    Vec3d direction_change(const Exit& exit, const Vec3d& by_position,
+                           const Vec3d& by_normal) const;
+    Derivatives derivatives(const Sheet& sheet, const Vec2d& at, const Exit& exit) const;
+    double miss_rounding(const Vec3d& local, const Exit& exit, const Derivatives& found) const;
     std::optional<Image> image(const Sheet& sheet,
                                const std::array<const VertexRay*, 3>& triangle) const;
     SpecularPoint made(const Sheet& sheet, const Exit& exit, const Derivatives& found) const;
@@ -48,7 +54,7 @@ private:
     LightBender bender_;
     Event event_;
     Transform to_local_;
-    double step_;  ///< of derivatives, in the shape's frame
+    double step_;  ///< of the surface's derivatives, in the shape's frame
 };
 
 }  // namespace caustics::beamtree

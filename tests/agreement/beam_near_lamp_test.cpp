@@ -124,22 +124,36 @@ TEST(NearLamp, RefusesPolygonsThatNeedTooManyPieces) {
     }
 }
 
-// From the image of the light: I h / d^3.
+/// A light this far below a mirror of this half size.
+Ratio ratio_below_mirror(double half, double light, const beamtree::BeamTreeParams& params) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 5, true, support::diffuse(0.5F)),
+                   support::horizontal("mirror", 2, half, false, support::mirror())};
+    desc.lights = {support::point_light({lamp_x, lamp_y, 2 - light}, 10)};
+    const Scene scene(std::move(desc));
+    // From the image of the light: I h / d^3.
+    return ratio(scene, *build(scene, params, {}), 0, [&](double r) {
+        const double h = 2 + light;
+        return 10 * h / std::pow(r * r + h * h, 1.5);
+    });
+}
+
 TEST(NearLamp, ShinesFromALargeMirrorAsItDoesFromAfar) {
     for (const double half : {1.5, 20.0})
         for (const double light : {0.01, 1e-3, 1e-4, 1e-5}) {
-            SceneDesc desc;
-            desc.shapes = {support::horizontal("floor", 0, 5, true, support::diffuse(0.5F)),
-                           support::horizontal("mirror", 2, half, false, support::mirror())};
-            desc.lights = {support::point_light({lamp_x, lamp_y, 2 - light}, 10)};
-            const Scene scene(std::move(desc));
-            const auto tree = build(scene, beamtree::BeamTreeParams::chuang1995(), {});
-            const Ratio found = ratio(scene, *tree, 0, [&](double r) {
-                const double h = 2 + light;
-                return 10 * h / std::pow(r * r + h * h, 1.5);
-            });
+            const Ratio found =
+                ratio_below_mirror(half, light, beamtree::BeamTreeParams::chuang1995());
             EXPECT_NEAR(found.mean, 1, 0.04) << half << ' ' << light;
             EXPECT_LT(found.worst, 0.25) << half << ' ' << light;
+        }
+}
+
+TEST(NearLamp, ShinesFromALargeMirrorToRoundingWhereItIsRefined) {
+    for (const double half : {1.5, 5.0, 20.0, 100.0})
+        for (const double light : {0.01, 1e-3, 1e-4, 1e-5}) {
+            const Ratio found = ratio_below_mirror(half, light, {});
+            EXPECT_NEAR(found.mean, 1, 1e-6) << half << ' ' << light;
+            EXPECT_LT(found.worst, 1e-6) << half << ' ' << light;
         }
 }
 
