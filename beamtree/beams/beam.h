@@ -43,12 +43,17 @@ struct Beam {
     float first_share = 1;                 ///< of the flux, in the first triangle
     float offset = 0;                      ///< rays to and from the polygon end this far off it [m]
     std::uint32_t triangle = 0;            ///< of the first caster's mesh; the first one of a cell
-    bool inside = false;  ///< goes through the medium behind the last caster's front side
+    bool inside = false;   ///< goes through the medium behind the last caster's front side
+    bool is_cell = false;  ///< a cell of a grid: its second triangle is the mesh's next
 
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
     /// Corners of one of its triangles.
     std::array<std::uint32_t, 3> triangle_corners(std::size_t which) const {
         return {corners[0], corners[1 + which], corners[2 + which]};
+    }
+    /// Of the first caster's mesh: where one of its triangles lies.
+    std::uint32_t mesh_triangle(std::size_t which) const {
+        return is_cell && which == 1 ? triangle + 1 : triangle;
     }
     /// Of the flux, in one of its triangles.
     double share_of(std::size_t which) const {

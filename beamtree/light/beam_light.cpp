@@ -26,10 +26,6 @@ struct ArrivingRay {
     Vec3 direction;    ///< unit, the way the light goes
 };
 
-bool is_bent_once_by_exact_shape(const Scene& scene, const BeamSet& set) {
-    return set.path.size() <= 1 && scene.shapes()[set.caster].primitive != Primitive::mesh;
-}
-
 ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     const Beam& beam = set.beams[hit.beam];
     const auto rays = set.triangle(beam, hit.triangle, hit.place());
@@ -55,8 +51,7 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
 BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
     : scene_(scene), sets_(sets), searches_(sets.size()) {
     for (std::size_t i = 0; i < sets.size(); ++i)
-        if (!sets[i].spreads.empty() && !sets[i].drifts() &&
-            is_bent_once_by_exact_shape(scene, sets[i]))
+        if (!sets[i].spreads.empty() && !sets[i].drifts() && sets[i].path.size() <= 1)
             searches_[i].emplace(scene, sets[i]);
 }
 
@@ -64,8 +59,7 @@ std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit, const
                                                        const Vec3& point) const {
     // Of a square round the point its middle is not what is asked for.
     if (!searches_[hit.set] || hit.coverage != 1) return {};
-    const BeamSet& set = sets_[hit.set];
-    return searches_[hit.set]->find(set.triangle(set.beams[hit.beam], hit.triangle), guess, point);
+    return searches_[hit.set]->find(sets_[hit.set].beams[hit.beam], hit.triangle, guess, point);
 }
 
 template <typename Weight>

@@ -6,7 +6,6 @@
 #include <variant>
 
 #include "beamtree/light/beam_point.h"
-#include "core/geometry/exact_shape.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -16,8 +15,6 @@ constexpr int most_steps = 10;
 constexpr double tolerance = 1e-10;
 // What rounding leaves of a place in double, for its distance from the origin.
 constexpr double place_rounding = 4 * std::numeric_limits<double>::epsilon();
-// Of the lengths over which the surface changes: central differences err by its square.
-constexpr double relative_step = 1e-5;
 
 // Refractive index on the far side over that on the side of arrival.
 double relative_index(const Bsdf& bsdf, bool from_front, float nm) {
@@ -40,29 +37,24 @@ struct SpecularSearch::Exit {
     bool from_front() const { return normal.dot(to_light) > 0; }
 };
 
-/// The surface's first derivatives by its two coordinates.
-struct SpecularSearch::Tangents {
-    std::array<Vec3d, 2> position;
-    std::array<Vec3d, 2> normal;
-};
-
 /// The plane across the guessed ray through the point, and the surface's tangent plane at the guess.
 class SpecularSearch::Sheet {
 public:
-    Sheet(const Vec3d& point, const Vec3d& direction, const Vec3d& surface,
-          const Vec3d& surface_normal)
-        : point_(point), direction_(direction), surface_(surface) {
+    Sheet(const Vec3d& point, const Vec3d& direction, const SpecularSurface& surface,
+          const Vec3d& beside)
+        : point_(point), direction_(direction), surface_(surface), beside_(beside) {
         across_ = axes(direction);
-        along_ = axes(surface_normal);
+        along_ = axes(surface.across(beside));
     }
 
     const Vec3d& direction() const { return direction_; }
-    /// In the shape's frame, beside the surface.
-    Vec3d place(const Vec2d& at) const {
-        return surface_ + at.x() * along_[0] + at.y() * along_[1];
-    }
+    const SpecularSurface& surface() const { return surface_; }
+    /// Two axes of the surface's frame.
+    const std::array<Vec3d, 2>& along() const { return along_; }
+    /// In the surface's frame, beside it.
+    Vec3d place(const Vec2d& at) const { return beside_ + at.x() * along_[0] + at.y() * along_[1]; }
     Vec2d coordinates(const Vec3d& local) const {
-        return {along_[0].dot(local - surface_), along_[1].dot(local - surface_)};
+        return {along_[0].dot(local - beside_), along_[1].dot(local - beside_)};
     }
     double way(const Vec3d& position, const Vec3d& direction) const {
         return direction_.dot(point_ - position) / direction_.dot(direction);
@@ -87,7 +79,8 @@ private:
 
     Vec3d point_;
     Vec3d direction_;
-    Vec3d surface_;
+    const SpecularSurface& surface_;
+    Vec3d beside_;
     std::array<Vec3d, 2> across_;
     std::array<Vec3d, 2> along_;
 };
@@ -101,28 +94,24 @@ struct SpecularSearch::Derivatives {
 /// What becomes of a whole triangle.
 struct SpecularSearch::Image {
     bool turned;   ///< over on its way
-    double reach;  ///< its longest side, in the shape's frame
+    double reach;  ///< its longest side, in the surface's frame
 };
 
 SpecularSearch::SpecularSearch(const Scene& scene, const BeamSet& set)
-    : shape_(scene.shapes()[set.caster]),
+    : set_(set),
       light_(set.light),
+      shape_(scene.shapes()[set.caster]),
       bender_(scene, set.caster, set.light),
-      event_(set.refracted ? refraction : reflection),
-      to_local_(shape_.to_world.inverse()),
-      step_(relative_step *
-            ask_exact(shape_, [](const auto& kind) { return kind.feature_size(); })) {}
-
-Vec3d SpecularSearch::normal_at(const Vec3d& on) const {
-    const Vec3d normal = (to_local_.linear().transpose() * exact_normal(shape_, on)).normalized();
-    return shape_.flip_normals ? Vec3d(-normal) : normal;
+      event_(set.refracted ? refraction : reflection) {
+    if (shape_.primitive != Primitive::mesh) exact_.emplace(shape_);
 }
 
-std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const Vec3d& local) const {
-    const Vec3d on = exact_onto(shape_, local);
+std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const SpecularSurface& surface,
+                                                            const Vec3d& local) const {
+    const Vec3d on = surface.onto(local);
     Exit exit;
-    exit.position = shape_.to_world * on;
-    exit.normal = normal_at(on);
+    exit.position = surface.world(on);
+    exit.normal = surface.normal(on);
     exit.to_light = -light_.travel.cast<double>();
     exit.distance = 1;
     if (light_.kind != LightSample::Kind::directional) {
@@ -142,18 +131,6 @@ std::optional<SpecularSearch::Exit> SpecularSearch::exit_at(const Vec3d& local) 
     if (!(inner > 0)) return {};
     exit.direction = (cosine * n - w) / exit.eta - std::sqrt(inner) * n;
     return exit;
-}
-
-SpecularSearch::Tangents SpecularSearch::tangents(const Sheet& sheet, const Vec2d& at) const {
-    Tangents found;
-    for (int i = 0; i < 2; ++i) {
-        const Vec3d before = exact_onto(shape_, sheet.place(at - step_ * Vec2d::Unit(i)));
-        const Vec3d after = exact_onto(shape_, sheet.place(at + step_ * Vec2d::Unit(i)));
-        const auto k = static_cast<std::size_t>(i);
-        found.position[k] = shape_.to_world.linear() * (after - before) / (2 * step_);
-        found.normal[k] = (normal_at(after) - normal_at(before)) / (2 * step_);
-    }
-    return found;
 }
 
 // The laws of reflection and of refraction, differentiated: a light may be much nearer to the
@@ -176,9 +153,9 @@ Vec3d SpecularSearch::direction_change(const Exit& exit, const Vec3d& by_positio
     return (by_cosine * n + cosine * by_n - by_light) / eta - by_inner * n - inner * by_n;
 }
 
-SpecularSearch::Derivatives SpecularSearch::derivatives(const Sheet& sheet, const Vec2d& at,
+SpecularSearch::Derivatives SpecularSearch::derivatives(const Sheet& sheet, const Vec3d& local,
                                                         const Exit& exit) const {
-    const Tangents by = tangents(sheet, at);
+    const SpecularSurface::Tangents by = sheet.surface().tangents(local, sheet.along());
     Derivatives found;
     found.position = by.position;
     for (std::size_t i = 0; i < 2; ++i)
@@ -222,7 +199,7 @@ std::optional<SpecularSearch::Image> SpecularSearch::image(
         const Vec3d position = triangle[i]->position.cast<double>();
         const Vec3d direction = triangle[i]->direction.cast<double>();
         if (!(sheet.direction().dot(direction) > 0)) return {};
-        from[i] = sheet.coordinates(to_local_ * position);
+        from[i] = sheet.coordinates(sheet.surface().local(position));
         to[i] = sheet.miss(position, direction);
     }
     return Image{(cross(from[1] - from[0], from[2] - from[0]) > 0) !=
@@ -231,20 +208,21 @@ std::optional<SpecularSearch::Image> SpecularSearch::image(
                            (from[0] - from[2]).norm()})};
 }
 
-std::optional<SpecularPoint> SpecularSearch::find(const std::array<const VertexRay*, 3>& triangle,
+std::optional<SpecularPoint> SpecularSearch::find(const SpecularSurface& surface,
+                                                  const std::array<const VertexRay*, 3>& triangle,
                                                   const VertexRay& guess, const Vec3& point) const {
-    const Vec3d beside = exact_onto(shape_, to_local_ * guess.position.cast<double>());
-    const Sheet sheet(point.cast<double>(), guess.direction.cast<double>().normalized(), beside,
-                      exact_normal(shape_, beside));
-    const auto start = exit_at(beside);
+    const Vec3d beside = surface.onto(surface.local(guess.position.cast<double>()));
+    const Sheet sheet(point.cast<double>(), guess.direction.cast<double>().normalized(), surface,
+                      beside);
+    const auto start = exit_at(surface, beside);
     const auto whole = image(sheet, triangle);
     if (!start || !whole) return {};
     Vec2d at = Vec2d::Zero();
     for (int step = 0; step < most_steps && at.norm() <= whole->reach; ++step) {
         const Vec3d local = sheet.place(at);
-        const auto exit = exit_at(local);
+        const auto exit = exit_at(surface, local);
         if (!exit || exit->from_front() != start->from_front()) return {};
-        const Derivatives found = derivatives(sheet, at, *exit);
+        const Derivatives found = derivatives(sheet, local, *exit);
         const double way = sheet.way(exit->position, exit->direction);
         const Vec2d miss = sheet.miss(exit->position, exit->direction);
         if (miss.norm() <= tolerance * way + miss_rounding(local, *exit, found)) {
@@ -254,6 +232,15 @@ std::optional<SpecularPoint> SpecularSearch::find(const std::array<const VertexR
         at -= found.miss.inverse() * miss;
     }
     return {};
+}
+
+std::optional<SpecularPoint> SpecularSearch::find(const Beam& beam, std::size_t triangle,
+                                                  const VertexRay& guess, const Vec3& point) const {
+    const std::array<const VertexRay*, 3> rays = set_.triangle(beam, triangle);
+    if (exact_) return find(*exact_, rays, guess, point);
+    const auto facet = SpecularSurface::facet(shape_.mesh, beam.mesh_triangle(triangle));
+    if (!facet) return {};
+    return find(*facet, rays, guess, point);
 }
 
 }  // namespace caustics::beamtree

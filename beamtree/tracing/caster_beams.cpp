@@ -194,6 +194,7 @@ private:
         if (!(beam.flux.mean() > 0)) return;
         beam.first_share = flux[0].mean() / beam.flux.mean();
         beam.triangle = origin.triangle;
+        beam.is_cell = origin.triangle_count == 2;
         beam.inside = origin.facing.front == (origin.event == refraction);
         for (std::uint32_t i = 0; i < origin.triangle_count; ++i)
             beam.offset = std::max(beam.offset, surface_.offset(beam.triangle + i));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/agreement/exact_pool.h"
+#include "tests/support/flat_pool.h"
 
 namespace caustics {
 namespace {
@@ -139,6 +140,85 @@ TEST(SpecularPoints, TellStillWaterFromBelow) {
                     1, 2e-5)
             << angle;
     }
+}
+
+/// The flat meshes that are asked: quads of two triangles, with and without normals at their vertices.
+std::vector<TriangleMesh> flat_squares() {
+    std::vector<TriangleMesh> all;
+    for (const int cells : {1, 2, 16}) {
+        all.push_back(tessellate_rectangle(cells));
+        all.push_back(support::flat(tessellate_rectangle(cells)));
+    }
+    return all;
+}
+
+/// The worst error at points round (x, y), all well inside the light.
+template <typename Truth>
+double worst_error(const Scene& scene, const CausticEstimator& method, const Vec3d& middle,
+                   double radius, const Truth& truth) {
+    constexpr int count = 200;
+    double worst = 0;
+    for (int i = 0; i < count; ++i) {
+        const double r = radius * std::sqrt((i + 0.5) / count);
+        const Vec3d p = middle + r * Vec3d(std::cos(2.4 * i), std::sin(2.4 * i), 0);
+        const auto found = support::irradiance(
+            method, {support::probe(scene, 1, p, Vec3d::UnitZ(), static_cast<std::uint64_t>(i))});
+        const auto value = static_cast<double>(found.front().value.mean());
+        worst = std::max(worst, std::abs(value / truth(p) - 1));
+    }
+    return worst;
+}
+
+beamtree::BeamTreeParams of(beamtree::PolygonKind polygons) {
+    beamtree::BeamTreeParams params;
+    params.polygons = polygons;
+    params.max_bounces = 1;
+    return params;
+}
+
+// A flat facet is a plane: what a tilted mirror of a mesh brings comes from the light's image.
+TEST(SpecularPoints, TellFlatFacetsOfAMirror) {
+    constexpr double albedo = 0.8, half = 1.6;
+    const Vec3d middle(0, 0, 2), light(0, 0, 1);
+    const Eigen::AngleAxisd turn(pi_d - 0.1, Vec3d(1, 2, 0).normalized());
+    const Vec3d normal = turn * Vec3d::UnitZ();
+    const Vec3d image = light - 2 * normal.dot(light - middle) * normal;
+    const Transform to_world =
+        Eigen::Translation3d(middle) * turn * Eigen::Scaling(half, half, 1.0);
+    for (const TriangleMesh& mesh : flat_squares())
+        for (const auto kind : {beamtree::PolygonKind::triangle, beamtree::PolygonKind::quad}) {
+            SceneDesc desc;
+            desc.shapes = {support::mesh("mirror", mesh, to_world,
+                                         support::mirror(static_cast<float>(albedo))),
+                           support::horizontal("floor", 0, 9, true, support::diffuse(0.5F))};
+            desc.lights = {support::point_light(light, strength)};
+            const Scene scene(std::move(desc));
+            const double worst = worst_error(
+                scene, *build(scene, of(kind), {}), Vec3d::Zero(), 2, [&](const Vec3d& p) {
+                    return albedo * strength * image.z() / std::pow((image - p).norm(), 3);
+                });
+            EXPECT_LT(worst, 1e-5) << mesh.triangles.size() << ' ' << mesh.normals.size();
+        }
+}
+
+TEST(SpecularPoints, TellFlatFacetsOfWater) {
+    using namespace support::flat_pool;
+    constexpr double height = 0.5;
+    const Transform size(Eigen::Scaling(3.0, 3.0, 1.0));
+    for (const TriangleMesh& mesh : flat_squares())
+        for (const auto kind : {beamtree::PolygonKind::triangle, beamtree::PolygonKind::quad}) {
+            SceneDesc desc;
+            desc.shapes = {support::mesh("water", mesh, size, support::glass(1.333F)),
+                           support::horizontal("floor", -depth, 9, true, support::diffuse(0.5F))};
+            desc.lights = {
+                support::point_light({0.013, 0.021, height}, static_cast<float>(intensity))};
+            const Scene scene(std::move(desc));
+            const Vec3d below(0.013, 0.021, -depth);
+            const double worst = worst_error(
+                scene, *build(scene, of(kind), {}), below, 1.5,
+                [&](const Vec3d& p) { return floor_irradiance((p - below).norm(), height); });
+            EXPECT_LT(worst, 1e-5) << mesh.triangles.size() << ' ' << mesh.normals.size();
+        }
 }
 
 }  // namespace
