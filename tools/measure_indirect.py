@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Measures what the global photon map gains over path tracing at equal error, and writes results/indirect/README.md.
 
-Runs the sweep experiments/sweeps/indirect_room.json on one thread; its trials stay in results/indirect/trials (not in git).
+Runs the sweeps indirect_room.json on one thread and indirect_growth.json on one and on two; their trials stay in
+results/indirect/trials (not in git).
 Ratios are of CPU times of one thread on one machine, without what the other layers cost. `--mitsuba` adds Mitsuba's `path` on the
 same room, whose error and time it takes without those of its direct light (needs tools/crosscheck-requirements.txt, so that it
 runs by .venv/bin/python). Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
@@ -20,7 +21,7 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-from report import records
+from report import indirect_growth, records
 from report.program import BENCH, Program, machine
 from report.report_files import write
 
@@ -45,7 +46,7 @@ need for the same error, from the nearest of its rows, since its squared error f
 | method | photons | rays a sample | known beforehand at every | rmse | precompute [s] | all [s] | gain |
 |---|---|---|---|---|---|---|---|
 {rows}
-{mitsuba}## Shadow photons
+{growth}{mitsuba}## Shadow photons
 
 The room's direct light with `shadow_photons`, on the same camera samples as without (`none`, `gather: 0`): the rays that were spared,
 and the error that this made, in the layer `direct`.
@@ -231,13 +232,16 @@ def main():
         rows = [row for _, row in records.read_rows(folder / "records.csv")[1] if row["status"] == "done"]
         without = median([row for row in rows if not row["indirect"]], "cpu_s")
         cells = measured(rows, without)
+        growth = [options.output / "trials" / f"indirect_growth_{threads}" for threads in (1, 2)]
+        for threads, each in enumerate(growth, 1):
+            program.sweep("indirect_growth", each, options.keep, "--threads", threads)
         with tempfile.TemporaryDirectory() as work:
             shadows, plain, asked = shadow_lines(program, work)
             mitsuba = mitsuba_section(program) if options.mitsuba else ""
         write(options.output / "README.md",
               PAGE.format(options=" --mitsuba" if options.mitsuba else "", machine=machine([folder]), none=without, reference=REFERENCE_PATHS,
-                          rows="".join(table(cells)), mitsuba=mitsuba, shadows="".join(shadows), plain=plain, asked=asked,
-                          most=f"{SHADOW_RAYS[-1]:,}"))
+                          rows="".join(table(cells)), growth=indirect_growth.section(*growth), mitsuba=mitsuba,
+                          shadows="".join(shadows), plain=plain, asked=asked, most=f"{SHADOW_RAYS[-1]:,}"))
     except records.RecordsError as error:
         print(f"measure_indirect: {error}", file=sys.stderr)
         return 2
