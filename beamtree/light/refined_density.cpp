@@ -139,6 +139,8 @@ std::optional<double> refined_density(const BeamSet& set, const BeamHit& hit, co
     if (set.spreads.empty()) return {};
     const TestPlane plane(point, hit.plane_normal);
     if (const auto found = density_on(plane, set, hit)) return found;
+    // Of a square [CC95 (11)] keeps the flux; on another plane the covered part is another one.
+    if (hit.coverage != 1) return {};
     const Vec3 direction = arriving_direction(set, hit);
     const auto across = density_on(TestPlane(point, -direction), set, hit);
     if (!across) return {};

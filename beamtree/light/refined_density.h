@@ -14,7 +14,8 @@ namespace caustics::beamtree {
 /// the light goes down unevenly the plane is the one across the light that arrives.
 ///
 /// Empty where [CC95 (11)] has to do: without spreads, within a fold, where the corners' spreads
-/// differ by a factor of four, and where the plane clips the polygon.
+/// differ by a factor of four (asked at a point: on the plane across the light as well), and where the plane
+/// clips the polygon.
 std::optional<double> refined_density(const BeamSet& set, const BeamHit& hit, const Vec3& point);
 
 }  // namespace caustics::beamtree

@@ -77,6 +77,22 @@ TEST(BeamSquare, GetsAllOfTheFlux) {
     }
 }
 
+// What `area` keeps to the last bit, `refined` keeps but for what its second order leaves: also at a
+// focus, where polygons are unlike from corner to corner.
+TEST(BeamSquare, GetsTheFluxOfAFocusWhereItIsRefined) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", -1, 2, true, support::diffuse(0.5F)),
+                   support::sphere("ball", {0, 0, -0.4}, 0.5, support::glass(1.5F))};
+    desc.lights = {support::directional_light(-Vec3d::UnitZ(), 1)};
+    const Scene scene(std::move(desc));
+    const auto landed = [&](Intensity intensity) {
+        BeamTreeParams params = averaged(0.1F, intensity);
+        params.max_bounces = 2;
+        return sum(irradiance(scene, params, middles(20, 1)));
+    };
+    EXPECT_NEAR(landed(Intensity::refined) / landed(Intensity::area), 1, 0.01);
+}
+
 // The mean over a square is that of its parts, to the rounding of floats.
 TEST(BeamSquare, IsTheMeanOfItsParts) {
     const Scene scene(folded_pool());
