@@ -21,6 +21,9 @@ struct BeamHit {
     double area = 0;          ///< of the caustic polygon [m^2], see test_beam
     double flux_share = 1;    ///< of the beam's flux that falls on it
     double coverage = 1;      ///< of a square round the point; 1 where the point itself is asked
+    /// Covariances of the weights (1, 2), (2, 0) and (0, 1) over the part of the square that is covered;
+    /// 0 where the point itself is asked.
+    Vec3 covariances = Vec3::Zero();
     /// Of a beam that drifts: the places in its bin of wavelengths between which it holds the point.
     double from = 0;
     double to = 0;

@@ -65,6 +65,14 @@ public:
 
     /// At the point with these barycentric weights, to a factor [W m^-2].
     double irradiance(const Vec3d& weights) const { return 1 / std::abs(weights.dot(spread_)); }
+    /// The mean of it over the hit's part of a square, to second order of how the spread varies there.
+    double irradiance(const BeamHit& hit) const {
+        const double spread = hit.weights.cast<double>().dot(spread_);
+        const Vec3d apart(spread_[1] - spread_[2], spread_[2] - spread_[0],
+                          spread_[0] - spread_[1]);
+        const double variance = -hit.covariances.cast<double>().dot(apart.cwiseAbs2());
+        return (1 + variance / (spread * spread)) / std::abs(spread);
+    }
     double flux() const {
         static const std::array<Node, 7> rule = nodes();
         double mean = 0;
@@ -121,7 +129,7 @@ std::optional<double> density_on(const TestPlane& plane, const BeamSet& set, con
     } else if (beam.triangle_count() == 2 && hit.flux_share == 1) {
         return {};  // the other half shares [CC95 (11)]'s flux of the whole quad with this one
     }
-    const double irradiance = own->irradiance(hit.weights.cast<double>()) * flux / found;
+    const double irradiance = own->irradiance(hit) * flux / found;
     return irradiance / static_cast<double>(beam.flux.mean());
 }
 

@@ -42,21 +42,31 @@ Part on_square(const Triangle& triangle, double half) {
     return part;
 }
 
-/// Area, with the sign of the triangle's, and centre.
+/// Area, with the sign of the triangle's, centre and covariance of its places.
 struct Extent {
     double area = 0;
     Vec2d middle = Vec2d::Zero();
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 };
 
 Extent extent(const Part& part) {
     Extent found;
+    if (part.count == 0) return found;
+    const Vec2d& first = part.corners[0];
     for (std::size_t i = 1; i + 1 < part.count; ++i) {
-        const Triangle fan = {part.corners[0], part.corners[i], part.corners[i + 1]};
-        const double area = area_of(fan);
+        const Vec2d u = part.corners[i] - first;
+        const Vec2d v = part.corners[i + 1] - first;
+        const Vec2d sum = u + v;
+        const double area = cross(u, v) / 2;
         found.area += area;
-        found.middle += area / 3 * (fan[0] + fan[1] + fan[2]);
+        found.middle += area / 3 * sum;
+        found.covariance +=
+            area / 12 * (u * u.transpose() + v * v.transpose() + sum * sum.transpose());
     }
     found.middle /= found.area;
+    found.covariance /= found.area;
+    found.covariance -= found.middle * found.middle.transpose();
+    found.middle += first;
     return found;
 }
 
@@ -80,6 +90,20 @@ std::optional<Triangle> project(const std::array<const VertexRay*, 3>& rays, con
     }
     if (most > most_uneven * least) return {};
     return at;
+}
+
+// Of the weights of corners 1 and 2, 2 and 0, 0 and 1.
+Vec3 weights_covariances(const Eigen::Matrix2d& of_places, const Triangle& t, double area) {
+    std::array<Vec2d, 3> slope;  // of the weights
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec2d side = t[(i + 2) % 3] - t[(i + 1) % 3];
+        slope[i] = Vec2d(-side.y(), side.x()) / (2 * area);
+    }
+    Vec3 found;
+    for (std::size_t i = 0; i < 3; ++i)
+        found[static_cast<Eigen::Index>(i)] =
+            static_cast<float>(slope[(i + 1) % 3].dot(of_places * slope[(i + 2) % 3]));
+    return found;
 }
 
 Vec3 weights_at(const Vec2d& p, const Triangle& t, double area) {
@@ -117,6 +141,7 @@ void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& r
         hit.winding = areas[i] > 0 ? 1 : -1;
         hit.plane_normal = plane.normal().cast<float>();
         hit.weights = weights_at(part.middle, triangles[i], areas[i]);
+        hit.covariances = weights_covariances(part.covariance, triangles[i], areas[i]);
         hit.area = std::abs(together ? areas[0] + areas[1] : areas[i]);
         hit.coverage = std::abs(part.area) / (4 * square.half * square.half);
         if (count == 2 && !together) hit.flux_share = set.beams[number.beam].share_of(i);

@@ -93,6 +93,15 @@ TEST(BeamSquare, GetsTheFluxOfAFocusWhereItIsRefined) {
     EXPECT_NEAR(landed(Intensity::refined) / landed(Intensity::area), 1, 0.01);
 }
 
+// Near folds the light runs steeply within a polygon: its value in the middle is below its mean.
+TEST(BeamSquare, GetsTheFluxOfFoldsWhereItIsRefined) {
+    const Scene scene(folded_pool());
+    const auto landed = [&](Intensity intensity) {
+        return sum(irradiance(scene, averaged(0.1F, intensity), middles(40, 2)));
+    };
+    EXPECT_NEAR(landed(Intensity::refined) / landed(Intensity::area), 1, 0.002);
+}
+
 // The mean over a square is that of its parts, to the rounding of floats.
 TEST(BeamSquare, IsTheMeanOfItsParts) {
     const Scene scene(folded_pool());
