@@ -23,7 +23,7 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-from report.program import BENCH
+from report.program import BENCH, exit_code
 from report.records import RecordsError
 
 
@@ -143,23 +143,17 @@ def race(chosen):
         write(path, json.dumps(environment(programs, {**known, **run.about}, run.absent), indent=1) + "\n")
 
 
+def run(chosen):
+    if not chosen.page:
+        race(chosen)
+    from peers import page
+
+    page.write_all(chosen.output)
+
+
 def main():
     chosen = arguments()
-    try:
-        if not chosen.page:
-            race(chosen)
-        from peers import page
-
-        page.write_all(chosen.output)
-    except RecordsError as error:
-        print(f"bench_peers: {error}", file=sys.stderr)
-        return 2
-    except (ChildProcessError, ImportError, OSError) as error:
-        print(f"bench_peers: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+    return exit_code("bench_peers", lambda: run(chosen))
 
 
 if __name__ == "__main__":

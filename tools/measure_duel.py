@@ -15,7 +15,7 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-from report.program import BENCH
+from report.program import BENCH, exit_code
 from report.records import RecordsError
 
 
@@ -55,17 +55,7 @@ def run(chosen, output):
 def main():
     chosen = arguments()
     output = (chosen.output or ROOT / "results" / "duel" / ("trials/quick" if chosen.quick else ".")).resolve()
-    try:
-        run(chosen, output)
-    except RecordsError as error:
-        print(f"duel: {error}", file=sys.stderr)
-        return 2
-    except (ChildProcessError, ImportError, OSError) as error:
-        print(f"duel: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+    return exit_code("duel", lambda: run(chosen, output))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ run. Exit codes: 0 done (whether claims hold or not), 1 a run failed, 2 bad inpu
 """
 import argparse
 import importlib
-import json
 import pathlib
 import sys
 import time
@@ -20,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
 from report import paper as papers_text
-from report.program import BENCH, machine
+from report.program import BENCH, exit_code, machine
 from report.records import RecordsError
 
 
@@ -63,22 +62,16 @@ def reproduce(name, chosen):
     study.log(f"{tally(found)}; {(time.monotonic() - start) / 60:.1f} minutes; {study.output / 'index.html'}")
 
 
+def run(chosen):
+    if not chosen.program.exists():
+        raise RecordsError(f"{chosen.program}: not there (tools/build.sh release causticbench, or --program)")
+    for name in chosen.papers or papers_text.NAMES:
+        reproduce(name, chosen)
+
+
 def main():
     chosen = arguments()
-    try:
-        if not chosen.program.exists():
-            raise RecordsError(f"{chosen.program}: not there (tools/build.sh release causticbench, or --program)")
-        for name in chosen.papers or papers_text.NAMES:
-            reproduce(name, chosen)
-    except (RecordsError, json.JSONDecodeError) as error:
-        print(f"reproduce: {error}", file=sys.stderr)
-        return 2
-    except (ChildProcessError, ImportError, OSError) as error:
-        print(f"reproduce: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+    return exit_code("reproduce", lambda: run(chosen))
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import math
 import pathlib
 
 from report.records import RecordsError, canonical
+from report.set_scene import SetScene
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "experiments" / "duel"
@@ -36,37 +37,13 @@ def shown(value):
     return {True: "yes", False: "no"}[value] if isinstance(value, bool) else canonical(str(value))
 
 
-@dataclasses.dataclass(frozen=True)
-class Scene:
+class Scene(SetScene):
     """One scene as it is set; `text` is its entry of scenes.json."""
-    text: dict
-
-    def __getattr__(self, name):
-        try:
-            return self.text[name]
-        except KeyError:
-            raise AttributeError(name) from None
-
     def is_base(self):
         return self.text.get("base", False)
 
     def quadrature(self):
         return "quadrature" in self.truth
-
-    def resolved(self):
-        """The scene's file with its settings, as JSON."""
-        scene = json.loads((ROOT / self.file).read_text(encoding="utf-8"))
-        for pointer, value in self.all_set().items():
-            place = scene
-            *way, last = pointer.strip("/").split("/")
-            for step in way:
-                place = place[int(step) if isinstance(place, list) else step]
-            place[int(last) if isinstance(place, list) else last] = value
-        return scene
-
-    def all_set(self):
-        width, height = self.size
-        return {"/sensor/film/width": width, "/sensor/film/height": height, **self.set}
 
 
 class Duel:

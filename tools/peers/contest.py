@@ -2,7 +2,6 @@
 
 A setting is a tuple of sorted (name, value) pairs. Lengths are metres.
 """
-import dataclasses
 import itertools
 import json
 import math
@@ -10,41 +9,22 @@ import pathlib
 
 import numpy as np
 
+from report.set_scene import SetScene
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FILE = pathlib.Path(__file__).resolve().parent / "contest.json"
 OURS = ("photonmap", "beamtree")  # the methods compared with the peers
 MARGIN = 1.002  # of the cone round a caster
 
 
-@dataclasses.dataclass(frozen=True)
-class Scene:
-    text: dict
-
-    def __getattr__(self, name):
-        try:
-            return self.text[name]
-        except KeyError:
-            raise AttributeError(name) from None
-
+class Scene(SetScene):
     def all_set(self, setting=()):
         """{JSON pointer: value} with the film's size and the setting's mesh, normals and camera samples."""
-        width, height = self.size
         chosen = dict(setting)
         mesh = {self.mesh: chosen["mesh"]} if "mesh" in self.text and "mesh" in chosen else {}
         flat = {self.mesh.replace("resolution", "face_normals"): True} if chosen.get("normals") == "face" else {}
         lattice = {"/sensor/sampler/jitter": chosen["jitter"]} if "jitter" in chosen else {}
-        return {"/sensor/film/width": width, "/sensor/film/height": height, **self.set, **mesh, **flat, **lattice}
-
-    def resolved(self):
-        """The scene's file with its settings and what it includes, as JSON."""
-        scene = load(ROOT / self.file)
-        for pointer, value in self.all_set().items():
-            *way, last = [int(step) if step.isdigit() else step for step in pointer.strip("/").split("/")]
-            place = scene
-            for step in way:
-                place = place[step]
-            place[last] = value
-        return scene
+        return {**super().all_set(), **mesh, **flat, **lattice}
 
 
 class Contest:
@@ -74,19 +54,6 @@ def words(setting):
     """A setting as records and tables name it."""
     shown = lambda value: str(value).lower() if isinstance(value, bool) else f"{value:.4g}" if isinstance(value, float) else str(value)
     return ", ".join(f"{name} {shown(value)}" for name, value in setting)
-
-
-def load(path):
-    """A scene's JSON with its {"$include": FILE} put in."""
-    return included(json.loads(path.read_text(encoding="utf-8")), path.parent)
-
-
-def included(value, folder):
-    if isinstance(value, dict):
-        if "$include" in value:
-            return load(folder / value["$include"])
-        return {key: included(each, folder) for key, each in value.items()}
-    return [included(each, folder) for each in value] if isinstance(value, list) else value
 
 
 def lamp(scene):

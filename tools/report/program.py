@@ -30,6 +30,21 @@ class Program:
                  *([] if keep else ["--force"]), stdout=sys.stderr)
 
 
+def exit_code(tool, run):
+    """Runs run(): 0 done, 1 a run failed, 2 bad input, each but the first with one line; 130 interrupted."""
+    try:
+        run()
+    except (records.RecordsError, json.JSONDecodeError) as error:
+        print(f"{tool}: {error}", file=sys.stderr)
+        return 2
+    except (ChildProcessError, ImportError, OSError) as error:
+        print(f"{tool}: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
 def machine(folders):
     """One line on where and in which state the times of these sweeps were taken."""
     found = [json.loads((folder / "environment.json").read_text(encoding="utf-8")) for folder in folders]
