@@ -65,8 +65,7 @@ def make_truth(program, pool, folder, cells, path):
     import pool_truth  # here, so that a missing numpy differs from bad records
 
     print(f"equal_error: truth, {pool}", file=sys.stderr, flush=True)
-    exact = pool_truth.Pool(SCENE, float(POOLS[pool]))
-    coarse, fine = (exact.radiance(exact.irradiance(n)) for n in (cells // 2, cells))
+    fine, error = pool_truth.Pool(SCENE, float(POOLS[pool])).radiance_with_error(cells)
     mean = float(fine.mean())
     blocks, traced = (folder / f"{kind}_{pool}.exr" for kind in ("blocks", "lighttrace"))
     pool_truth.write_exr(path, fine)
@@ -76,7 +75,7 @@ def make_truth(program, pool, folder, cells, path):
                 f"/sensor/film/height={BLOCKS}", "--threads", 1, "-o", traced, stdout=sys.stderr, stderr=subprocess.DEVNULL)
     found = program.compare(blocks, traced)
     noise = found["reference_stderr"] * mean
-    own = math.sqrt(float(((fine - coarse) ** 2).mean())) / 3  # of second order: the next doubling would change a quarter
+    own = math.sqrt(float((error ** 2).mean()))
     return {"cells": cells, "own_error": own / mean, "mean": mean,
             "lighttrace_difference": found["metrics"]["rmse"] / mean, "lighttrace_stderr": noise / mean,
             "lighttrace_mean_ratio": found["metrics"]["mean_ratio"]}

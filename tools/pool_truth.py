@@ -77,6 +77,11 @@ class Pool:
     def radiance(self, irradiance):
         return irradiance * self.reflectance / math.pi
 
+    def radiance_with_error(self, cells):
+        """From cells x cells cells, and about its error in each pixel: of second order, a third of what half as many change."""
+        coarse, fine = (self.radiance(self.irradiance(n)) for n in (cells // 2, cells))
+        return fine, np.abs(fine - coarse) / 3
+
 
 def solid_angle(a, b, c):
     """Of triangles with corners at a, b, c from the origin [Van Oosterom and Strackee 1983]."""

@@ -13,9 +13,8 @@ def pool(scene, folder):
     """(irradiance as radiance, height x width; its own standard error, root mean square over pixels); kept in the folder."""
     path = folder / f"truth_{scene.truth['cells']}.npz"
     if not path.exists():
-        exact, cells = smooth_pool(scene, folder), scene.truth["cells"]
-        coarse, fine = (exact.radiance(exact.irradiance(n)) for n in (cells // 2, cells))
-        np.savez(path, radiance=fine, error=np.abs(fine - coarse) / 3)  # of second order
+        radiance, error = smooth_pool(scene, folder).radiance_with_error(scene.truth["cells"])
+        np.savez(path, radiance=radiance, error=error)
     kept = np.load(path)
     return kept["radiance"], kept["error"]
 

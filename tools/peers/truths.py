@@ -56,9 +56,7 @@ def made(scene, programs):
     if "quadrature" in scene.truth:
         path = programs.work / "truth_scene.json"
         path.write_text(json.dumps(scene.resolved()), encoding="utf-8")
-        pool = pool_truth.Pool(path, scene.set["/water/to_world/0/scale/2"])
-        coarse, fine = (pool.radiance(pool.irradiance(cells)) for cells in (scene.truth["quadrature"] // 2, scene.truth["quadrature"]))
-        return fine, np.abs(fine - coarse) / 3  # of second order
+        return pool_truth.Pool(path, scene.set["/water/to_world/0/scale/2"]).radiance_with_error(scene.truth["quadrature"])
     if "splat" in scene.truth:
         intensity = contest.lamp(scene.resolved())[1]
         batches = np.stack([intensity * programs.splat_picture(scene, scene.truth["splat"], seed)[1] for seed in BATCHES])
