@@ -58,7 +58,7 @@ BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
 std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit, const VertexRay& guess,
                                                        const Vec3& point) const {
     // Of a square round the point its middle is not what is asked for.
-    if (!searches_[hit.set] || hit.coverage != 1) return {};
+    if (!searches_[hit.set] || hit.is_part_of_square()) return {};
     return searches_[hit.set]->find(sets_[hit.set].beams[hit.beam], hit.triangle, guess, point);
 }
 

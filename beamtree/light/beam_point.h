@@ -29,6 +29,8 @@ struct BeamHit {
     double to = 0;
 
     double place() const { return (from + to) / 2; }
+    /// Whether the mean over a square is asked for, of which this is a part.
+    bool is_part_of_square() const { return coverage != 1; }
 };
 
 /// Does the point that the plane goes through lie inside the beam? Writes up to two hits (a polygon

@@ -148,7 +148,7 @@ std::optional<double> refined_density(const BeamSet& set, const BeamHit& hit, co
     const TestPlane plane(point, hit.plane_normal);
     if (const auto found = density_on(plane, set, hit)) return found;
     // Of a square [CC95 (11)] keeps the flux; on another plane the covered part is another one.
-    if (hit.coverage != 1) return {};
+    if (hit.is_part_of_square()) return {};
     const Vec3 direction = arriving_direction(set, hit);
     const auto across = density_on(TestPlane(point, -direction), set, hit);
     if (!across) return {};

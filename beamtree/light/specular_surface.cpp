@@ -21,16 +21,16 @@ SpecularSurface::SpecularSurface(const Shape& shape)
 std::optional<SpecularSurface> SpecularSurface::facet(const TriangleMesh& mesh,
                                                       std::uint32_t triangle) {
     const auto& [i, j, k] = mesh.triangles[triangle];
+    const bool has_normals = !mesh.normals.empty();
+    // First what tells nearly all smooth triangles: every hit asks.
+    if (has_normals && (mesh.normals[j] != mesh.normals[i] || mesh.normals[k] != mesh.normals[i]))
+        return {};
     const Vec3d a = mesh.positions[i].cast<double>();
     const Vec3d b = mesh.positions[j].cast<double>();
     const Vec3d c = mesh.positions[k].cast<double>();
-    if (mesh.normals.empty()) {
-        const Vec3d across = (b - a).cross(c - a).stableNormalized();
-        return SpecularSurface(Plane{a, across, across});
-    }
-    const Vec3& normal = mesh.normals[i];
-    if (mesh.normals[j] != normal || mesh.normals[k] != normal) return {};
     const Vec3d across = (b - a).cross(c - a).stableNormalized();
+    if (!has_normals) return SpecularSurface(Plane{a, across, across});
+    const Vec3& normal = mesh.normals[i];
     if (!is_flat_between(normal, across.cast<float>())) return {};
     return SpecularSurface(Plane{a, across, normal.cast<double>().normalized()});
 }
