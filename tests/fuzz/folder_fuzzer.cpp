@@ -6,7 +6,7 @@
 #include "experiments/plan/trial_store.h"
 #include "experiments/report/record_table.h"
 #include "experiments/sweep/merge.h"
-#include "tests/fuzz/json_mutator.h"
+#include "tests/fuzz/json_hooks.h"
 #include "tests/fuzz/reading.h"
 #include "tests/fuzz/small_scene.h"
 
@@ -22,27 +22,6 @@ using nlohmann::json;
 constexpr const char* files[] = {"plan.json",           ".table",        "environment.json",
                                  "records.csv",         "records.jsonl", "trials/a/record.json",
                                  "trials/b/record.json"};
-
-const std::vector<std::string>& words() {
-    static const std::vector<std::string> all = [] {
-        std::vector<std::string> known = {"a",          "b",       "../c",        "done",
-                                          "failed",     "timeout", "unsupported", "running",
-                                          "none",       "plain",   "avx2",        "version",
-                                          "trials",     "trial",   "cell",        "seed",
-                                          "chosen",     "swept",   "sweeps",      "filters",
-                                          "started_in", "rows",    "variances",   "complete",
-                                          "csv",        "jsonl",   "parameters",  "set",
-                                          "file",       "name",    "hash",        "code_version",
-                                          "photonmap",  "\n$(x)`", "=1+1"};
-        for (const RecordColumn& column : record_columns_of_all()) {
-            known.emplace_back(column.name);
-            known.emplace_back(column.pointer);
-        }
-        for (const char* file : files) known.emplace_back(file);
-        return known;
-    }();
-    return all;
-}
 
 void put_folder(std::string_view text) {
     std::filesystem::remove_all(fuzz::scratch() / "out");
@@ -80,6 +59,27 @@ void read_folder() {
 
 }  // namespace
 
+const std::vector<std::string>& caustics::fuzz::words() {
+    static const std::vector<std::string> all = [] {
+        std::vector<std::string> known = {"a",          "b",       "../c",        "done",
+                                          "failed",     "timeout", "unsupported", "running",
+                                          "none",       "plain",   "avx2",        "version",
+                                          "trials",     "trial",   "cell",        "seed",
+                                          "chosen",     "swept",   "sweeps",      "filters",
+                                          "started_in", "rows",    "variances",   "complete",
+                                          "csv",        "jsonl",   "parameters",  "set",
+                                          "file",       "name",    "hash",        "code_version",
+                                          "photonmap",  "\n$(x)`", "=1+1"};
+        for (const RecordColumn& column : record_columns_of_all()) {
+            known.emplace_back(column.name);
+            known.emplace_back(column.pointer);
+        }
+        for (const char* file : files) known.emplace_back(file);
+        return known;
+    }();
+    return all;
+}
+
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     fuzz::put("small.json", fuzz::small_scene);
     return 0;
@@ -89,17 +89,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     put_folder(fuzz::view(data, size));
     read_folder();
     return 0;
-}
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
-    return fuzz::mutate_json(data, size, most, seed, words());
-}
-
-extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* first, std::size_t first_size,
-                                                 const std::uint8_t* second,
-                                                 std::size_t second_size, std::uint8_t* out,
-                                                 std::size_t most, unsigned seed) {
-    return fuzz::cross_json(std::string(fuzz::view(first, first_size)),
-                            std::string(fuzz::view(second, second_size)), out, most, seed);
 }

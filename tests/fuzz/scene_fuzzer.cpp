@@ -7,23 +7,12 @@
 #include "core/scene/scene_keys.h"
 #include "core/scene/scene_reader.h"
 #include "photonmap/photon_map.h"
-#include "tests/fuzz/json_mutator.h"
+#include "tests/fuzz/json_hooks.h"
 #include "tests/fuzz/reading.h"
 
 namespace {
 
 using namespace caustics;
-
-const std::vector<std::string>& words() {
-    static const std::vector<std::string> all = [] {
-        std::vector<std::string> known = fuzz::words_of(scene_file::scene_keys());
-        for (const char* file : {"mesh.ply", "mesh.obj", "texture.png", "heights.exr", "part.json",
-                                 "loop.json", "scene.json", "none.ply", "../scene.json", "."})
-            known.emplace_back(file);
-        return known;
-    }();
-    return all;
-}
 
 /// What scenes may name.
 void put_neighbours() {
@@ -79,6 +68,17 @@ void read_scene(std::string_view text) {
 
 }  // namespace
 
+const std::vector<std::string>& caustics::fuzz::words() {
+    static const std::vector<std::string> all = [] {
+        std::vector<std::string> known = fuzz::words_of(scene_file::scene_keys());
+        for (const char* file : {"mesh.ply", "mesh.obj", "texture.png", "heights.exr", "part.json",
+                                 "loop.json", "scene.json", "none.ply", "../scene.json", "."})
+            known.emplace_back(file);
+        return known;
+    }();
+    return all;
+}
+
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     put_neighbours();
     return 0;
@@ -88,17 +88,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text = fuzz::view(data, size);
     if (!fuzz::asks_for_much(text, limits)) run_single_threaded([&] { read_scene(text); });
     return 0;
-}
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
-    return fuzz::mutate_json(data, size, most, seed, words());
-}
-
-extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* first, std::size_t first_size,
-                                                 const std::uint8_t* second,
-                                                 std::size_t second_size, std::uint8_t* out,
-                                                 std::size_t most, unsigned seed) {
-    return fuzz::cross_json(std::string(fuzz::view(first, first_size)),
-                            std::string(fuzz::view(second, second_size)), out, most, seed);
 }

@@ -5,7 +5,7 @@
 #include "experiments/plan/sweep_keys.h"
 #include "experiments/plan/sweep_selection.h"
 #include "experiments/run/methods.h"
-#include "tests/fuzz/json_mutator.h"
+#include "tests/fuzz/json_hooks.h"
 #include "tests/fuzz/reading.h"
 #include "tests/fuzz/small_scene.h"
 
@@ -13,22 +13,6 @@ namespace {
 
 using namespace caustics;
 using namespace caustics::experiments;
-
-const std::vector<std::string>& words() {
-    static const std::vector<std::string> all = [] {
-        std::vector<ObjectText> objects = sweep_keys();
-        for (const MethodDescription* method : all_methods())
-            objects.push_back({method->facts().name, "", method->parameters()});
-        for (const IndirectDescription* method : all_indirect_methods())
-            objects.push_back({method->facts().name, "", method->parameters()});
-        std::vector<std::string> known = fuzz::words_of(objects);
-        for (const char* word : {"small.json", "sweep.json", "../small.json", "/ball/radius",
-                                 "/floor/bsdf/reflectance", "/camera", "/none/x", "/"})
-            known.emplace_back(word);
-        return known;
-    }();
-    return all;
-}
 
 /// Valid, but much work: examining a reference begins it.
 const std::map<std::string, double> limits = {
@@ -63,6 +47,22 @@ void read_sweep(std::string_view text) {
 
 }  // namespace
 
+const std::vector<std::string>& caustics::fuzz::words() {
+    static const std::vector<std::string> all = [] {
+        std::vector<ObjectText> objects = sweep_keys();
+        for (const MethodDescription* method : all_methods())
+            objects.push_back({method->facts().name, "", method->parameters()});
+        for (const IndirectDescription* method : all_indirect_methods())
+            objects.push_back({method->facts().name, "", method->parameters()});
+        std::vector<std::string> known = fuzz::words_of(objects);
+        for (const char* word : {"small.json", "sweep.json", "../small.json", "/ball/radius",
+                                 "/floor/bsdf/reflectance", "/camera", "/none/x", "/"})
+            known.emplace_back(word);
+        return known;
+    }();
+    return all;
+}
+
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     fuzz::put("small.json", fuzz::small_scene);
     return 0;
@@ -72,17 +72,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text = fuzz::view(data, size);
     if (!fuzz::asks_for_much(text, limits)) run_single_threaded([&] { read_sweep(text); });
     return 0;
-}
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
-    return fuzz::mutate_json(data, size, most, seed, words());
-}
-
-extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* first, std::size_t first_size,
-                                                 const std::uint8_t* second,
-                                                 std::size_t second_size, std::uint8_t* out,
-                                                 std::size_t most, unsigned seed) {
-    return fuzz::cross_json(std::string(fuzz::view(first, first_size)),
-                            std::string(fuzz::view(second, second_size)), out, most, seed);
 }
