@@ -9,7 +9,7 @@ caustic in place of the reference's. Its defaults (67 pixels a degree, ACES), an
 reference, with the median over the pixels that are not black: it has none where half of a picture is.
 
 Writes `flip` to DIR/trials/ID/record.json, from which a sweep and `merge` make their tables, and to DIR/records.csv and
-records.jsonl. References are looked for in DIR/references, then in FOLDER (default: experiments/references).
+records.jsonl; the map of each picture, which the report shows, to DIR/trials/ID/flip.exr (channel flip.Y). References are looked for in DIR/references, then in FOLDER (default: experiments/references).
 Without flip-evaluator, NumPy and OpenEXR (tools/flip-requirements.txt) nothing is changed, so that the column stays
 empty, and a line says so. Exit codes: 0 done, 2 bad input or usage.
 """
@@ -18,6 +18,7 @@ import csv
 import io
 import json
 import math
+import os
 import pathlib
 import sys
 
@@ -55,7 +56,7 @@ def fill(directory, references):
 
 
 def score(directory, references, trial):
-    """The trial's FLIP, written to its record; None where its reference is black."""
+    """The trial's FLIP, written to its record, with its map beside it; None where its reference is black."""
     file = directory / "trials" / trial / "record.json"
     try:
         record = json.loads(file.read_text(encoding="utf-8"))
@@ -66,7 +67,9 @@ def score(directory, references, trial):
     reference = next((place for place in places if place.is_file()), None)
     if reference is None:
         raise records.RecordsError(f"{file}: no reference {places[0]} or {places[1]} (give --references its folder)")
-    record["flip"] = flip(read_layers(file.with_name("image.exr")), read_layers(reference))
+    record["flip"], errors = flip(read_layers(file.with_name("image.exr")), read_layers(reference))
+    if errors is not None:
+        write_map(file.with_name("flip.exr"), errors, record.get("picture_hash", ""))
     write(file, json.dumps(record, indent=2, ensure_ascii=False) + "\n")
     return record["flip"]
 
@@ -84,8 +87,18 @@ def read_layers(file):
     return layers
 
 
+def write_map(file, errors, picture_hash):
+    """The map as an OpenEXR file that names the picture it is of."""
+    import numpy
+    import OpenEXR
+    part = file.with_name("flip.part.exr")
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, "causticbench.picture_hash": picture_hash}
+    OpenEXR.File(header, {"flip.Y": numpy.ascontiguousarray(errors, numpy.float32)}).write(str(part))
+    os.replace(part, file)
+
+
 def flip(picture, reference):
-    """Mean HDR-FLIP of the picture's caustic in the reference's surroundings; None for a black reference."""
+    """(mean, map) of HDR-FLIP of the picture's caustic in the reference's surroundings; (None, None) for a black reference."""
     import flip_evaluator
     import numpy
     if picture["caustic"].shape != reference["caustic"].shape:
@@ -94,12 +107,12 @@ def flip(picture, reference):
     reached = (picture["unreached"] == 0) & (reference["unreached"] == 0)
     exposures = exposures_of(reference[""])
     if exposures is None or not reached.any():
-        return None
+        return None, None
     changed = numpy.maximum(reference[""] + picture["caustic"] - reference["caustic"], 0)
     shown = numpy.where(reached[..., None], changed, reference[""])
     errors, _, _ = flip_evaluator.evaluate(numpy.maximum(reference[""], 0), shown, "HDR", applyMagma=False,
                                            computeMeanError=False, parameters=exposures)
-    return float(errors[..., 0][reached].mean(dtype=float))
+    return float(errors[..., 0][reached].mean(dtype=float)), errors[..., 0]
 
 
 def exposures_of(picture):

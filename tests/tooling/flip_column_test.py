@@ -23,6 +23,8 @@ try:
     import flip_evaluator  # noqa: F401
     import numpy
     import OpenEXR
+    from report import exr
+    from report_page import pictures
     MISSING = None
 except ImportError as error:
     MISSING = f"{error} (pip install -r tools/flip-requirements.txt)"
@@ -137,6 +139,23 @@ class WithThePackages(unittest.TestCase):
         self.assertEqual(repr(record["flip"]), found["darker"])
         lines = [json.loads(line) for line in (self.folder / "records.jsonl").read_text().splitlines()]
         self.assertEqual([line["flip"] for line in lines if line["trial"] == "darker"], [record["flip"]])
+
+    def test_the_map_is_kept_and_names_its_picture(self):
+        write_sweep(self.folder, ["a"])
+        write_picture(self.folder / "references" / "key.exr", self.grey(0.5), self.grey(0.2))
+        caustic = self.grey(0.2)
+        caustic[:16] = 0.3
+        place = self.folder / "trials" / "a"
+        write_picture(place / "image.exr", self.grey(0.5), caustic)
+        (place / "record.json").write_text(json.dumps({"reference": {"key": "key"}, "picture_hash": "abc"}))
+        self.assertEqual(self.run_tool(), (0, ""))
+        values = pictures.read_flip(place / "flip.exr", "abc")
+        self.assertEqual(values.shape, (1, 32, 32))
+        self.assertAlmostEqual(float(values.mean(dtype=float)), float(column(self.folder)["a"]), places=7)
+        self.assertGreater(values[0, :8].min(), 10 * values[0, 24:].max())
+        self.assertEqual([path.name for path in sorted(place.iterdir())], ["flip.exr", "image.exr", "record.json"])
+        with self.assertRaisesRegex(exr.PictureError, "of another picture"):
+            pictures.read_flip(place / "flip.exr", "abd")
 
     def test_pixels_that_are_not_reached_count_nothing(self):
         write_sweep(self.folder, ["a"], columns=["flip"])

@@ -7,10 +7,12 @@ import zlib
 
 import numpy
 
+from report import exr
+
 COLUMNS = ("trial,status,scene,method,seed,repeat,threads,isa,photons_emitted,photons_stored,nearest,alpha,mesh_resolution,"
            "map_bytes,peak_rss_bytes,parse_s,precompute_s,balance_s,render_s,total_s,cpu_s,rmse,relmse,bias,variance,mean_ratio,"
            "leak_energy,beauty_rmse,unreached_fraction,reference,reference_stderr,config_hash,code_version,mask_rmse,flip,"
-           "precompute_cpu_s,balance_cpu_s,render_cpu_s,reference_mean,spp,picture_hash,finished,cpu,load_average,message,"
+           "precompute_cpu_s,balance_cpu_s,render_cpu_s,indirect_rmse,indirect_cpu_s,reference_mean,spp,picture_hash,finished,cpu,load_average,message,"
            "photons").split(",")
 WIDTH, HEIGHT = 16, 12
 KEY = "0123456789abcdef"
@@ -113,6 +115,35 @@ def write_trial(folder, scene, method, step, seed):
     values.update({"photons": 1000 * step, "photons_stored": 1000 * step, "nearest": 50} if method == "photonmap"
                   else {"mesh_resolution": 16 * step})
     return {name: str(values.get(name, "")) for name in COLUMNS}
+
+
+def add_indirect(folder, rows):
+    """Light between surfaces of 0.25 for the reference, and 0.01 a seed above it for the trials."""
+    caustic, rest, unreached = reference_planes()
+    stderr = {name: numpy.full_like(rest, value) for name, value in (("stderr.Y", 0.001), ("indirect_stderr.Y", 0.002))}
+    write_exr(folder / "references" / f"{KEY}.exr", {**lit(planes_of(caustic, rest), 0.25), **stderr, "unreached.Y": unreached})
+    for row in rows:
+        path = folder / "trials" / row["trial"] / "image.exr"
+        planes, texts = exr.read(path)
+        write_exr(path, lit(planes, 0.25 + 0.01 * int(row["seed"])), texts=texts.items())
+        row.update(indirect_rmse=repr(0.01 * int(row["seed"])), indirect_cpu_s="0.5")
+    write_table(folder, rows)
+
+
+def lit(planes, indirect):
+    """The planes with an indirect layer of one value."""
+    found = {name: plane + numpy.float32(indirect) if name in "RGB" else plane for name, plane in planes.items()}
+    return {**found, **{f"indirect.{colour}": numpy.full_like(planes["R"], indirect) for colour in "RGB"}}
+
+
+def add_flip(folder, rows):
+    """Maps that rise from 0 to 1 from left to right, as flip_column keeps them."""
+    flip = numpy.tile(numpy.linspace(0, 1, WIDTH, dtype=numpy.float32), (HEIGHT, 1))
+    for row in rows:
+        write_exr(folder / "trials" / row["trial"] / "flip.exr", {"flip.Y": flip},
+                  texts=[("causticbench.picture_hash", row["picture_hash"])])
+        row["flip"] = repr(float(flip[reference_planes()[2] == 0].mean(dtype=float)))
+    write_table(folder, rows)
 
 
 def write_table(folder, rows):

@@ -199,6 +199,31 @@ class Page(unittest.TestCase):
         self.assertIn("flip", data["errors"])
         self.assertEqual(data["scenes"][0]["cells"][0]["errors"]["flip"], [0.125, 0.0])
 
+    def test_flip_maps_are_kept_beside_their_pictures(self):
+        sweep.add_flip(self.sweep, self.rows)
+        first, second = (self.sweep / "trials" / self.rows[i]["trial"] / "flip.exr" for i in (15, 16))
+        first.unlink()
+        second.write_bytes((self.sweep / "trials" / self.rows[0]["trial"] / "flip.exr").read_bytes())
+        data = self.page()
+        found = data["scenes"][0]["cells"][0]["pictures"]
+        self.assertIn("no such file", found[0]["flip"]["hole"])
+        self.assertIn("of another picture (run tools/flip_column.py again)", found[1]["flip"]["hole"])
+        self.assertLess(numpy.abs(self.picture(data, found[2]["flip"])[0] - numpy.linspace(0, 1, sweep.WIDTH)).max(), 1e-3)
+
+    def test_indirect_light_is_a_layer_of_its_own(self):
+        sweep.add_indirect(self.sweep, self.rows)
+        data = self.page()
+        scene, = data["scenes"]
+        _, rest, _ = sweep.reference_planes()
+        self.assertLess(numpy.abs(self.picture(data, scene["rest"]) - rest).max(), 1e-6)
+        self.assertAlmostEqual(float(self.picture(data, scene["reference"]["layers"]["indirect"])[0, 0, 0]), 0.25, delta=1e-4)
+        self.assertAlmostEqual(float(self.picture(data, scene["reference"]["layers"]["indirect_stderr"])[0, 0, 0]), 0.002, delta=1e-5)
+        cell = scene["cells"][0]
+        for each in cell["pictures"]:
+            self.assertAlmostEqual(float(self.picture(data, each["indirect"])[0, 0, 0]), 0.25 + 0.01 * int(each["seed"]), delta=1e-4)
+        self.assertAlmostEqual(cell["errors"]["indirect_rmse"][0], 0.03)
+        self.assertEqual(cell["costs"]["indirect_cpu_s"], 0.5)
+
     def test_too_few_seeds_have_no_best(self):
         shutil.rmtree(self.sweep)
         sweep.write_sweep(self.sweep, seeds=(1, 2, 3))

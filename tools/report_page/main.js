@@ -14,8 +14,9 @@ function buildControls() {
   byId("scene-choice").replaceChildren(sceneChoice());
   byId("viewer-controls").append(
     choice("mode", "Mode", [["side", "side by side"], ["flip", "flip"], ["split", "split"]], "key m"),
-    choice("show", "Show", Object.entries(SHOWN), "key e"),
-    choice("layer", "Layer", [["caustic", "caustic alone"], ["beauty", "whole picture"]], "the whole picture: the caustic, and all other light of the reference"),
+    choice("show", "Show", Object.entries(SHOWN).filter(([name]) => name !== "flip" || anyPictureHas("flip")), "key e"),
+    choice("layer", "Layer", Object.entries(LAYERS).filter(([name]) => name !== "indirect" || anyPictureHas("indirect")),
+      "errors are of the caustic, or of the indirect light where that is shown; the whole picture: both, and all other light of the reference"),
     choice("tone", "Colours", [["colour", "screen"], ["false", "false colour"]], "key f"), seedChoice(),
     typed("exposure", "Exposure", "stops; empty: the 99th percentile of the reference is white", "0.5"));
   byId("map-controls").append(
@@ -187,10 +188,16 @@ function drawAll(names) {
   if (!any(...SIZES) && any("view", "pixel", "region", "split")) paintPanes();
   if (any("split")) byId("split-at").value = state.split;
   if (any("scene", "metric", "cost", "hidden", "pictures")) drawCurves();
-  if (any("scene", "seed", "pixel", "region", "place", "cost", "hidden")) maps.then(drawProbe);
-  if (any("scene", "contest", "seed", "pictures", "left", "right", "formula", "against", "epsilon", "spread")) maps.then(drawSpread);
-  if (any("scene", "contest", "pictures", "left", "right")) maps.then(drawSpectrum);
+  if (any("scene", "seed", "layer", "pixel", "region", "place", "cost", "hidden")) maps.then(drawProbe);
+  if (any("scene", "contest", "seed", "pictures", "left", "right", "layer", "formula", "against", "epsilon", "spread")) maps.then(drawSpread);
+  if (any("scene", "contest", "pictures", "left", "right", "layer")) maps.then(drawSpectrum);
   if (any("rows", "sort", "filter", "columns")) drawTable();
+}
+
+/** What a column is, with its name before it. */
+function explained(name) {
+  const words = page.words[name] ?? "";
+  return words.startsWith(name) ? words : `${name}: ${words}`;
 }
 
 function drawIf(wanted, draw) { return wanted ? draw() : Promise.resolve(); }
@@ -202,7 +209,7 @@ window.addEventListener("hashchange", () => { readLink(); listeners.forEach((dra
 window.addEventListener("keydown", onKey);
 window.addEventListener("resize", paintPanes);
 byId("machines").replaceChildren(...page.machines.map((line, i) => make("li", {}, `${page.tables[i].folder}: ${line}`)));
-byId("words").replaceChildren(...[...page.errors, ...page.costs].map((name) => make("li", {}, page.words[name] ?? name, page.units[name] ? ` [${page.units[name]}]` : "")));
+byId("words").replaceChildren(...[...page.errors, ...page.costs].map((name) => make("li", {}, explained(name), page.units[name] ? ` [${page.units[name]}]` : "")));
 byId("newest").textContent = page.newest;
 byId("warning").hidden = page.left_out === 0;
 byId("warning").textContent = `${page.left_out} pictures are left out: with them the pictures would be larger than ${page.megabytes} MB (--megabytes). All numbers are of all trials; maps over seeds are of the seeds that are here.`;

@@ -24,18 +24,24 @@ WORDS = {
     "mask_mean_ratio": "mask_mean_ratio = mean(x) / mean(r) where r ≥ mean(r)",
     "beauty_rmse": "beauty_rmse = √ mean (x − r)² of the whole picture",
     "flip": "flip: mean HDR-FLIP of the reference's beauty beside the same with the trial's caustic",
+    "indirect_rmse": "indirect_rmse = √ mean (x − r)² of the indirect layer",
+    "indirect_relmse": "indirect_relmse = mean (x − r)² / (r² + ε) of the indirect layer,  ε = 0.01 mean(r)²",
+    "indirect_mean_ratio": "indirect_mean_ratio = mean(x) / mean(r) of the indirect layer",
     "work_s": "CPU seconds of build and query together, without reading the scene",
     "build_s": "CPU seconds of the method's precompute pass (photons or beams, and their trees)",
     "query_s": "CPU seconds of the eye pass",
+    "indirect_cpu_s": "CPU seconds of the indirect method's precompute pass",
     "total_s": "wall seconds of the whole trial",
     "photons_stored": "photons in the map", "photons_emitted": "light paths started",
     "map_bytes": "bytes of what the method built", "peak_rss_bytes": "most bytes of the process in memory",
 }
-NAMES = {"work_s": "CPU time", "build_s": "build time", "query_s": "query time", "total_s": "wall time",
+NAMES = {"work_s": "CPU time", "build_s": "build time", "query_s": "query time",
+         "indirect_cpu_s": "indirect light's precompute time", "total_s": "wall time",
          "photons_stored": "stored photons", "photons_emitted": "light paths", "map_bytes": "size of what was built",
          "peak_rss_bytes": "peak memory"}
-UNITS = {"rmse": "W m⁻² sr⁻¹", "mask_rmse": "W m⁻² sr⁻¹", "beauty_rmse": "W m⁻² sr⁻¹", "variance": "(W m⁻² sr⁻¹)²",
-         "work_s": "CPU s", "build_s": "CPU s", "query_s": "CPU s", "total_s": "s", "map_bytes": "bytes",
+UNITS = {"rmse": "W m⁻² sr⁻¹", "mask_rmse": "W m⁻² sr⁻¹", "beauty_rmse": "W m⁻² sr⁻¹",
+         "indirect_rmse": "W m⁻² sr⁻¹", "variance": "(W m⁻² sr⁻¹)²",
+         "work_s": "CPU s", "build_s": "CPU s", "query_s": "CPU s", "indirect_cpu_s": "CPU s", "total_s": "s", "map_bytes": "bytes",
          "peak_rss_bytes": "bytes"}
 
 
@@ -67,9 +73,11 @@ def make(sweeps, scenes, references, megabytes, tell=lambda picture: None):
     album = Album(int(megabytes * 1e6))
     holes = []
     shown = [SceneData(scene, album, references, holes, tell) for scene in scenes]
-    for nth in range(max((len(cell.seeds()) for scene in scenes for cell in scene.cells), default=0)):
-        for scene in shown:
-            scene.keep_seed(nth)
+    seeds = range(max((len(cell.seeds()) for scene in scenes for cell in scene.cells), default=0))
+    for keep in (SceneData.keep_seed, SceneData.keep_flip):  # maps after all pictures: they are left out first
+        for nth in seeds:
+            for scene in shown:
+                keep(scene, nth)
     data = {
         "methods": sorted({cell.method for scene in scenes for cell in scene.cells}, key=rank),
         "newest": max((row.get("finished", "") for sweep in sweeps for row in sweep.rows), default=""),
@@ -130,8 +138,24 @@ class SceneData:
             if nth < len(cell.seeds()):
                 data["pictures"].append(self.picture(cell, cell.seeds()[nth]))
 
+    def keep_flip(self, nth):
+        """Takes up the FLIP maps of each cell's nth seed, where there are some."""
+        for cell, data in zip(self.scene.cells, self.cells):
+            if nth < len(data["pictures"]) and row_of(cell, cell.seeds()[nth]).get("flip"):
+                data["pictures"][nth]["flip"] = self.flip(row_of(cell, cell.seeds()[nth]), cell.sweep.folder)
+
+    def flip(self, row, folder):
+        """The number of a map, or the reason why there is none."""
+        try:
+            values = pictures.read_flip(os.path.join(folder, "trials", row["trial"], "flip.exr"), row.get("picture_hash", ""))
+            if values.shape[1:] != self.size:
+                raise exr.PictureError("its size is not that of the picture")
+        except exr.PictureError as error:
+            return {"hole": f"the FLIP map of {row['trial']}: {error}"}
+        return self.album.keep(values)
+
     def picture(self, cell, seed):
-        row = next(row for row in cell.rows if row["seed"] == seed)
+        row = row_of(cell, seed)
         path = os.path.join(cell.sweep.folder, "trials", row["trial"], "image.exr")
         self.tell(row["trial"])
         found = {"seed": seed, "trial": row["trial"], "hash": row.get("picture_hash", "")}
@@ -152,8 +176,9 @@ class SceneData:
         if isinstance(kept, dict):
             return {**found, **kept}
         found["caustic"] = kept
-        if "unreached" in layers:
-            found["unreached"] = self.album.keep(layers["unreached"])
+        for name in ("unreached", "indirect"):
+            if name in layers:
+                found[name] = self.album.keep(layers[name])
         return found
 
     def data(self, sweeps):
@@ -175,6 +200,11 @@ class SceneData:
                          for sweep in {id(cell.sweep): cell.sweep for cell in cells}.values()
                          for row in sweep.left_out if row["scene"] == self.scene.name],
         }
+
+
+def row_of(cell, seed):
+    """The first of the cell's records of a seed."""
+    return next(row for row in cell.rows if row["seed"] == seed)
 
 
 def cell_data(cell):

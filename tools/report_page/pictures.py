@@ -17,21 +17,37 @@ LARGEST = 14  # exponent above the largest half that is stored
 def read(path):
     """The layers that the page shows, as float32 arrays of 1 or 3 planes, and the texts in the picture's metadata.
 
-    Layers: `caustic`; `rest`, the beauty without it; where they are there `stderr`, the standard error of a pixel, and
-    `unreached`, the share of its samples that were not reached. Raises exr.PictureError.
+    Layers: `caustic`; `rest`, the beauty without it and without `indirect`; where they are there `indirect`, the light
+    between diffuse surfaces, `stderr` and `indirect_stderr`, the standard error of a pixel of the caustic and of that
+    light, and `unreached`, the share of its samples that were not reached. Raises exr.PictureError.
     """
     planes, texts = exr.read(path)
     beauty, caustic = layer(planes, ""), layer(planes, "caustic")
     for name, values in (("beauty", beauty), ("caustic", caustic)):
         require_finite(name, values)
     layers = {"caustic": caustic, "rest": beauty - caustic}
-    if "stderr.Y" in planes:
-        layers["stderr"] = planes["stderr.Y"].astype(numpy.float32)[None]
-    elif "stderr.R" in planes:
-        layers["stderr"] = layer(planes, "stderr")
+    if "indirect.R" in planes:
+        layers["indirect"] = layer(planes, "indirect")
+        require_finite("indirect", layers["indirect"])
+        layers["rest"] -= layers["indirect"]
+    for name in ("stderr", "indirect_stderr"):
+        if f"{name}.Y" in planes:
+            layers[name] = planes[f"{name}.Y"].astype(numpy.float32)[None]
+        elif f"{name}.R" in planes:
+            layers[name] = layer(planes, name)
     if "unreached.Y" in planes and planes["unreached.Y"].any():
         layers["unreached"] = planes["unreached.Y"].astype(numpy.float32)[None]
     return layers, texts
+
+
+def read_flip(path, picture_hash):
+    """The FLIP map that flip_column keeps beside a picture, one plane. Raises exr.PictureError."""
+    planes, texts = exr.read(path)
+    if "flip.Y" not in planes:
+        raise exr.PictureError(f"no channel flip.Y (it has: {', '.join(sorted(planes))})")
+    if texts.get("causticbench.picture_hash", "") != picture_hash:
+        raise exr.PictureError("it is of another picture (run tools/flip_column.py again)")
+    return planes["flip.Y"].astype(numpy.float32)[None]
 
 
 def layer(planes, name):

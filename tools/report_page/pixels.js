@@ -47,11 +47,24 @@ async function decode(id) {
   return {width: about.width, height: about.height, planes};
 }
 
-/** The caustic layer of a key of the shown scene at one of its seeds: a picture, or {hole: reason}. */
-async function causticOf(key, seed = Number(state.seed), where = scene()) {
-  const found = key === REFERENCE ? referenceLayer("caustic", where) : pictureOf(key, seed, where);
+/** The layer that maps, probe, distribution and spectrum are of: the indirect light where that is shown, else the caustic. */
+function errorLayer() { return state.layer === "indirect" ? "indirect" : "caustic"; }
+function ownErrorLayer() { return errorLayer() === "caustic" ? "stderr" : "indirect_stderr"; }
+
+/** The error column of a cell that belongs to that layer. */
+function layerError(cell) { return cell.errors[errorLayer() === "caustic" ? "rmse" : "indirect_rmse"]; }
+
+/** A layer of a key of the shown scene at one of its seeds: a picture, or {hole: reason}. */
+async function layerOf(key, name = errorLayer(), seed = Number(state.seed), where = scene()) {
+  const found = key === REFERENCE ? referenceLayer(name, where) : pictureLayer(pictureOf(key, seed, where), name);
+  return found.hole ? found : picture(found.id);
+}
+
+/** {id} of a layer of a cell's picture, or {hole: reason}. */
+function pictureLayer(found, name) {
   if (found.hole) return found;
-  return picture(key === REFERENCE ? found.id : found.caustic);
+  if (found[name] === undefined) return {hole: `it has no layer ${name}`};
+  return typeof found[name] === "object" ? found[name] : {id: found[name]};
 }
 
 /** What is kept of a cell's picture: {seed, trial, hash, command, caustic}, or with `hole` in place of `caustic`. */
@@ -90,10 +103,10 @@ async function countedPixels(keys, where = scene()) {
   return counted;
 }
 
-/** Every seed's picture of a cell; seeds without one are left out. */
+/** Every seed's picture of a cell, of the layer that errors are of; seeds without one are left out. */
 async function seedsOf(key, where = scene()) {
-  const found = where.cells[Number(key)].pictures.filter((each) => typeof each.caustic === "number");
-  return Promise.all(found.map((each) => picture(each.caustic)));
+  const found = where.cells[Number(key)].pictures.map((each) => pictureLayer(each, errorLayer()));
+  return Promise.all(found.filter((each) => !each.hole).map((each) => picture(each.id)));
 }
 
 /** The value of channel 0 to 2 at a pixel; equal channels are kept once. */

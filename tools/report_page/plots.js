@@ -47,7 +47,7 @@ function axis(values, log, wanted = {}) {
 
 /**
  * A plot. lines: [{name, method, index, points: [{x, y, low, high, title, key}]}], `index` telling a method's lines apart;
- * options: {x, y: labels, title, width, height, logX, logY, levels: [{y, name}], pick(point), steps}.
+ * options: {x, y: labels, title, width, height, logX, logY, levels: [{y, name}], pick(point), legend: under it}.
  */
 function plot(lines, options) {
   const width = options.width ?? 640, height = options.height ?? 360;
@@ -72,7 +72,7 @@ function plot(lines, options) {
       make("text", {x: width - box.right, y: toY(level.y) - 4, "text-anchor": "end", class: "level-name"}, level.name));
   }
   for (const line of lines) drawLine(svg, line, toX, toY, options);
-  svg.lines = lines; // for the legend of a file
+  if (options.legend) addLegend(svg, lines); else svg.lines = lines; // for the legend of a file
   return svg;
 }
 
@@ -84,12 +84,13 @@ function lineSign(line) {
       style: `stroke:${colour};fill:${(line.index ?? 0) % 2 ? "var(--paper)" : colour}`})];
 }
 
-/** Puts a legend in two columns under a plot. */
+/** Puts a legend under a plot, in as many columns as its names leave room for. */
 function addLegend(svg, lines) {
   const [width, height] = [Number(svg.getAttribute("width")), Number(svg.getAttribute("height"))];
-  lines.forEach((line, i) => svg.append(make("g", {transform: `translate(${68 + (i % 2) * (width - 68) / 2} ${height + 4 + 18 * Math.floor(i / 2)})`},
+  const columns = (width - 68) / 2 > 60 + 6.2 * Math.max(0, ...lines.map((line) => line.name.length)) ? 2 : 1;
+  lines.forEach((line, i) => svg.append(make("g", {transform: `translate(${68 + (i % columns) * (width - 68) / 2} ${height + 4 + 18 * Math.floor(i / columns)})`},
     lineSign(line), make("text", {x: 50, y: 11, class: "tick"}, line.name))));
-  const tall = height + 10 + 18 * Math.ceil(lines.length / 2);
+  const tall = height + 10 + 18 * Math.ceil(lines.length / columns);
   svg.setAttribute("height", tall);
   svg.setAttribute("viewBox", `0 0 ${width} ${tall}`);
 }

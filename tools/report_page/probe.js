@@ -27,7 +27,7 @@ async function drawProbe() {
   const turn = ++probe.turn, region = probedRegion();
   byId("probe-place").textContent = regionText(region);
   if (!region) { byId("probe-table").replaceChildren(); byId("probe-curve").replaceChildren(); return; }
-  const reference = await referencePicture("caustic"), own = await referencePicture("stderr");
+  const reference = await referencePicture(errorLayer()), own = await referencePicture(ownErrorLayer());
   const rows = [];
   let middle = null, deviation = null, pixelDeviation = null;
   if (reference) {
@@ -41,7 +41,7 @@ async function drawProbe() {
     rows.push(probeRow("reference", middle, `${short(meanOfChannels(middle))}${deviation === null ? "" : ` ± ${short(deviation, 2)}`}`, "", ""));
   }
   for (const [i, cell] of scene().cells.entries()) {
-    const image = await causticOf(i);
+    const image = await layerOf(i);
     if (image.hole) { rows.push(probeRow(`${methodSign(cell.method)} ${cell.label}`, null, `no picture: ${image.hole}`, "", "")); continue; }
     const found = regionMean(image, region), difference = middle ? meanOfChannels(found) - meanOfChannels(middle) : null;
     rows.push(probeRow(`${methodSign(cell.method)} ${cell.label}`, found, short(meanOfChannels(found)), difference === null ? "" : signed(difference),
@@ -75,7 +75,7 @@ async function drawConvergence(turn, region, reference, middle, deviation, pixel
     : pixelDeviation ? [{y: pixelDeviation, name: "standard error of the reference's pixels"}] : [];
   byId("probe-curve").replaceChildren(plot(lines, {x: costLabel(state.cost), y: state.place === "value" ? "mean radiance there [W m⁻² sr⁻¹]" : "rmse there [W m⁻² sr⁻¹]",
     title: `${regionText(region)}: ${state.place === "value" ? "value" : "error"} over ${costWord(state.cost)}`, width: 620, height: 340, logX: true, logY: state.place !== "value",
-    levels, pick: (point) => showCell(point.key), empty: "no picture, or no reference"}));
+    levels, legend: true, pick: (point) => showCell(point.key), empty: "no picture, or no reference"}));
   byId("probe-curve").dataset.ready = String(turn);
 }
 
@@ -157,7 +157,7 @@ async function drawSpectrum() {
     lines.push(part("total", 0, "bias² + variance"));
     if (rings[0].variance !== null && key === rightKey()) lines.push(part("variance", 2, "variance"), part("bias2", 1, "bias²"));
   }
-  byId("spectrum").replaceChildren(plot(lines.filter((line) => line.points.length), {x: "frequency [1 / pixel], mean of a ring", y: "power [(W m⁻² sr⁻¹)²], sum of a ring", logX: false, logY: true, width: 620, height: 340,
+  byId("spectrum").replaceChildren(plot(lines.filter((line) => line.points.length), {x: "frequency [1 / pixel], mean of a ring", y: "power [(W m⁻² sr⁻¹)²], sum of a ring", logX: false, logY: true, width: 620, height: 340, legend: true,
     title: "error spectrum over the seeds", empty: "no reference, or no picture"}));
   byId("spectrum").dataset.ready = String(turn);
 }

@@ -15,9 +15,10 @@ from report.records import PHOTON_PARAMETERS, RecordsError, natural
 BUILD = ("precompute_cpu_s", "balance_cpu_s")
 QUERY = ("render_cpu_s",)
 ERRORS = ("rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "mask_rmse", "mask_relmse", "mask_mean_ratio",
-          "beauty_rmse", "flip")
-COSTS = ("work_s", "build_s", "query_s", "total_s", "photons_stored", "photons_emitted", "map_bytes", "peak_rss_bytes")
+          "beauty_rmse", "flip", "indirect_rmse", "indirect_relmse", "indirect_mean_ratio")
+COSTS = ("work_s", "build_s", "query_s", "indirect_cpu_s", "total_s", "photons_stored", "photons_emitted", "map_bytes", "peak_rss_bytes")
 METHODS = ("photonmap", "beamtree", "causticpolygons", "illuminationmap", "lighttrace", "pathtrace", "none")
+LENGTHS = ("footprint", "max_radius")  # numbers that are no work: no line runs along them
 COUNTED = (*PHOTON_PARAMETERS, "paths")
 PLAN_VERSION = 1
 
@@ -201,7 +202,7 @@ def work_parameter(cells, names):
         if name in names:
             return name
     counts = {name: len({cell.parameters.get(name) for cell in cells}) for name in names
-              if all(records.as_number(cell.parameters.get(name, "0")) is not None for cell in cells)}
+              if name not in LENGTHS and all(records.as_number(cell.parameters.get(name, "0")) is not None for cell in cells)}
     return max(counts, key=counts.get) if counts else None
 
 

@@ -69,7 +69,7 @@ function transform(map, width, height) {
 /** The error's power by frequency over the seeds [Celarek et al. 2019], of the mean over channels: rings of frequencies, each
  *  {frequency [1/pixel], total, variance, bias2}; the totals of all rings add up to the mean square error. */
 async function errorSpectrum(key, rings = 24) {
-  const reference = await referencePicture("caustic"), images = await seedsOf(key);
+  const reference = await referencePicture(errorLayer()), images = await seedsOf(key);
   if (!reference || images.length === 0) return null;
   const {width, height} = reference, size = width * height, n = images.length;
   const counted = await countedPixels([key]);

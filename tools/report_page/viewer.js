@@ -30,51 +30,67 @@ function rightKey() {
 
 /** What is painted for a key: the picture, or a map of it. {image, hole} */
 async function shownImage(key) {
-  const reference = await referencePicture("caustic");
-  if (state.show === "picture") {
-    const caustic = await causticOf(key);
-    if (caustic.hole || state.layer === "caustic") return caustic;
-    return wholePicture(caustic);
-  }
+  const reference = await referencePicture(errorLayer());
+  if (state.show === "picture") return state.layer === "beauty" ? wholePicture(key) : layerOf(key);
   if (state.show === "error") return errorOf(key, state.against);
+  if (state.show === "flip") return flipOf(key);
   if (key === REFERENCE) return state.show === "mean" ? reference ?? {hole: "no reference"} : {hole: "the reference has no seeds"};
   const found = await seedStatistics(key);
   if (!found) return {hole: pictureOf(key).hole ?? "no picture"};
   if (state.show === "mean") return found.mean;
   if (state.show === "variance") return found.variance ?? {hole: "one seed has no variance"};
-  if (!reference) return {hole: referenceLayer("caustic").hole};
+  if (!reference) return {hole: referenceLayer(errorLayer()).hole};
   const counted = await countedPixels([key]);
-  if (state.show === "bias2") return biasSquare(found, reference, await referencePicture("stderr"), counted);
+  if (state.show === "bias2") return biasSquare(found, reference, await referencePicture(ownErrorLayer()), counted);
   return errorMap(found.mean, reference, "signed", 0, counted); // bias
 }
 
-/** A caustic with all other light of the reference's picture; alone, where that is not in the page. */
-async function wholePicture(caustic) {
+/** A key's caustic, its indirect light where it has some, and all other light of the reference's picture; without that, where
+ *  it is not in the page. */
+async function wholePicture(key) {
+  const caustic = await layerOf(key, "caustic");
   if (caustic.hole || typeof scene().rest !== "number") return caustic;
-  const rest = await picture(scene().rest);
+  const indirect = await layerOf(key, "indirect");
+  const parts = [caustic, await picture(scene().rest), ...(indirect.hole ? [] : [indirect])];
   return {width: caustic.width, height: caustic.height, planes: [0, 1, 2].map((channel) =>
-    Float32Array.from({length: caustic.width * caustic.height}, (_, i) => value(caustic, channel, i) + value(rest, channel, i)))};
+    Float32Array.from({length: caustic.width * caustic.height}, (_, i) => parts.reduce((sum, part) => sum + value(part, channel, i), 0)))};
+}
+
+/** The FLIP map of a key at the shown seed. */
+async function flipOf(key) {
+  if (key === REFERENCE) return {hole: "FLIP of the reference beside itself is 0"};
+  const found = pictureOf(key);
+  if (!found.hole && found.flip === undefined) return {hole: "its record has no FLIP (tools/flip_column.py)"};
+  const at = pictureLayer(found, "flip");
+  if (at.hole) return at;
+  const map = await picture(at.id), counted = await countedPixels([key]);
+  return grey(map.width, map.height, (i) => (counted[i] ? map.planes[0][i] : NaN));
 }
 
 /** The error map of a key against another, by the chosen formula. */
 async function errorOf(key, against) {
-  const [x, r] = [await causticOf(key), await causticOf(against)];
+  const [x, r] = [await layerOf(key), await layerOf(against)];
   if (x.hole || r.hole) return x.hole ? x : r;
   return errorMap(x, r, state.formula, Number(state.epsilon), await countedPixels([key, against]));
 }
 
 const SHOWN = {
   picture: "picture", error: "error map", mean: "mean over seeds", bias: "bias: mean over seeds − r", bias2: "bias² over seeds",
-  variance: "variance over seeds",
+  variance: "variance over seeds", flip: "FLIP map",
 };
+const LAYERS = {caustic: "caustic alone", indirect: "indirect light alone", beauty: "whole picture"};
+
+/** What some picture of the page has: maps of FLIP, or a layer of indirect light. */
+function anyPictureHas(name) { return page.scenes.some((where) => where.cells.some((cell) => cell.pictures.some((each) => each[name] !== undefined))); }
 
 function isSigned() { return state.show === "bias" || (state.show === "error" && FORMULAS[state.formula].signed === true); }
 function isFalseColour() { return !["picture", "mean"].includes(state.show) || state.tone === "false"; }
 
 /** What the colours mean, as the line above the panes says it. */
 function shownText() {
-  if (state.show === "picture") return `radiance of the ${state.layer === "caustic" ? "caustic layer" : "whole picture"} [W m⁻² sr⁻¹]`;
+  if (state.show === "picture") return `radiance of the ${{caustic: "caustic layer", indirect: "indirect layer", beauty: "whole picture"}[state.layer]} [W m⁻² sr⁻¹]`;
   if (state.show === "error") return `${formulaText()}, r: ${labelOf(state.against)} [${FORMULAS[state.formula].unit}], a mean over channels`;
+  if (state.show === "flip") return "HDR-FLIP [1], 0 the same to 1: the reference's whole picture beside the same with the picture's caustic [Andersson et al. 2021]";
   if (state.show === "bias2") return "(mean over seeds − r)² − variance / seeds − stderr(r)² [(W m⁻² sr⁻¹)²], below 0 by chance";
   if (state.show === "variance") return "sample variance over the seeds, divided by seeds − 1 [(W m⁻² sr⁻¹)²]";
   if (state.show === "bias") return "mean over seeds − r [W m⁻² sr⁻¹], a mean over channels";
@@ -89,7 +105,7 @@ async function drawViewer() {
   if (turn !== viewer.painting) return; // something newer is being drawn
   viewer.images = images;
   const whole = [...images.values()].filter((image) => !image.hole);
-  chooseColours(whole, await causticOf(REFERENCE));
+  chooseColours(whole, await layerOf(REFERENCE));
   for (const [key, image] of images) if (!image.hole) image.canvas = painted(image, viewer.exposure, viewer.range, await countedPixels([key]));
   layPanes(state.mode === "side" ? wanted.map((key) => [key]) : state.mode === "split" ? [[leftKey(), rightKey()]] : [[leftKey()]]);
   byId("meaning").textContent = shownText();
@@ -102,11 +118,11 @@ function exposureText() { return make("span", {}, `exposure ${short(viewer.expos
 
 function chooseColours(images, reference) {
   viewer.exposure = state.exposure !== "" ? Number(state.exposure)
-    : images.length ? usualExposure(state.layer === "caustic" && !reference.hole && state.show === "picture" ? reference : images[0]) : 0;
+    : images.length ? usualExposure(state.layer !== "beauty" && !reference.hole && state.show === "picture" ? reference : images[0]) : 0;
   viewer.range = null;
   if (!isFalseColour()) return;
   const maps = images.map((image) => image.planes.length === 1 ? image : grey(image.width, image.height, (i) => luminance(image, i)));
-  const range = usualRange(maps, isSigned(), state.scale === "log");
+  const range = state.show === "flip" ? {signed: false, log: false, low: 0, high: 1} : usualRange(maps, isSigned(), state.scale === "log");
   if (state.high !== "" && Number(state.high) > 0) { range.high = Number(state.high); if (range.signed) range.low = -range.high; }
   if (state.low !== "" && !range.signed && Number(state.low) < range.high && (Number(state.low) > 0 || !range.log)) range.low = Number(state.low);
   viewer.range = range;
@@ -171,7 +187,7 @@ function paintPane(pane) {
 function captionOf(key) {
   const number = shownKeys().indexOf(key) + 1, cell = key === REFERENCE ? null : scene().cells[Number(key)];
   const sign = cell ? `${methodSign(cell.method)} ` : "";
-  const error = cell?.errors.rmse ? ` · rmse ${withInterval(cell.errors.rmse)}${cell.costs.work_s !== undefined ? ` · ${short(cell.costs.work_s, 3)} CPU s` : ""}` : "";
+  const error = cell && layerError(cell) ? ` · ${errorLayer() === "caustic" ? "" : "indirect "}rmse ${withInterval(layerError(cell))}${cell.costs.work_s !== undefined ? ` · ${short(cell.costs.work_s, 3)} CPU s` : ""}` : "";
   const image = viewer.images.get(key);
   const mean = image && !image.hole && image.planes.length === 1 && state.show !== "picture"
     ? ` · mean of the map ${short(meanOfMap(image).mean)}` : "";
