@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Reproduces the figures, table cells and claims of the three papers, and writes results/papers/PAPER/.
 
-Usage: tools/reproduce.sh [PAPER]... [--quick | --full] [--program PROGRAM]
+Usage: tools/reproduce.sh [PAPER]... [--quick | --full] [--only SECTION]... [--pages] [--program PROGRAM]
 
 PAPER: jensen1996, chuang1995, chen2011; without one, all three. A quick run (the default) takes at most 45 minutes for all on two
 quiet cores; --full has more seeds and finer steps. It goes on where it was stopped: what has been rendered is in
 results/papers/PAPER/trials. experiments/papers/PAPER.json has the paper's numbers and claims, the sweeps beside it what is
-run. Exit codes: 0 done (whether claims hold or not), 1 a run failed, 2 bad input or usage, 130 interrupted.
+run. --only runs single sections (the last table of a page names them) and keeps the other rows; --pages runs nothing and writes the
+pages anew from verdicts.json and tables.json. Exit codes: 0 done (whether claims hold or not), 1 a run failed, 2 bad input or usage, 130 interrupted.
 """
 import argparse
 import importlib
@@ -29,10 +30,14 @@ def arguments():
     sizes = parser.add_mutually_exclusive_group()
     sizes.add_argument("--quick", action="store_true", help="at most 45 minutes for all (the default)")
     sizes.add_argument("--full", action="store_true", help="more seeds, finer steps")
+    parser.add_argument("--only", action="append", default=[], metavar="SECTION", help="this section (repeatable); the rest is kept")
+    parser.add_argument("--pages", action="store_true", help="no runs: the pages from what is there")
     parser.add_argument("--program", type=pathlib.Path, default=BENCH, help="causticbench (default: build/release/bin)")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "papers", metavar="DIR")
     parser.add_argument("--note", default="", help="said of the machine on each page, such as who else used it")
     chosen = parser.parse_args()
+    if chosen.only and chosen.pages:
+        parser.error("--only and --pages: one of the two")
     unknown = [name for name in chosen.papers if name not in papers_text.NAMES]
     if unknown:
         parser.error(f"{unknown[0]}: no such paper (known: {', '.join(papers_text.NAMES)})")
@@ -40,7 +45,7 @@ def arguments():
 
 
 def reproduce(name, chosen):
-    from papers.entries import entries
+    from papers import kept
     from papers.gallery import write_gallery
     from papers.page import tally, write_page
     from papers.part import Part
@@ -49,24 +54,49 @@ def reproduce(name, chosen):
     start = time.monotonic()
     paper = papers_text.Paper(name)
     study = Study(paper, chosen.output, chosen.program.resolve(), chosen.full)
+    sections = sections_of(paper)
+    wanted = [each for each in sections if each in chosen.only] if partial(chosen) else list(sections)
     part = Part()
-    for number, module in enumerate(paper.text["parts"], 1):
-        study.log(f"part {number} of {len(paper.text['parts'])}: {module}")
-        part.add(importlib.import_module(f"papers.{module}").measure(study))
-    found = entries(study, part)
-    folders = [folder.parent for folder in sorted((study.output / "trials").glob("*/environment.json"))]
-    where = machine(folders) + (f" {chosen.note}" if chosen.note else "")
-    write_page(study.output, study, found, part, where)
+    for number, section in enumerate(wanted, 1):
+        study.log(f"section {number} of {len(wanted)}: {section}")
+        part.add(sections[section](study).of(section))
+    where = " ".join(each for each in (machine(study.folders()) if study.done else "", chosen.note) if each)
+    rows, pieces = kept.of_some(study, part, where, list(sections), wanted) if partial(chosen) else kept.of_whole_run(study, part, where)
+    write_page(study.output, paper, rows, pieces, part.figures)
     study.copy_records()
     write_gallery(chosen.output, map(papers_text.Paper, papers_text.NAMES))
-    study.log(f"{tally(found)}; {(time.monotonic() - start) / 60:.1f} minutes; {study.output / 'index.html'}")
+    study.log(f"{tally(rows)}; {(time.monotonic() - start) / 60:.1f} minutes; {study.output / 'index.html'}")
+
+
+def partial(chosen):
+    return chosen.pages or bool(chosen.only)
+
+
+def sections_of(paper):
+    from papers.kept import sections
+
+    return sections(importlib.import_module(f"papers.{module}") for module in paper.text["parts"])
+
+
+def check_sections(chosen, names):
+    """Raises where --only names what no chosen paper has, or where there is no earlier run to put a section's rows into."""
+    known = {name: sections_of(papers_text.Paper(name)) for name in names}
+    for section in chosen.only:
+        if not any(section in own for own in known.values()):
+            raise RecordsError(f"--only {section}: no such section (known: {'; '.join(f'{name}: ' + ', '.join(own) for name, own in known.items())})")
+    for name in names:
+        if partial(chosen) and not (chosen.output / name / "tables.json").is_file():
+            raise RecordsError(f"{chosen.output / name}: no earlier run (run tools/reproduce.sh {name} first, without --only and --pages)")
 
 
 def run(chosen):
-    if not chosen.program.exists():
+    if not chosen.program.exists() and not chosen.pages:
         raise RecordsError(f"{chosen.program}: not there (tools/build.sh release causticbench, or --program)")
-    for name in chosen.papers or papers_text.NAMES:
-        reproduce(name, chosen)
+    names = chosen.papers or papers_text.NAMES
+    check_sections(chosen, names)
+    for name in names:
+        if not chosen.only or set(chosen.only) & set(sections_of(papers_text.Paper(name))):
+            reproduce(name, chosen)
 
 
 def main():

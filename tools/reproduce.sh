@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# reproduce.sh [PAPER]... [--quick | --full]: sets up, builds, runs what the three papers claim and writes results/papers.
+# reproduce.sh [PAPER]... [--quick | --full] [--only SECTION]...: sets up, builds, runs what the three papers claim and writes results/papers.
 # Papers: jensen1996, chuang1995, chen2011; without one, all. CAUSTICS_BENCH=PROGRAM takes a causticbench that is there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -7,6 +7,7 @@ import re
 import struct
 import subprocess
 import sys
+import types
 import unittest
 
 sys.dont_write_bytecode = True
@@ -19,7 +20,7 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from papers import entries, page, verdict
+from papers import entries, kept, latex, page, part, study, verdict
 from report import exr, paper
 from report.records import RecordsError
 
@@ -127,6 +128,71 @@ class Pictures(unittest.TestCase):
         np.testing.assert_array_equal(exr.read_layers(file)[""], picture)
 
 
+class Latex(unittest.TestCase):
+    def test_every_letter_has_an_ascii_form(self):
+        self.assertEqual(latex.escaped("10⁻⁴ m², 5 %"), r"10$^{-4}$ m$^{2}$, 5 \%")
+        with self.assertRaises(ValueError):
+            latex.escaped("☃")
+
+    def test_a_line_is_shared_among_the_columns(self):
+        table = part.Table("a", "A table", ["claim", "x"], [["a long text " * 10, "1"]])
+        shares = [float(each) for each in re.findall(r"\\dimexpr ([\d.]+)", latex.columns(table))]
+        self.assertAlmostEqual(sum(shares), 1, 2)
+        self.assertGreater(shares[0], 3 * shares[1])
+
+    def test_committed_tables_are_ascii(self):
+        for name in paper.NAMES:
+            self.assertTrue((RESULTS / name / "tables.tex").read_text(encoding="utf-8").isascii(), name)
+
+
+class Sections(unittest.TestCase):
+    """A run of some sections into an earlier one: rows, tables and figures of the others stay."""
+
+    def setUp(self):
+        self.study = types.SimpleNamespace(paper=PAPERS["jensen1996"], output=RESULTS / "jensen1996", cost=lambda names: study.Cost("causticbench x", 60.0, 10**6))
+        self.modules = [importlib.import_module(f"papers.{name}") for name in PAPERS["jensen1996"].text["parts"]]
+        self.order = list(kept.sections(self.modules))
+
+    def test_names_differ_and_every_kept_piece_has_one(self):
+        for name, each in PAPERS.items():
+            modules = [importlib.import_module(f"papers.{module}") for module in each.text["parts"]]
+            order = kept.sections(modules)
+            self.assertEqual(len(order), sum(len(module.SECTIONS) for module in modules), name)
+            rows, pieces = kept.read(RESULTS / name)
+            named = {each["section"] for each in [*rows, *pieces["tables"], *pieces["figures"]] if each.get("verdict") != verdict.UNMEASURED}
+            self.assertLessEqual(named, set(order), name)
+
+    def test_one_section_is_made_anew(self):
+        part_run = part.Part({"view_independent": verdict.counted(0.5, "W")}, [], [], {}).of("one-map")
+        rows, pieces = kept.of_some(self.study, part_run, "another machine.", self.order, ["one-map"])
+        old_rows, old_pieces = kept.read(self.study.output)
+        for row, old in zip(rows, old_rows):
+            if row["id"] == "view_independent":
+                self.assertEqual((row["verdict"], row["section"], row["megabytes"]), (verdict.FAILS, "one-map", 1.0))
+            else:
+                self.assertEqual(row, old)
+        self.assertEqual([pieces["tables"], pieces["figures"]], [old_pieces["tables"], old_pieces["figures"]])
+        self.assertIn("one-map on another machine", kept.made_on(pieces))
+
+    def test_tables_of_a_section_are_replaced(self):
+        table = part.Table("figure1", "New", ["a"], [["b"]])
+        _, pieces = kept.of_some(self.study, part.Part({}, [table]).of("figure1"), "", self.order, ["figure1"])
+        self.assertEqual([each["title"] for each in pieces["tables"] if each["section"] == "figure1"], ["New"])
+        self.assertEqual([each["section"] for each in pieces["tables"]], sorted((each["section"] for each in pieces["tables"]), key=self.order.index))
+
+    def test_a_claim_that_nothing_has_run_for_is_not_measured(self):
+        rows = entries.entries(self.study, part.Part(), {})
+        self.assertEqual({row["verdict"] for row in rows}, {verdict.UNMEASURED})
+        self.assertIn("not run yet", rows[0]["note"])
+        with self.assertRaisesRegex(ValueError, "claims without a measurement"):
+            entries.entries(self.study, part.Part())
+
+    def test_a_changed_region_judges_an_earlier_row_anew(self):
+        claim = dict(self.study.paper.text["claims"][0], region={"above": 99})
+        row = entries.of_claim(self.study, claim, None, kept.read(self.study.output)[0][0])
+        self.assertEqual((row["verdict"], row["region"]), (verdict.FAILS, "at least 99"))
+
+
 class Pages(unittest.TestCase):
     """What is committed in results/papers: pages follow from verdicts.json and tables.json, and both from the papers' claims."""
 
@@ -198,6 +264,15 @@ class CommandLine(unittest.TestCase):
         done = self.run_tool("jensen1996", "--program", "/nowhere/causticbench")
         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
         self.assertEqual(self.run_tool("--quick", "--full").returncode, 2)
+
+    def test_sections_are_known_by_name(self):
+        done = self.run_tool("chuang1995", "--only", "figure1", "--program", sys.executable)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("known: chuang1995: counts, ", done.stderr)
+        self.assertEqual(self.run_tool("--only", "counts", "--pages").returncode, 2)
+        done = self.run_tool("--pages", "-o", "/nowhere")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no earlier run", done.stderr)
 
 
 if __name__ == "__main__":

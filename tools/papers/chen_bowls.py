@@ -16,10 +16,6 @@ LAMPS = ("a point", "a disc of 2 cm", "a disc of 6 cm")
 VIEWS = ("[0.1,-0.62,0.42]", "[-0.55,-0.3,0.35]", "[0.3,-0.25,0.6]")
 
 
-def measure(study):
-    return columns(study).add(lights(study)).add(views(study)).add(difference(study))
-
-
 def columns(study):
     trials = study.sweep("bowls")
     beams = {"bowl": study.sweep("beams"), "crystal_bowl": study.sweep("beams_crystal")}
@@ -114,3 +110,6 @@ def difference(study):
     study.keep("info", ["info", study.scenes / "chen_inverted.json"], 1)
     flawed = {name: any("inwards" in line or "open edges" in line or " lie on " in line for line in lines) for name, lines in told.items()}
     return Part({"difference": counted(float(flawed["inverted"]) - float(flawed["sound"]), "", "info says: " + "; ".join(told["inverted"]))})
+
+
+SECTIONS = {"bowls": columns, "lights": lights, "views": views, "difference": difference}

@@ -13,14 +13,6 @@ from report.records import natural
 BLOCK = 8  # pixels
 
 
-def measure(study):
-    part = sampling(study).add(interaction(study)).add(search(study)).add(filters(study)).add(maps(study)).add(shadows(study))
-    here = "not run by this script; results/crosscheck compares scenes exported to it, radiance by radiance (tools/crosscheck.py)"
-    part.measured |= {"povray": unmeasured(f"POV-Ray is {here}"), "mitsuba": unmeasured(f"Mitsuba 3 is {here}"),
-                      "guided": unmeasured("the adaptive sampler goes by the scatter of a pixel, not by the map")}
-    return part
-
-
 def errors(layers, level):
     """Deviation, from what it should be, of means over blocks in which the checks are finer than a pixel, over that."""
     light = luminance(layers[""])
@@ -130,3 +122,13 @@ def shadows(study):
         "shadows", "Shadow photons", ["rays of the lamp", "shadow rays spared [%]", "rms error of the direct light [W/(m² sr)]", "rendering [CPU s]"], rows,
         f"The room under its square lamp, 120 × 120 pixels, 4 samples each; without shadow photons the rendering takes {without} CPU s: in so small a "
         "scene a ray costs less than asking for the nearest twenty photons.")])
+
+
+def peers(_):
+    here = "not run by this script; results/crosscheck compares scenes exported to it, radiance by radiance (tools/crosscheck.py)"
+    return Part({"povray": unmeasured(f"POV-Ray is {here}"), "mitsuba": unmeasured(f"Mitsuba 3 is {here}"),
+                 "guided": unmeasured("the adaptive sampler goes by the scatter of a pixel, not by the map")})
+
+
+SECTIONS = {"sampling": sampling, "interaction": interaction, "search": search, "filters": filters, "maps": maps, "shadows": shadows,
+            "peers": peers}

@@ -14,10 +14,6 @@ SF10 = ((1.61625977, 0.0127534559), (0.259229334, 0.0581983954), (1.07762317, 11
 SHORTEST, LONGEST = 380, 730  # nm
 
 
-def measure(study):
-    return fringe(study).add(colour(study))
-
-
 def index(nm):
     square = (nm / 1000) ** 2
     return math.sqrt(1 + sum(b * square / (square - c) for b, c in SF10))
@@ -120,3 +116,6 @@ def displaced(layers, straight):
     table = (layers["albedo"] < 0.7).all(axis=2) & (layers["albedo"] > 0).all(axis=2)
     ours, theirs = luminance(layers[""])[table], luminance(straight[""])[table]
     return float(np.abs(ours - theirs).sum() / theirs.sum() / 2)
+
+
+SECTIONS = {"prism": fringe, "crystal": colour}

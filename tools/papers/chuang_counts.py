@@ -11,10 +11,6 @@ from report.records import natural
 COUNTS = ("cone_point_tests", "beam_point_tests", "beam_point_hits")
 
 
-def measure(study):
-    return counts(study).add(watt(study)).add(bounds(study)).add(heights(study)).add(lens(study))
-
-
 def counters(trials, **wanted):
     row, *_ = trials.where(**wanted)
     return trials.record(row)["counters"]
@@ -149,3 +145,6 @@ def lens(study):
         "lens", "Convergent and divergent beams (figure 5)", ["beams", "bound", "cone-point tests", "beam-point tests", "successes",
                                                               "cone-point tests a success", "beam-point tests a success"], rows,
         "Light through a dome of water and through the same dome turned over; the spreads of their beams are alike.")])
+
+
+SECTIONS = {"counts": counts, "watt": watt, "bounds": bounds, "heights": heights, "figure5": lens}

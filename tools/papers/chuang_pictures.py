@@ -8,10 +8,6 @@ from papers.verdict import counted, unmeasured
 SCENES = {"chuang_pool": "the pool", "chuang_dolphin": "a dolphin under the water"}
 
 
-def measure(study):
-    return pictures(study).add(same_as_watt(study))
-
-
 def pictures(study):
     large = study.sweep("pictures")
     shown = {(scene, method): large.picture(scene=scene, method=method)[""] for scene in SCENES for method in ("beamtree", "none")}
@@ -55,3 +51,6 @@ def same_as_watt(study):
 
 def enlarged(picture, times=2):
     return picture.repeat(times, axis=0).repeat(times, axis=1)
+
+
+SECTIONS = {"figures14-17": pictures, "same-as-watt": same_as_watt}

@@ -2,40 +2,58 @@
 import math
 import statistics
 
-from papers.verdict import UNMEASURED, judge
+from papers.verdict import UNMEASURED, compare, judge, unmeasured
 from papers.words import short
 
 
-def entries(study, part):
-    """One for each claim, in the paper's order; raises where the parts measured something that is no claim, or forgot one."""
+def entries(study, part, earlier=None):
+    """One for each claim, in the paper's order. Where only some sections ran, `earlier` has {id: entry} of the others.
+
+    Raises where the parts measured something that is no claim, or, without `earlier`, forgot one.
+    """
     claims = study.paper.text["claims"]
     names = {claim["id"] for claim in claims}
-    if names != set(part.measured):
-        raise ValueError(f"{study.paper.name}: claims without a measurement: {sorted(names - set(part.measured))}, "
+    forgotten = names - set(part.measured) if earlier is None else set()
+    if forgotten or set(part.measured) - names:
+        raise ValueError(f"{study.paper.name}: claims without a measurement: {sorted(forgotten)}, "
                          f"measurements without a claim: {sorted(set(part.measured) - names)}")
-    return [entry(study, claim, part.measured[claim["id"]]) for claim in claims]
+    return [of_claim(study, claim, part.measured.get(claim["id"]), (earlier or {}).get(claim["id"])) for claim in claims]
+
+
+def of_claim(study, claim, measured, earlier):
+    if measured is None and earlier and earlier["verdict"] != UNMEASURED:
+        return again(study.paper, claim, earlier)
+    return entry(study, claim, measured or unmeasured(f"not run yet (tools/reproduce.sh {study.paper.name})"))
 
 
 def entry(study, claim, measured):
-    region = study.paper.region(claim)
-    verdict, ends = judge(measured, region)
-    theirs = study.paper.value(claim)
+    verdict, ends = judge(measured, study.paper.region(claim))
     ours = statistics.median(measured.samples) if measured.samples else None
-    command, minutes = study.cost(claim["from"])
-    is_ratio = "ratio" in claim["paper"]
+    cost = study.cost(claim["from"] if verdict != UNMEASURED else [])
     parts = [part for part in (measured.top, measured.bottom) if part] or ([measured.samples] if measured.samples else [])
-    return {
-        "id": claim["id"], "group": claim["group"], "claim": claim["claim"], "where": claim["where"],
-        "paper": stated(study.paper, claim), "paper_unit": "" if is_ratio else unit_of(study.paper, claim),
-        "paper_ratio": theirs if is_ratio else None, "is_ratio": bool(measured.bottom) or is_ratio,
+    return said(study.paper, claim, ours, bool(measured.bottom)) | {
         "ours": ours, "spread": [min(measured.samples), max(measured.samples)] if measured.samples else None,
         "interval": list(ends) if ends else None, "samples": len(measured.samples), "counted": measured.counted,
         "made_of": [{"median": statistics.median(part), "least": min(part), "greatest": max(part)} for part in parts],
-        "made_of_unit": measured.unit, "unit": claim["unit"],
+        "made_of_unit": measured.unit, "verdict": verdict, "section": measured.section,
+        "command": cost.command, "minutes": round(cost.seconds / 60, 2), "megabytes": round(cost.bytes / 1e6, 1), "note": measured.note}
+
+
+def again(paper, claim, earlier):
+    """What was measured in an earlier run beside what the claim says now."""
+    entry = earlier | said(paper, claim, earlier["ours"], earlier["is_ratio"])
+    return entry | ({"verdict": compare(earlier["interval"], paper.region(claim))} if earlier["interval"] else {})
+
+
+def said(paper, claim, ours, is_quotient):
+    """The part of a row that comes from the paper, and how far ours is off."""
+    theirs, is_ratio = paper.value(claim), "ratio" in claim["paper"]
+    return {
+        "id": claim["id"], "group": claim["group"], "claim": claim["claim"], "where": claim["where"],
+        "paper": stated(paper, claim), "paper_unit": "" if is_ratio else unit_of(paper, claim),
+        "paper_ratio": theirs if is_ratio else None, "is_ratio": is_quotient or is_ratio, "unit": claim["unit"],
         "factor_off": ours / theirs if ours is not None and theirs else None,
-        "region": shown(region), "tolerance_from": claim["tolerance_from"], "verdict": verdict,
-        "command": command if verdict != UNMEASURED else "", "minutes": round(minutes, 2) if verdict != UNMEASURED else 0.0,
-        "note": measured.note}
+        "region": shown(paper.region(claim)), "tolerance_from": claim["tolerance_from"]}
 
 
 def stated(paper, claim):

@@ -12,7 +12,7 @@ from report import exr
 
 DPI = 100
 GAP, TITLE = 6, 20  # pixels
-LARGE = 300_000  # bytes of a PNG
+LARGE = 1_000_000  # bytes of a PNG
 STYLE = {"font.family": "DejaVu Sans", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7,
          "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 1.3, "lines.markersize": 4}
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])

@@ -1,6 +1,5 @@
 """results/papers/README.md: what each paper's page says in one line, and all figures with a paragraph each."""
-import json
-
+from papers.kept import made_on, read
 from papers.page import markdown_table, tally, took
 from report.report_files import write
 
@@ -20,10 +19,10 @@ def write_gallery(folder, papers):
     for paper in papers:
         if not (folder / paper.name / "tables.json").is_file():
             continue
-        entries, kept = (json.loads((folder / paper.name / name).read_text(encoding="utf-8")) for name in ("verdicts.json", "tables.json"))
+        entries, kept = read(folder / paper.name)
         rows.append([f"[{paper.text['author']}: {paper.text['title']}]({paper.name}/tables.md)", tally(entries), took(kept),
                      f"`tools/reproduce.sh {paper.name}`"])
         figures.append(f"\n## {paper.text['author']}: {paper.text['title']}\n")
         figures += [f"\n### {each['title']}\n\n![{each['title']}]({paper.name}/figures/{each['name']}.png)\n\n{each['caption']}\n" for each in kept["figures"]]
-        figures.append(f"\nTaken on {kept['machine']}\n")
+        figures.append(f"\nTaken on {made_on(kept)}\n")
     write(folder / "README.md", HEAD + markdown_table(["paper", "claims", "took", "command"], rows) + "".join(figures))

@@ -15,12 +15,8 @@ QUANTILE, THRESHOLD = 0.995, 0.3  # what belongs to the spot: above this share o
 DARK = 0.02  # of the same
 
 
-def measure(study):
+def table(study):
     trials = study.sweep("figure2")
-    return table(study, trials).add(sensitivity(study)).add(shape(study)).add(blur(study))
-
-
-def table(study, trials):
     few, many = (study.paper.number(name) for name in ("figure2_photons", "figure2_reference_photons"))
     seconds = lambda photons, tree: trials.column("render_cpu_s", method="photonmap", photons=photons, tree=tree)
     prepare = lambda photons, tree="balanced": preprocess(trials, method="photonmap", photons=photons, tree=tree)
@@ -179,3 +175,6 @@ def half_width(floor, middle, reach=0.1, step=0.005):
     right = next(i for i in range(top, len(profile)) if profile[i] <= half)
     between = lambda low, high: low + (half - profile[low]) / (profile[high] - profile[low]) * (high - low)
     return step * (between(right - 1, right) - between(left, left + 1))
+
+
+SECTIONS = {"figure2-table": table, "figure2-nearest": sensitivity, "figure2-shape": shape, "figure2-blur": blur}

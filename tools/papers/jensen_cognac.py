@@ -14,12 +14,6 @@ SIDE = 12  # pixels of a window in which contrast is local
 VIEWS = ("of the figure", "from the left", "from the right", "from low down")
 
 
-def measure(study):
-    part = times(study).add(twins(study)).add(one_map(study))
-    part.measured |= tracing(study)
-    return part
-
-
 def times(study):
     trials = study.sweep("figure3")
     seconds = lambda tree: trials.column("render_cpu_s", tree=tree)
@@ -86,8 +80,8 @@ def tracing(study):
         preprocess(study.sweep(name), method="photonmap", tree="balanced", **wanted),
         study.sweep(name).column("photons_stored", method="photonmap", tree="balanced", **wanted))]
     ball = per_photon("figure2", photons=study.paper.number("figure2_photons"))
-    return {"photon_ring": ratio(per_photon("figure1", alpha=1, max_samples=4)[:len(ball)], ball, "CPU s a photon"),
-            "photon_cognac": ratio(per_photon("figure3"), ball, "CPU s a photon")}
+    return Part({"photon_ring": ratio(per_photon("figure1", alpha=1, max_samples=4)[:len(ball)], ball, "CPU s a photon"),
+                 "photon_cognac": ratio(per_photon("figure3"), ball, "CPU s a photon")})
 
 
 def one_map(study):
@@ -106,3 +100,6 @@ def one_map(study):
     ours, theirs = exr.read_layers(read), exr.read_layers(traced)
     largest = max(float(np.abs(ours[layer] - theirs[layer]).max()) for layer in ours)
     return Part({"view_independent": counted(largest, "W/(m² sr)", "largest difference in any layer")})
+
+
+SECTIONS = {"figure3": times, "figure3-twins": twins, "tracing": tracing, "one-map": one_map}

@@ -16,10 +16,6 @@ SCENE = "experiments/papers/scenes/jensen_ring.json"
 FIXED, ADAPTIVE = 4, 256  # most samples a pixel
 
 
-def measure(study):
-    return times(study).add(sensitivity(study)).add(physics(study))
-
-
 def times(study):
     trials = study.sweep("figure1")
     maps = lambda column, alpha, most, **more: trials.column(column, method="photonmap", alpha=alpha, max_samples=most, **more)
@@ -188,3 +184,6 @@ def physics(study):
 def spearman(x, y):
     ranks = [np.argsort(np.argsort(each)) for each in (x, y)]
     return float(np.corrcoef(*ranks)[0, 1])
+
+
+SECTIONS = {"figure1": times, "figure1-nearest": sensitivity, "figure1-physics": physics}

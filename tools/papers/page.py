@@ -4,6 +4,8 @@ import html
 import io
 import json
 
+from papers.kept import made_on
+from papers.latex import latex_tables
 from papers.part import Table
 from papers.verdict import FAILS, HOLDS, UNDECIDED, UNMEASURED
 from papers.words import short
@@ -44,19 +46,14 @@ def claims_table(entries):
     return Table("claims", "Claims", CLAIMS, rows)
 
 
-def write_page(folder, study, entries, part, machine):
+def write_page(folder, paper, entries, kept, figures):
     """All files of a paper; the tables' texts go to tables.json, from which a test makes the others again."""
-    paper = study.paper
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "figures").mkdir(exist_ok=True)
-    for figure in part.figures:
+    for figure in figures:
         (folder / "figures" / f"{figure.name}.png").write_bytes(figure.png)
         if figure.exr:
             (folder / "figures" / f"{figure.name}.exr").write_bytes(figure.exr)
-    unsaid = [[each["what"], each["chosen"], each["matters"].format_map(part.facts)] for each in paper.text["unsaid"]]
-    kept = {"machine": machine, "minutes": round(study.minutes(), 1), "cpu_minutes": round(study.cpu_minutes(), 1), "unsaid": unsaid,
-            "tables": [vars(table) for table in part.tables],
-            "figures": [{"name": figure.name, "title": figure.title, "caption": figure.caption} for figure in part.figures]}
     write(folder / "verdicts.json", json.dumps(entries, indent=1, ensure_ascii=False) + "\n")
     write(folder / "tables.json", json.dumps(kept, indent=1, ensure_ascii=False) + "\n")
     for name, text in rendered(paper, entries, kept).items():
@@ -68,7 +65,7 @@ def rendered(paper, entries, kept):
     tables = [Table(**each) for each in kept["tables"]]
     every = [claims_table(entries), *tables]
     return {"tables.md": markdown(paper, entries, kept, tables), "tables.csv": comma(every),
-            "tables.tex": latex(f"{paper.text['author']}: {paper.text['title']}", every), "index.html": page(paper, entries, kept, tables)}
+            "tables.tex": latex_tables(f"{paper.text['author']}: {paper.text['title']}", every), "index.html": page(paper, entries, kept, tables)}
 
 
 def took(kept):
@@ -95,7 +92,7 @@ def markdown_table(heading, rows):
 
 def markdown(paper, entries, kept, tables):
     text = [f"# {paper.text['author']}: {paper.text['title']}\n", f"{paper.text['published']}. {len(entries)} claims: {tally(entries)}.\n",
-            f"Made by `tools/reproduce.sh {paper.name}` in {took(kept)} on {kept['machine']}\n", HOW]
+            f"Made by `tools/reproduce.sh {paper.name}` in {took(kept)} on {made_on(kept)}\n", HOW]
     for group, own in by_group(entries):
         rows = claims_table(own).rows
         for row, entry in zip(rows, own):
@@ -110,15 +107,23 @@ def markdown(paper, entries, kept, tables):
     if paper.text["seconds"]:
         text.append(f"\n## The paper's seconds\n\nOn {paper.text['machine']}; ours are compared as ratios only.\n\n"
                     + markdown_table(["what", "s", "where"], seconds(paper)))
-    text.append("\n## Tolerances and commands\n\n" + markdown_table(
-        ["claim", "holds where ours is", "because of", "minutes", "command"],
-        [[entry["claim"], entry["region"], entry["tolerance_from"], f"{entry['minutes']:.1f}", f"`{entry['command']}`"] for entry in entries]))
+    text.append("\n## Tolerances and commands\n\n" + markdown_table(COMMANDS, [[*row[:-1], row[-1] and f"`{row[-1]}`"] for row in commands(entries)])
+                + f"\n{ANEW.format(paper.name)}\n")
     return "\n".join(text)
 
 
 HOW = ("A claim holds where the 95 % interval (Student's t, one-sided at each end, over seeds or repeats, on a scale of ratios) lies within "
        "the region of the last table, does not hold where it lies outside, and is undecided between. Counted values are the same on every run. "
        "Times are CPU times of one thread: median (least–greatest). Factor off: ours over the paper's.\n")
+
+
+COMMANDS = ["claim", "holds where ours is", "because of", "section", "minutes", "MB", "command"]
+ANEW = "`tools/reproduce.sh {} --only SECTION` makes the rows, tables and figures of one section anew, if its trials are removed first."
+
+
+def commands(entries):
+    return [[entry["claim"], entry["region"], entry["tolerance_from"], entry["section"], f"{entry['minutes']:.1f}", "" if entry["megabytes"] is None else f"{entry['megabytes']:.1f}",
+             entry["command"]] for entry in entries]
 
 
 def seconds(paper):
@@ -136,27 +141,12 @@ def comma(tables):
     return text.getvalue()
 
 
-def latex(title, tables):
-    """Tables one after another for LaTeX, below a comment."""
-    special = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
-               "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "–": "--", "×": r"$\times$", "·": r"$\cdot$", "²": r"$^2$", "µ": r"$\mu$",
-               "°": r"$^\circ$", "<": r"$<$", ">": r"$>$", "≤": r"$\le$", "≥": r"$\ge$"}
-    escape = lambda field: "".join(special.get(letter, letter) for letter in str(field))
-    text = [f"% {title}; needs booktabs and tabularx"]
-    for table in tables:
-        line = lambda fields: " & ".join(map(escape, fields)) + r" \\"
-        columns = "X" + "l" * (len(table.heading) - 1)
-        text += [rf"\begin{{tabularx}}{{\linewidth}}{{{columns}}}", r"\toprule", f"% {table.title}", line(table.heading), r"\midrule",
-                 *map(line, table.rows), r"\bottomrule", r"\end{tabularx}", ""]
-    return "\n".join(text)
-
-
 def page(paper, entries, kept, tables):
     e = html.escape
     cells = lambda fields, tag="td": "<tr>" + "".join(f"<{tag}>{e(str(field))}</{tag}>" for field in fields) + "</tr>\n"
     table = lambda heading, rows, kind="": f"<table class='{kind}'>{cells(heading, 'th')}{''.join(map(cells, rows))}</table>\n"
     body = [f"<h1>{e(paper.text['title'])}</h1>\n<p>{e(paper.text['author'])}. {e(paper.text['published'])}.</p>\n<p><b>{len(entries)} claims: "
-            f"{tally(entries)}.</b> Made by <code>tools/reproduce.sh {paper.name}</code> in {took(kept)} on {e(kept['machine'])}</p>\n"
+            f"{tally(entries)}.</b> Made by <code>tools/reproduce.sh {paper.name}</code> in {took(kept)} on {e(made_on(kept))}</p>\n"
             f"<p class='note'>{e(HOW)}</p>\n<table>{cells(CLAIMS, 'th')}"]
     for group, own in by_group(entries):
         body.append(f"<tr class='group'><td colspan='{len(CLAIMS)}'>{e(group)}</td></tr>\n")
@@ -174,10 +164,9 @@ def page(paper, entries, kept, tables):
     if paper.text["seconds"]:
         body.append(f"<h3 class='grey'>The paper's seconds</h3><p class='grey'>On {e(paper.text['machine'])}; ours are compared as ratios only.</p>\n"
                     + table(["what", "s", "where"], seconds(paper), "grey"))
-    body.append("<h2>Tolerances and commands</h2>\n<table>" + cells(["claim", "holds where ours is", "because of", "minutes", "command"], "th"))
-    for entry in entries:
-        body.append(f"<tr><td>{e(entry['claim'])}</td><td>{e(entry['region'])}</td><td>{e(entry['tolerance_from'])}</td>"
-                    f"<td>{entry['minutes']:.1f}</td><td><code>{e(entry['command'])}</code></td></tr>\n")
+    body.append(f"<h2>Tolerances and commands</h2>\n<p class='note'>{e(ANEW.format(paper.name))}</p>\n<table>{cells(COMMANDS, 'th')}")
+    for *fields, command in commands(entries):
+        body.append("<tr>" + "".join(f"<td>{e(field)}</td>" for field in fields) + f"<td><code>{e(command)}</code></td></tr>\n")
     body.append("</table>\n")
     return (f"<!doctype html>\n<html lang='en'><head><meta charset='utf-8'><title>{e(paper.text['title'])}: reproduced</title>"
             f"<style>{STYLE}</style></head><body>\n{''.join(body)}</body></html>\n")

@@ -10,6 +10,7 @@ class Table:
     heading: list
     rows: list
     note: str = ""
+    section: str = ""
 
 
 @dataclasses.dataclass
@@ -20,6 +21,7 @@ class Figure:
     caption: str
     png: bytes
     exr: bytes = b""
+    section: str = ""
 
 
 @dataclasses.dataclass
@@ -29,6 +31,12 @@ class Part:
     tables: list = dataclasses.field(default_factory=list)
     figures: list = dataclasses.field(default_factory=list)
     facts: dict = dataclasses.field(default_factory=dict)
+
+    def of(self, section):
+        """The same, each piece with the section's name: what is made anew with it."""
+        for each in (*self.measured.values(), *self.tables, *self.figures):
+            each.section = section
+        return self
 
     def add(self, other):
         self.measured.update(other.measured)

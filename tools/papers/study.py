@@ -1,5 +1,6 @@
 """One paper's runs: sweeps and single commands of causticbench, each run once, with what it cost."""
 import csv
+import dataclasses
 import hashlib
 import json
 import os
@@ -15,6 +16,14 @@ from report.records import RecordsError, canonical
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENES, SWEEPS = (ROOT / "experiments" / "papers" / kind for kind in ("scenes", "sweeps"))
+
+
+@dataclasses.dataclass
+class Cost:
+    """Of commands: the first of each name, their seconds whenever they ran, and what they wrote."""
+    command: str = ""
+    seconds: float = 0.0
+    bytes: int = 0
 
 
 class Study:
@@ -69,17 +78,22 @@ class Study:
 
     def keep(self, name, words, seconds):
         """Adds up what the commands of one name cost; the first stands for them."""
-        command, so_far = self.costs.get(name, (None, 0.0))
-        self.costs[name] = (command or shown(words), so_far + seconds)
+        cost = self.costs.setdefault(name, Cost(shown(words)))
+        cost.seconds += seconds
+        cost.bytes = sum(file.stat().st_size for file in (self.output / "trials" / name).rglob("*") if file.is_file())
 
     def cost(self, names):
-        """(command, minutes) of what a claim is measured from."""
+        """Of what a claim is measured from."""
         found = [self.costs[name] for name in names if name in self.costs]
-        return "; ".join(command for command, _ in found), sum(seconds for _, seconds in found) / 60
+        return Cost("; ".join(each.command for each in found), sum(each.seconds for each in found), sum(each.bytes for each in found))
 
     def minutes(self):
         """Of all commands, whenever they ran."""
-        return sum(seconds for _, seconds in self.costs.values()) / 60
+        return sum(cost.seconds for cost in self.costs.values()) / 60
+
+    def folders(self):
+        """Of the sweeps that ran."""
+        return [trials.folder for _, trials in sorted(self.done.items())]
 
     def cpu_minutes(self):
         """Of the sweeps' renderings, on however many processors."""

@@ -21,6 +21,7 @@ class Measured:
     unit: str = ""
     counted: bool = False
     note: str = ""
+    section: str = ""
 
 
 def ratio(top, bottom, unit, **more):
@@ -61,7 +62,12 @@ def judge(measured, region):
     ends = interval(measured.samples, measured.counted)
     if ends is None:
         return UNDECIDED, None
+    return compare(ends, region), ends
+
+
+def compare(ends, region):
+    """The verdict on an interval."""
     low, high = region
     if low <= ends[0] and ends[1] <= high:
-        return HOLDS, ends
-    return (FAILS if ends[1] < low or ends[0] > high else UNDECIDED), ends
+        return HOLDS
+    return FAILS if ends[1] < low or ends[0] > high else UNDECIDED
