@@ -5,8 +5,7 @@
 
 namespace caustics {
 
-/// The instruction sets for which hot loops are written. Every one gives the same photons and
-/// beams; radiance agrees to 1e-5.
+/// The instruction sets for which hot loops are written. Every one gives the same bits.
 enum class Isa {
     plain,  ///< C++ as the compiler's baseline has it
     avx2,   ///< AVX2 and BMI2

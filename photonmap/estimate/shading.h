@@ -19,8 +19,8 @@ struct WeightedPhotons {
 };
 
 /// Sums over gathered photons, the numerator of [J96 (4)]. Directions are decoded at the centres
-/// of their cells, energies exactly. The order of summation is fixed by the instruction set;
-/// all agree to 1e-5, and on which photons count exactly.
+/// of their cells, energies exactly. The order of summation is fixed; the same
+/// bits on every instruction set.
 class Shading {
 public:
     explicit Shading(Isa isa);

@@ -3,14 +3,15 @@
 namespace caustics::photonmap {
 
 /// cos^exponent of an angle given by t = 1 - cos, 0 <= t; 0 from a right angle on. For registers of one
-/// kind; the relative error is 1e-6 or less, and that of t times the exponent, however near 1 the cosine is.
+/// kind, the same bits by all; the relative error is 1e-6 or less, and that of t times the exponent, however
+/// near 1 the cosine is.
 template <typename Lanes>
 typename Lanes::Floats cosine_power(typename Lanes::Floats t, float exponent) {
     using Floats = typename Lanes::Floats;
     const auto polynomial = [](Floats x, const auto& coefficients) {
         Floats value = Lanes::all(0);
         for (const float coefficient : coefficients)
-            value = Lanes::fused(value, x, Lanes::all(coefficient));
+            value = Lanes::add(Lanes::mul(value, x), Lanes::all(coefficient));
         return value;
     };
     const Floats one = Lanes::all(1);
@@ -27,7 +28,7 @@ typename Lanes::Floats cosine_power(typename Lanes::Floats t, float exponent) {
     constexpr float artanh[] = {1.0F / 9, 1.0F / 7, 1.0F / 5, 1.0F / 3, 1};
     const Floats s = Lanes::div(f, Lanes::add(Lanes::all(2), f));
     const Floats series = Lanes::mul(s, polynomial(Lanes::mul(s, s), artanh));
-    const Floats log2 = Lanes::fused(series, Lanes::all(2.88539008F), k);
+    const Floats log2 = Lanes::add(Lanes::mul(series, Lanes::all(2.88539008F)), k);
     // 2^(n + rest), rest within half of 0.
     const Floats power = Lanes::mul(Lanes::all(exponent), log2);
     const Floats least = Lanes::all(-126);

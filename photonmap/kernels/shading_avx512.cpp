@@ -138,13 +138,6 @@ void add_facing(const DirectionTables& tables, const Lobe& lobe, const ShadedPho
     sums.add_to(rgb);
 }
 
-/// a b + c, rounded once: for what need not be equal to the last bit on every instruction set.
-Floats fused(Floats a, Floats b, Floats c) { return _mm512_fmadd_ps(a, b, c); }
-
-Floats fused_dot(const Vectors& a, const Vectors& b) {
-    return fused(a.x, b.x, fused(a.y, b.y, product(a.z, b.z)));
-}
-
 /// The formula of schlick_factor.
 void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                  double* rgb) {
@@ -160,16 +153,16 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
         const Vectors wi = directions(tables, photons.direction + i);
         const Floats v_in = dot(n, wi);
         const Vectors s{sum(wo.x, wi.x), sum(wo.y, wi.y), sum(wo.z, wi.z)};
-        const Floats across = fused_dot(tangent, s);
-        const Floats aside = fused_dot(bitangent, s);
-        const Floats along = fused_dot(n, s);
-        const Floats sine2 = fused(across, across, product(aside, aside));
-        const Floats square = fused(along, along, sine2);
-        const Floats twice_spread = fused(twice_alpha, square, product(twice_rest, sine2));
+        const Floats across = dot(tangent, s);
+        const Floats aside = dot(bitangent, s);
+        const Floats along = dot(n, s);
+        const Floats sine2 = sum(product(across, across), product(aside, aside));
+        const Floats square = sum(sine2, product(along, along));
+        const Floats twice_spread = sum(product(twice_alpha, square), product(twice_rest, sine2));
         const Floats peak = _mm512_div_ps(square, twice_spread);
         const Floats u_in = _mm512_sub_ps(one, v_in);
-        const Floats d_in = fused(alpha, u_in, v_in);
-        const Floats numerator = fused(peak, peak, fused(u, v_in, product(u_in, d)));
+        const Floats d_in = sum(v_in, product(alpha, u_in));
+        const Floats numerator = sum(sum(product(u, v_in), product(u_in, d)), product(peak, peak));
         const __mmask16 lanes =
             _mm512_mask_cmp_ps_mask(counted(photons, i), v_in, zero, _CMP_GT_OQ);
         sums.add(photons, i, lanes, _mm512_div_ps(numerator, d_in));

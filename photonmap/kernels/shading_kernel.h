@@ -35,9 +35,10 @@ struct ShadedPhotons {
 ///   `schlick`: pi f_r (alpha + (1 - alpha) v) / alpha by [J96 (5)], [J96 (6)] where n.wi > 0, else 0;
 ///   `phong`: cos^exponent of the angle to the mirrored direction where n.wi > 0, else 0.
 ///
-/// n.wi is rounded step by step as `evaluate(bsdf, ...)` does it, on every instruction set, so that
-/// all agree on which photons count. Runs should be at most `longest_run` photons, so that sums in
-/// float lose nothing that matters. The order of summation depends on the instruction set alone.
+/// n.wi is rounded step by step as `evaluate(bsdf, ...)` does it, so that all agree on which photons
+/// count. Sixteen sums in float, each of every sixteenth photon, are added up by halves; the same bits on
+/// every instruction set. Runs should be at most `longest_run` photons, so that the sums lose nothing that
+/// matters.
 using ShadingKernel = void(const DirectionTables& tables, const Lobe& lobe,
                            const ShadedPhotons& photons, double* rgb);
 

@@ -42,9 +42,6 @@ struct Avx2Lanes {
     static Floats add(Floats a, Floats b) { return _mm256_add_ps(a, b); }
     static Floats sub(Floats a, Floats b) { return _mm256_sub_ps(a, b); }
     static Floats mul(Floats a, Floats b) { return _mm256_mul_ps(a, b); }
-    static Floats fused(Floats a, Floats b, Floats c) {
-        return _mm256_add_ps(_mm256_mul_ps(a, b), c);
-    }
     static Floats div(Floats a, Floats b) { return _mm256_div_ps(a, b); }
     static Floats sqrt(Floats a) { return _mm256_sqrt_ps(a); }
     static Floats min(Floats a, Floats b) { return _mm256_min_ps(a, b); }

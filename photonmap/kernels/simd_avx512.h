@@ -34,7 +34,6 @@ struct Avx512Lanes {
     static Floats add(Floats a, Floats b) { return _mm512_add_ps(a, b); }
     static Floats sub(Floats a, Floats b) { return _mm512_sub_ps(a, b); }
     static Floats mul(Floats a, Floats b) { return _mm512_mul_ps(a, b); }
-    static Floats fused(Floats a, Floats b, Floats c) { return _mm512_fmadd_ps(a, b, c); }
     static Floats div(Floats a, Floats b) { return _mm512_div_ps(a, b); }
     static Floats sqrt(Floats a) { return _mm512_sqrt_ps(a); }
     static Floats min(Floats a, Floats b) { return _mm512_min_ps(a, b); }

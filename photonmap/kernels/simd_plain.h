@@ -29,8 +29,6 @@ struct PlainSimd {
     static Floats add(Floats a, Floats b) { return a + b; }
     static Floats sub(Floats a, Floats b) { return a - b; }
     static Floats mul(Floats a, Floats b) { return a * b; }
-    /// a b + c, perhaps rounded once.
-    static Floats fused(Floats a, Floats b, Floats c) { return a * b + c; }
     static Floats div(Floats a, Floats b) { return a / b; }
     static Floats sqrt(Floats a) { return __builtin_sqrtf(a); }
     static Floats min(Floats a, Floats b) { return a < b ? a : b; }

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/isa.h"
+#include "core/render/renderer.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/light_flux.h"
@@ -94,6 +96,35 @@ TEST(PhotonMap, StoresTheReferencesFlux) {
             support::flux_by_shape(scene, support::unaimed(scene, scene.lights()[0]), 1'500'000, 3);
         EXPECT_NEAR(stored / reference.total(), 1, 0.01);
     }
+}
+
+std::vector<float> greens(const Scene& scene, const photonmap::PhotonMapParams& params, Isa isa) {
+    RunOptions options;
+    options.threads = isa == Isa::plain ? 1 : 3;
+    options.isa = isa;
+    options.samples_per_pixel = 1;
+    return *render(scene, *build(scene, params, options), options).film.find("caustic.G");
+}
+
+// Floors of every model that has a kernel, under every way to weigh photons.
+TEST(PhotonMap, PicturesAreTheSameByThreadsAndInstructionSets) {
+    std::vector<photonmap::PhotonMapParams> settings(5, {.photons = 5000});
+    settings[1].filter = photonmap::FilterKind::cone;
+    settings[2].footprint = 0.05F;
+    settings[3].adaptive = true;
+    settings[4].tree = photonmap::TreeKind::balanced;
+    const Bsdf floors[] = {
+        support::diffuse(0.5F), {Schlick{Spectrum(Spectrum::Constant(0.5F)), 0.1F}}, {Phong{}}};
+    for (const Bsdf& floor : floors)
+        for (Case& one : all_cases()) {
+            SCOPED_TRACE(one.name);
+            one.desc.shapes[0].bsdf = floor;
+            const Scene scene(std::move(one.desc));
+            for (const photonmap::PhotonMapParams& params : settings) {
+                const std::vector<float> plain = greens(scene, params, Isa::plain);
+                for (const Isa isa : supported_isas()) EXPECT_EQ(greens(scene, params, isa), plain);
+            }
+        }
 }
 
 }  // namespace

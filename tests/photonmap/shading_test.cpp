@@ -127,6 +127,24 @@ TEST(Shading, IsPhongsLawOnEveryInstructionSet) {
     }
 }
 
+TEST(Shading, IsTheSameBitsOnEveryInstructionSet) {
+    Rng rng(47, Stage::test, 0);
+    for (const Bsdf& bsdf : {lambert(), schlick(1), schlick(0.01F), phong(0.5F), phong(200)}) {
+        for (const std::size_t count : {1U, 7U, 8U, 9U, 16U, 17U, 25U, 100U, 513U, 1500U}) {
+            ReceiverPoint point = test::random_point(rng, bsdf);
+            const PhotonArrays photons = test::random_photons(count, 48);
+            for (const bool of_mesh : {false, true}) {
+                if (of_mesh) point.geometric_normal = test::random_direction(rng);
+                const auto given = photons.photons(true, count / 3);
+                const SpectrumSum plain = Shading(Isa::plain).reflected(point, given);
+                for (const Isa isa : supported_isas())
+                    EXPECT_TRUE((Shading(isa).reflected(point, given) == plain).all())
+                        << name(isa) << " " << count;
+            }
+        }
+    }
+}
+
 TEST(Shading, RaisesCosinesToPowers) {
     for (const float exponent : {0.0F, 0.3F, 1.0F, 30.0F, 1000.0F, 1e6F})
         for (float t = 1e-9F; t < 1.2F; t = t * 1.37F + 1e-9F) {
