@@ -18,7 +18,9 @@ OWN_PLOT = re.compile(r"((rmse|relmse|mean_ratio)_vs_(photons|time|alpha|mesh_re
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(
+        description=__doc__.splitlines()[0],
+        epilog="Other axes, metrics, colours and tables of chosen rows and columns: causticbench report DIR [--tables OUT].")
     parser.add_argument("directory", metavar="DIR", help="folder with records.csv, as a sweep leaves it")
     parser.add_argument("-o", "--output", metavar="OUT", help="where the report goes (default: DIR/report)")
     arguments = parser.parse_args()

@@ -260,6 +260,22 @@ class Plots(unittest.TestCase):
         rows = [line for line in text.splitlines() if "&" in line]
         self.assertEqual(len({row.count(" & ") for row in rows}), 1)
 
+    def test_what_is_the_same_in_all_rows_has_no_column(self):
+        header = (*FIXED, "photons", "height", "filter_k")
+        self.table([record(seed=s, photons=n, height=96) for s in (1, 2) for n in (1000, 2000)], header)
+        self.succeeds()
+        latex = (self.report / "summary.tex").read_text(encoding="utf-8")
+        rows = [line for line in latex.splitlines() if "&" in line]
+        self.assertTrue(rows[0].startswith(r"scene & method & photons & seeds & rmse"), rows[0])
+        shared = "In all rows: nearest 25, alpha 1, mesh{0}_resolution 32, height 96, threads 1, isa avx2, code{0}_version abc."
+        self.assertIn(shared.format("\\") + "}", latex)
+        markdown = (self.report / "summary.md").read_text(encoding="utf-8")
+        self.assertIn("| scene | method | photons | seeds |", markdown)
+        self.assertIn(shared.format("") + "\n", markdown)
+        page = (self.report / "index.html").read_text(encoding="utf-8")
+        self.assertIn(shared.format("") + "</caption>", page)
+        self.assertEqual({cell["height"] for cell in self.summary()}, {"96"}, "summary.csv keeps every column")
+
     def test_a_missing_table(self):
         self.refuses("No such file")
 

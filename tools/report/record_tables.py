@@ -56,10 +56,24 @@ tbody tr:last-child td {{ border-bottom: 2px solid; }}
 
 
 def shown_parameters(records):
-    """The parameters worth a column: all but what is the same for every cell and says nothing of the experiment."""
-    constant = lambda name: len({cell.parameters.get(name) for cell in records.cells}) == 1
-    settings = ("spp", "threads", "isa", "code_version")
-    return [name for name in records.parameters if name not in settings or not constant(name)]
+    """The parameters worth a column: those that differ among the cells."""
+    return [name for name in records.parameters if len(values_of(records, name)) > 1]
+
+
+def shared_parameters(records):
+    """The others, a name and a value each."""
+    return [(name, value) for name in records.parameters if len(values_of(records, name)) == 1
+            for value in values_of(records, name) if value]
+
+
+def values_of(records, name):
+    return {cell.parameters.get(name, "") for cell in records.cells}
+
+
+def said_of_shared(records, word=str):
+    """The end of a caption: what has no column, because it is the same in every row."""
+    shared = ", ".join(f"{word(name)} {word(value)}" for name, value in shared_parameters(records))
+    return f" In all rows: {shared}." if shared else ""
 
 
 def summary_csv(records):
@@ -101,7 +115,7 @@ def heading(records):
 def summary_md(records):
     line = lambda fields: "| " + " | ".join(field.replace("|", r"\|") for field in fields) + " |\n"
     titles = heading(records)
-    return (CAPTION + "\n\n" + line(titles) + "|" + "---|" * len(titles) + "\n"
+    return (CAPTION + said_of_shared(records) + "\n\n" + line(titles) + "|" + "---|" * len(titles) + "\n"
             + "".join(line(row) for row in body(records)))
 
 
@@ -111,8 +125,9 @@ def summary_tex(records):
     titles = " & ".join([tex(word) for word in words] + [f"{tex(name)} [{TEX_UNITS[name]}]" for name in PRINTED])
     columns = "l" * len(words) + "l" * len(PRINTED)
     rows = "".join(" & ".join(tex(field) for field in row) + " \\\\\n" for row in body(records))
-    return ("% Needs \\usepackage{booktabs,longtable}\n"
-            f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n\\caption{{{TEX_CAPTION}}}\\\\\n\\toprule\n{titles} \\\\\n"
+    return ("% Needs \\usepackage{booktabs,longtable} and one column of text; tables that fit any column: causticbench report"
+            " DIR --tables OUT\n"
+            f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n\\caption{{{TEX_CAPTION}{said_of_shared(records, tex)}}}\\\\\n\\toprule\n{titles} \\\\\n"
             f"\\midrule\n\\endfirsthead\n\\toprule\n{titles} \\\\\n\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n"
             f"{rows}\\end{{longtable}}\n")
 
@@ -132,7 +147,7 @@ def page(records, plots, figures):
                                      f"<figcaption>{html.escape(caption)}</figcaption></figure>")
     cells = lambda fields, tag: "".join(f"<{tag}>{html.escape(field)}</{tag}>" for field in fields)
     rows = "\n".join(f"<tr>{cells(row, 'td')}</tr>" for row in body(records))
-    table = (f"<table>\n<caption>{html.escape(CAPTION)}</caption>\n"
+    table = (f"<table>\n<caption>{html.escape(CAPTION + said_of_shared(records))}</caption>\n"
              f"<thead><tr>{cells(heading(records), 'th')}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>")
     return PAGE.format(
         counts=html.escape(f"{done} trials done" + (f"; {left_out}" if left_out else "") + "."),
