@@ -12,6 +12,7 @@ import sys
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
+from report.records import RecordsError
 from report.report_files import Progress, end_on_interrupt, report, write
 
 end_on_interrupt("report")  # what follows may take a while to load
@@ -41,6 +42,8 @@ def positive(text):
 
 def write_report(chosen):
     tables.check_columns(chosen.columns)
+    if os.path.islink(chosen.output):
+        raise RecordsError(f"{chosen.output}: is a symbolic link, which a new file would replace; name the file it leads to")
     sweeps = [scenes.Sweep(directory) for directory in chosen.directories]
     found = scenes.scenes_of(sweeps)
     from report_page import page  # here, so that a broken table is named even without NumPy

@@ -318,6 +318,11 @@ class Page(unittest.TestCase):
         self.refuses("no such folder", directory=self.folder / "nowhere")
         self.refuses("no records.csv", directory=self.folder)
 
+    def test_no_link_is_replaced_by_the_page(self):
+        self.output.symlink_to(self.folder / "page")
+        self.refuses("report.html: is a symbolic link")
+        self.assertTrue(self.output.is_symlink())
+
     def test_broken_records_are_refused(self):
         self.rows[3]["rmse"] = "nan"
         sweep.write_table(self.sweep, self.rows)
