@@ -14,6 +14,7 @@ import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
 sys.path.insert(0, str(ROOT / "tests" / "tooling"))
 
 import browser
@@ -41,6 +42,8 @@ class Report(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         folder = pathlib.Path(cls.folder.name)
         cls.rows = sweep.write_sweep(folder / "sweep", scenes=("ring", "pool"))
+        sweep.add_indirect(folder / "sweep", cls.rows)
+        sweep.add_flip(folder / "sweep", cls.rows, ("beamtree",))
         cls.lost = cls.rows[0]["trial"]  # ring, photonmap, 1000 photons, seed 1... of the scene shown second
         (folder / "sweep" / "trials" / cls.lost / "image.exr").unlink()
         cls.page = folder / "report.html"
@@ -214,6 +217,7 @@ class Report(unittest.TestCase):
         self.click(".pane canvas")
         x, y = map(int, self.state("pixel").split(","))
         caustic, _, _ = sweep.reference_planes()
+        self.browser.wait_for("document.querySelectorAll('#probe-table tbody tr').length > 2")
         first, second = self.run_script("[...document.querySelectorAll('#probe-table tbody tr')].slice(0, 2).map((r) => [...r.children].map((e) => e.textContent))")
         self.close_to(float(first[1]), float(caustic[0, y, x]))
         self.close_to(float(first[4].split(" ± ")[0]), float(caustic[:, y, x].mean()))
@@ -322,6 +326,24 @@ class Report(unittest.TestCase):
         self.open("#scene=99&nonsense=1&mode=flip")
         self.assertEqual((self.state("scene"), self.state("mode")), ("0", "flip"))
 
+    def test_exposure_and_colours_are_those_of_their_formulas(self):
+        self.choose("type-exposure", "-1")
+        caustic, _, _ = sweep.reference_planes()
+        x, y = 9, 7
+        found = self.run_script(f"[...viewer.images.get('ref').canvas.getContext('2d').getImageData({x}, {y}, 1, 1).data].slice(0, 3)")
+        for value, linear in zip(found, 0.5 * caustic[:, y, x].astype(float)):
+            wanted = 12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055
+            self.assertLessEqual(abs(value - 255 * wanted), 1)
+        self.assertIn("exposure −1.00 stops", self.text("#scale"))
+        lightness = self.run_script("Array.from({length: 65}, (_, i) => sequential(i / 64)).map(([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b)")
+        self.assertEqual(lightness, sorted(lightness), "false colours are in order without their hue")
+        self.choose("choose-tone", "false")
+        self.choose("type-low", "0.1")
+        self.choose("type-high", "0.4")
+        self.assertEqual(self.run_script("[...document.querySelectorAll('#scale text')].map((e) => e.textContent)"), ["≤ 0.100", "0.200", "0.400"])
+        self.press("e")
+        self.assertEqual(self.run_script("[...document.querySelectorAll('#scale text')].map((e) => e.textContent)"), ["−0.400", "0", "+0.400"])
+
     def test_formula_and_epsilon_are_printed(self):
         self.press("e")
         self.choose("choose-formula", "relative_square")
@@ -351,6 +373,57 @@ class Report(unittest.TestCase):
         self.settle()
         self.assertEqual(self.run_script(f"viewer.images.get('{cell}').hole"), f"the picture of {self.lost}: no such file")
         self.browser.wait_for("/no such file/.test(byId('probe-table').textContent)")
+
+    def cell_of(self, method):
+        return str(self.run_script(f"scene().cells.findIndex((cell) => cell.method === '{method}')"))
+
+    def test_flip_is_a_map(self):
+        beams, photons = self.cell_of("beamtree"), self.cell_of("photonmap")
+        self.run_script(f"change({{pictures: 'ref.{beams}.{photons}'}})")
+        self.choose("choose-show", "flip")
+        self.assertIn("HDR-FLIP [1]", self.text("#meaning"))
+        found = self.run_script(f"[...viewer.images.get('{beams}').planes[0]]")
+        for i, value in enumerate(found):
+            if i < 3:
+                self.assertTrue(value is None or math.isnan(value), value)  # not reached
+            else:
+                self.assertAlmostEqual(value, i % sweep.WIDTH / (sweep.WIDTH - 1), delta=1e-3)
+        self.assertEqual(self.run_script("[viewer.range.low, viewer.range.high]"), [0, 1])
+        self.assertRegex(self.text(".panes figure:nth-child(2) figcaption"), "mean of the map 0.50")
+        self.assertIn("no FLIP (tools/flip_column.py)", self.run_script(f"viewer.images.get('{photons}').hole"))
+
+    def test_a_map_has_the_references_picture_beside_it(self):
+        self.choose("choose-show", "error")
+        self.assertIn("reference (lighttrace), its picture", self.text(".pane figcaption"))
+        self.assertNotEqual(self.run_script("viewer.images.get('ref').planes[0][100]"), 0)
+        self.assertNotEqual(self.run_script("leftKey()"), "ref")
+        self.choose("choose-against", self.cell_of("beamtree"))
+        self.assertNotIn("its picture", self.text(".pane figcaption"))
+
+    def test_indirect_light_is_shown_and_scored_alone(self):
+        self.choose("choose-layer", "indirect")
+        self.assertIn("indirect layer", self.text("#meaning"))
+        self.choose("choose-show", "error")
+        for seed in (0, 3):
+            self.choose("choose-seed", str(seed))
+            mean = self.run_script("errorOf('0', REFERENCE).then((map) => meanOfMap(map).mean)")
+            self.assertAlmostEqual(mean, 0.01 * (seed + 1), delta=1e-3)
+        self.assertIn("indirect rmse 0.03000 ±", self.text(".panes figure:nth-child(2) figcaption"))
+        self.run_script("change({pixel: '5,5'})")
+        self.browser.wait_for("/ ± 0.0020/.test(byId('probe-table').textContent)")
+        self.choose("choose-metric", "indirect_rmse")
+        self.assertIn("indirect_rmse [W m⁻² sr⁻¹]", self.text("#curve"))
+        self.choose("choose-layer", "beauty")
+        self.choose("choose-show", "picture")
+        caustic, rest, _ = sweep.reference_planes()
+        found = self.run_script("viewer.images.get('ref').planes[1][100]")
+        self.close_to(found, float((caustic[1] + rest).flat[100]) + 0.25)
+
+    def test_plots_have_their_legends(self):
+        self.browser.wait_for("byId('spectrum').dataset.ready && true")
+        for name in ("photonmap", "beamtree"):
+            self.assertIn(name, self.text("#spectrum"))
+            self.assertIn(name, self.text("#curve-legend"))
 
     def test_equal_time_follows_the_time_allowed(self):
         for i in range(self.run_script("scene().contests.length")):

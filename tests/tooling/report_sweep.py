@@ -136,10 +136,10 @@ def lit(planes, indirect):
     return {**found, **{f"indirect.{colour}": numpy.full_like(planes["R"], indirect) for colour in "RGB"}}
 
 
-def add_flip(folder, rows):
-    """Maps that rise from 0 to 1 from left to right, as flip_column keeps them."""
+def add_flip(folder, rows, methods=("photonmap", "beamtree")):
+    """Maps that rise from 0 to 1 from left to right, as flip_column keeps them, for some methods."""
     flip = numpy.tile(numpy.linspace(0, 1, WIDTH, dtype=numpy.float32), (HEIGHT, 1))
-    for row in rows:
+    for row in (row for row in rows if row["method"] in methods):
         write_exr(folder / "trials" / row["trial"] / "flip.exr", {"flip.Y": flip},
                   texts=[("causticbench.picture_hash", row["picture_hash"])])
         row["flip"] = repr(float(flip[reference_planes()[2] == 0].mean(dtype=float)))

@@ -11,6 +11,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 sys.dont_write_bytecode = True
@@ -27,7 +28,7 @@ except ImportError as error:
 
 import report_sweep as sweep
 from report import exr
-from report_page import pictures
+from report_page import pictures, scenes
 
 TOOL = ROOT / "tools" / "make_report.py"
 
@@ -223,6 +224,21 @@ class Page(unittest.TestCase):
             self.assertAlmostEqual(float(self.picture(data, each["indirect"])[0, 0, 0]), 0.25 + 0.01 * int(each["seed"]), delta=1e-4)
         self.assertAlmostEqual(cell["errors"]["indirect_rmse"][0], 0.03)
         self.assertEqual(cell["costs"]["indirect_cpu_s"], 0.5)
+
+    def test_cells_are_named_by_what_tells_them_apart(self):
+        some = types.SimpleNamespace(folder="a")
+        cell = lambda method, **parameters: types.SimpleNamespace(method=method, parameters=parameters, sweep=some)
+        scene = types.SimpleNamespace(cells=[
+            cell("none"), cell("none", indirect="pathtrace", indirect_spp="4"),
+            cell("none", indirect="globalphotonmap", indirect_gather="4", indirect_photons="20000"),
+            cell("none", indirect="globalphotonmap", indirect_gather="16", indirect_photons="20000"),
+            cell("beamtree", intensity="area"), cell("beamtree", intensity="area", footprint="0.02"), cell("beamtree", intensity="refined")])
+        scenes.name_cells(scene)
+        self.assertEqual([cell.label for cell in scene.cells], [
+            "none", "none, indirect pathtrace", "none, indirect globalphotonmap (gather 4)", "none, indirect globalphotonmap (gather 16)",
+            "beamtree, intensity area", "beamtree, intensity area, footprint 0.02", "beamtree, intensity refined"])
+        self.assertEqual(scene.cells[2].line, scene.cells[3].line, "a line along the rays")
+        self.assertNotEqual(scene.cells[4].line, scene.cells[5].line, "none along a length")
 
     def test_too_few_seeds_have_no_best(self):
         shutil.rmtree(self.sweep)

@@ -58,13 +58,16 @@ function curvePlot(width, height, pick) {
 function legend(lines) {
   const drawn = new Map(lines.map((line) => [line.name, line]));
   return cellLines().map((line) => {
-    const slope = drawn.has(line.name) ? fittedSlope(drawn.get(line.name).points) : null;
+    const slope = drawn.has(line.name) && isWide(drawn.get(line.name).points) ? fittedSlope(drawn.get(line.name).points) : null;
     const svg = make("svg", {width: 44, height: 14, viewBox: "0 0 44 14", class: "plot"}, lineSign(line));
     const text = slope ? ` slope ${short(slope.slope, 3)}${slope.error === null ? "" : ` ± ${short(slope.error, 2)}`}` : "";
     return make("button", {type: "button", class: "line-switch", "aria-pressed": String(!line.hidden), "data-line": line.name, title: "show or hide this line",
       onclick: () => toggleLine(line.name)}, svg, make("span", {}, line.name), make("small", {}, text));
   });
 }
+
+/** Points of about one cost have no slope over it. */
+function isWide(points) { return points.at(-1).x > 1.5 * points[0].x; }
 
 function toggleLine(name) {
   const hidden = hiddenLines();

@@ -183,14 +183,14 @@ function drawAll(names) {
   const any = (...wanted) => !names || wanted.some((name) => names.has(name));
   drawHead();
   if (any("scene", "contest", "seed", "exposure", "crops")) drawStrip();
-  if (any("scene", "contest", "seed", "pictures", "left", "right", "mode")) drawChosen();
+  if (any("scene", "contest", "seed", "pictures", "left", "right", "mode", "show", "against")) drawChosen();
   const maps = drawIf(any(...SIZES, "layer"), drawViewer);
   if (!any(...SIZES) && any("view", "pixel", "region", "split")) paintPanes();
   if (any("split")) byId("split-at").value = state.split;
   if (any("scene", "metric", "cost", "hidden", "pictures")) drawCurves();
   if (any("scene", "seed", "layer", "pixel", "region", "place", "cost", "hidden")) maps.then(drawProbe);
-  if (any("scene", "contest", "seed", "pictures", "left", "right", "layer", "formula", "against", "epsilon", "spread")) maps.then(drawSpread);
-  if (any("scene", "contest", "pictures", "left", "right", "layer")) maps.then(drawSpectrum);
+  if (any("scene", "contest", "seed", "pictures", "left", "right", "show", "layer", "formula", "against", "epsilon", "spread")) maps.then(drawSpread);
+  if (any("scene", "contest", "pictures", "left", "right", "show", "against", "layer")) maps.then(drawSpectrum);
   if (any("rows", "sort", "filter", "columns")) drawTable();
 }
 

@@ -27,7 +27,7 @@ WORDS = {
     "indirect_rmse": "indirect_rmse = √ mean (x − r)² of the indirect layer",
     "indirect_relmse": "indirect_relmse = mean (x − r)² / (r² + ε) of the indirect layer,  ε = 0.01 mean(r)²",
     "indirect_mean_ratio": "indirect_mean_ratio = mean(x) / mean(r) of the indirect layer",
-    "work_s": "CPU seconds of build and query together, without reading the scene",
+    "work_s": "CPU seconds of build (of indirect light too) and query",
     "build_s": "CPU seconds of the method's precompute pass (photons or beams, and their trees)",
     "query_s": "CPU seconds of the eye pass",
     "indirect_cpu_s": "CPU seconds of the indirect method's precompute pass",

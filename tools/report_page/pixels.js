@@ -63,7 +63,7 @@ async function layerOf(key, name = errorLayer(), seed = Number(state.seed), wher
 /** {id} of a layer of a cell's picture, or {hole: reason}. */
 function pictureLayer(found, name) {
   if (found.hole) return found;
-  if (found[name] === undefined) return {hole: `it has no layer ${name}`};
+  if (found[name] === undefined) return {hole: `its picture has no layer ${name}`};
   return typeof found[name] === "object" ? found[name] : {id: found[name]};
 }
 

@@ -27,6 +27,7 @@ async function drawProbe() {
   const turn = ++probe.turn, region = probedRegion();
   byId("probe-place").textContent = regionText(region);
   if (!region) { byId("probe-table").replaceChildren(); byId("probe-curve").replaceChildren(); return; }
+  byId("probe-table").replaceChildren(make("p", {class: "note"}, `reading the pictures of ${scene().cells.length} cells …`));
   const reference = await referencePicture(errorLayer()), own = await referencePicture(ownErrorLayer());
   const rows = [];
   let middle = null, deviation = null, pixelDeviation = null;
@@ -123,7 +124,7 @@ function histogram(counts, low, step, chosen, key, total) {
   const wide = (width - box.left - box.right) / counts.length;
   const tall = (count) => (count === 0 ? 0 : ((1 + Math.log10(count)) / (1 + Math.log10(most))) * (height - box.top - box.bottom));
   const svg = make("svg", {class: "plot", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "distribution of the errors"});
-  svg.append(make("text", {x: box.left, y: 16, class: "plot-title"}, `${labelOf(key)}: ${formulaText()} of ${total} pixels`));
+  svg.append(make("text", {x: box.left, y: 16, class: "plot-title"}, `${labelOf(key)}: ${total} pixels`));
   counts.forEach((count, i) => {
     const [from, to] = [low + i * step, low + (i + 1) * step], text = `${count} pixels from ${short(from, 3)} to ${short(to, 3)}${i === counts.length - 1 ? " and above" : i === 0 && low < 0 ? " and below" : ""}`;
     const run = () => change({spread: chosen === i ? "" : i});
@@ -138,7 +139,7 @@ function histogram(counts, low, step, chosen, key, total) {
   for (const t of linearTicks(low, low + counts.length * step)) svg.append(make("text", {x: box.left + ((t - low) / step) * wide, y: height - box.bottom + 16, "text-anchor": "middle", class: "tick"}, tickText(t)));
   for (let count = 1; count <= most; count *= 10) svg.append(make("text", {x: box.left - 6, y: height - box.bottom - tall(count) + 4, "text-anchor": "end", class: "tick"}, tickText(count)));
   svg.append(make("path", {d: `M${box.left},${box.top}V${height - box.bottom}H${width - box.right}`, class: "axis"}),
-    make("text", {x: width / 2, y: height - 6, "text-anchor": "middle", class: "label"}, `${FORMULAS[state.formula].text} [${FORMULAS[state.formula].unit}]`),
+    make("text", {x: width / 2, y: height - 6, "text-anchor": "middle", class: "label"}, `${formulaText()} [${FORMULAS[state.formula].unit}]`),
     make("text", {x: 13, y: height / 2, "text-anchor": "middle", class: "label", transform: `rotate(-90 13 ${height / 2})`}, "pixels (log)"));
   return svg;
 }

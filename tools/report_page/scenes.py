@@ -14,6 +14,7 @@ from report.records import PHOTON_PARAMETERS, RecordsError, natural
 
 BUILD = ("precompute_cpu_s", "balance_cpu_s")
 QUERY = ("render_cpu_s",)
+INDIRECT = ("indirect_cpu_s",)
 ERRORS = ("rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "mask_rmse", "mask_relmse", "mask_mean_ratio",
           "beauty_rmse", "flip", "indirect_rmse", "indirect_relmse", "indirect_mean_ratio")
 COSTS = ("work_s", "build_s", "query_s", "indirect_cpu_s", "total_s", "photons_stored", "photons_emitted", "map_bytes", "peak_rss_bytes")
@@ -76,7 +77,7 @@ class Cell:
     def values(self, column):
         """The column's numbers, a row each; [] where it does not apply to all rows. Build, query and their sum are CPU
         seconds."""
-        parts = {"build_s": BUILD, "query_s": QUERY, "work_s": BUILD + QUERY}.get(column)
+        parts = {"build_s": BUILD, "query_s": QUERY, "work_s": BUILD + QUERY + INDIRECT}.get(column)
         if parts is None:
             return numbers(row.get(column) for row in self.rows)
         if not any(row.get(part) for row in self.rows for part in parts):
@@ -179,17 +180,42 @@ def name_cells(scene):
     """Labels that tell the scene's cells apart, and the line that each is on."""
     for method in sorted({cell.method for cell in scene.cells}):
         own = [cell for cell in scene.cells if cell.method == method]
-        names = varying(own)
+        names = [name for name in varying(own) if tells_apart(name, own)]
         work = work_parameter(own, names)
         folders = len({cell.sweep.folder for cell in own}) > 1
         for cell in own:
             words = [f"{counted(cell.parameters[name])} {name}" if name in COUNTED else spelt(name, cell.parameters[name])
-                     for name in sorted(names, key=lambda name: name != work) if name in cell.parameters]
+                     for name in sorted(names, key=lambda name: name != work) if name in cell.parameters and not of_indirect(name)]
             place = (f"from {os.path.basename(os.path.normpath(cell.sweep.folder))}",) if folders else ()
-            cell.label = ", ".join([method, *words, *place])
-            cell.line = (method, *(spelt(name, cell.parameters[name]) for name in names
-                                   if name != work and name in cell.parameters), *place)
+            cell.label = ", ".join([method, *words, *indirect_words(cell, names), *place])
+            others = [name for name in names if name != work]
+            cell.line = (method, *(spelt(name, cell.parameters[name]) for name in others
+                                   if name in cell.parameters and not of_indirect(name)), *indirect_words(cell, others), *place)
             cell.work_parameter = work if work in cell.parameters else None
+
+
+def of_indirect(name):
+    return name == "indirect" or name.startswith("indirect_")
+
+
+def tells_apart(name, cells):
+    """Whether a number of the indirect method differs between cells of that method."""
+    if not name.startswith("indirect_"):
+        return True
+    values = {}
+    for cell in cells:
+        values.setdefault(cell.parameters.get("indirect"), set()).add(cell.parameters.get(name))
+    return any(len(each) > 1 for each in values.values())
+
+
+def indirect_words(cell, names):
+    """What makes the cell's light between diffuse surfaces, where the cells differ in that."""
+    method = cell.parameters.get("indirect") if "indirect" in names else None
+    words = [spelt(name.removeprefix("indirect_"), cell.parameters[name]) for name in names
+             if name.startswith("indirect_") and name in cell.parameters]
+    if not words:
+        return [f"indirect {method}"] if method else []
+    return [f"indirect {method} ({', '.join(words)})" if method else f"indirect ({', '.join(words)})"]
 
 
 def spelt(name, value):

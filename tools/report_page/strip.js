@@ -18,15 +18,16 @@ function orderedPicks(contest) {
 const INSETS = ["#ff9d00", "#00b7ff"];
 const strip = {turn: 0};
 
-/** The corners of the two insets: where the reference changes most among counted pixels, unless the state names others. */
+/** The corners of the two insets: where a picture changes most among counted pixels, up to its white, unless the state names others. */
 function insets(reference, counted) {
   if (state.crops) return state.crops.split("_").map((corner) => corner.split(",").map(Number));
   const side = insetSide(), {width, height} = reference, found = [];
-  const change = new Float64Array(width * height);
+  const change = new Float64Array(width * height), white = 2 ** -usualExposure(reference);
+  const shown = (i) => Math.min(white, luminance(reference, i));
   for (let y = 0; y + 1 < height; ++y) for (let x = 0; x + 1 < width; ++x) {
-    const i = y * width + x, here = luminance(reference, i);
+    const i = y * width + x;
     if (!counted[i] || !counted[i + 1] || !counted[i + width]) continue;
-    change[i] = Math.abs(luminance(reference, i + 1) - here) + Math.abs(luminance(reference, i + width) - here);
+    change[i] = Math.abs(shown(i + 1) - shown(i)) + Math.abs(shown(i + width) - shown(i));
   }
   for (let n = 0; n < 2; ++n) {
     let best = [-1, 0, 0];
@@ -52,18 +53,21 @@ async function drawStrip() {
   const reference = images.get(REFERENCE), whole = [...images.values()].find((image) => !image.hole);
   const guide = reference && !reference.hole ? reference : whole;
   const exposure = state.exposure !== "" ? Number(state.exposure) : guide ? usualExposure(guide) : 0;
-  const corners = guide ? insets(guide, await countedPixels([])) : [];
+  const caustic = await layerOf(REFERENCE, "caustic"); // not the edges of lamps and shadows, where there is a caustic
+  const bright = !caustic.hole && caustic.planes.some((plane) => plane.some((each) => each > 0));
+  const corners = guide ? insets(bright ? caustic : guide, await countedPixels([])) : [];
   const figures = [];
   for (const key of keys) figures.push(await stripFigure(key, images.get(key), exposure, corners, contest));
   if (turn !== strip.turn) return;
   byId("strip").replaceChildren(...figures);
   byId("strip").dataset.ready = String(turn);
+  byId("opening-head").textContent = contest ? "At equal time" : "Best of each method";
   const left = (await countedPixels([])).filter((each) => !each).length;
   byId("contest-text").textContent = contestText(contest) + (left ? ` Greyed: ${left} pixels that the reference does not reach; no number counts them.` : "");
 }
 
 function contestText(contest) {
-  if (!contest) return "No two methods have errors and times here, so nothing is held against equal time.";
+  if (!contest) return "No two methods have errors and times here, so nothing is held against equal time: the best of each method, or of each of indirect light.";
   const seeds = scene().seeds, own = scene().cells.find((each) => each.references_error)?.references_error;
   const noise = own && Object.values(contest.picks).some((i) => scene().cells[i].errors.rmse[0] < 2 * own)
     ? ` An rmse near ${short(own, 3)}, the reference's own standard error, is mostly the reference's noise.` : "";
@@ -78,7 +82,8 @@ async function stripFigure(key, image, exposure, corners, contest) {
   if (cell) {
     const settings = cell.label.replace(`${cell.method}, `, "");
     lines.push(make("span", {}, settings === cell.method ? "" : settings), make("span", {}, `rmse ${withInterval(cell.errors.rmse)}`),
-      make("span", {}, `build ${short(cell.costs.build_s, 3)} + query ${short(cell.costs.query_s, 3)} CPU s`));
+      make("span", {}, `build ${short(cell.costs.build_s, 3)} + query ${short(cell.costs.query_s, 3)}${cell.costs.indirect_cpu_s ? ` + indirect ${short(cell.costs.indirect_cpu_s, 3)}` : ""} CPU s`));
+    if (cell.errors.indirect_rmse) lines.push(make("span", {}, `indirect rmse ${withInterval(cell.errors.indirect_rmse)}`));
   } else {
     const error = scene().cells.find((each) => each.references_error)?.references_error;
     lines.push(make("span", {}, scene().reference.method), make("span", {}, error ? `standard error of a pixel ${short(error, 3)} W m⁻² sr⁻¹` : ""), make("span", {}));

@@ -38,7 +38,7 @@ function allColumns() {
 function shownColumns() {
   const known = allColumns(), named = state.columns ? state.columns.split(".").filter((name) => known.includes(name)) : [];
   if (state.rows !== "cells") return named.length ? named : RECORD_COLUMNS.filter((name) => known.includes(name));
-  const usual = ["rmse", "relmse", "bias", "flip", "build_s", "query_s", "work_s", "map_bytes"].filter((name) => known.includes(name));
+  const usual = ["rmse", "relmse", "bias", "flip", "indirect_rmse", "build_s", "query_s", "work_s", "map_bytes"].filter((name) => known.includes(name));
   return [...CELL_COLUMNS, ...(named.length ? named.filter((name) => !CELL_COLUMNS.includes(name)) : usual)];
 }
 

@@ -11,7 +11,9 @@ from report_page.scenes import COSTS, ERRORS, rank
 KNOWN = ERRORS + COSTS
 USUAL = ("rmse", "work_s")
 NARROW = 2  # columns of numbers that fit beside the labels in one column of a paper
-TEX_UNITS = {"rmse": r"$\mathrm{W\,m^{-2}\,sr^{-1}}$", "work_s": "CPU seconds", "build_s": "CPU seconds", "query_s": "CPU seconds",
+RADIANCE = r"$\mathrm{W\,m^{-2}\,sr^{-1}}$"
+TEX_UNITS = {"rmse": RADIANCE, "mask_rmse": RADIANCE, "beauty_rmse": RADIANCE, "indirect_rmse": RADIANCE, "indirect_cpu_s": "CPU seconds",
+             "work_s": "CPU seconds", "build_s": "CPU seconds", "query_s": "CPU seconds",
              "total_s": "seconds", "map_bytes": "bytes", "peak_rss_bytes": "bytes"}
 
 

@@ -15,22 +15,34 @@ function usualKeys() {
   return [...keys, ...cells.map(String)].slice(0, 9);
 }
 
-/** Where no two methods compete: each method's cell with the least error, or its first. */
+/** Where no two methods compete: each method's cell with the least error, or its first; where methods of indirect light do, the
+ *  best of each of those. */
 function bestOfMethods() {
-  const cells = scene().cells;
-  return METHODS.map((method) => cells.map((_, i) => i).filter((i) => cells[i].method === method)
-    .sort((a, b) => (cells[a].errors.rmse?.[0] ?? 0) - (cells[b].errors.rmse?.[0] ?? 0))[0]).filter((i) => i !== undefined);
+  const cells = scene().cells, lit = cells.some((cell) => cell.errors.indirect_rmse);
+  const error = (cell) => (lit ? cell.errors.indirect_rmse?.[0] ?? Infinity : cell.errors.rmse?.[0] ?? 0);
+  const best = new Map();
+  cells.forEach((cell, i) => {
+    const group = lit ? cell.parameters.indirect ?? "" : cell.method, before = best.get(group);
+    if (before === undefined || error(cell) < error(cells[before])) best.set(group, i);
+  });
+  return [...best.values()].sort((a, b) => rank(cells[a].method) - rank(cells[b].method) || error(cells[a]) - error(cells[b]));
 }
 
-function leftKey() { const keys = shownKeys(); return keys.includes(state.left) ? state.left : keys[0]; }
+/** Left and right of flip and split: what is named, or the first; of maps those that the reference is held against come first. */
+function leftKey() { const keys = shownKeys(); return keys.includes(state.left) ? state.left : mappedFirst(keys)[0]; }
 function rightKey() {
   const keys = shownKeys();
-  return keys.includes(state.right) ? state.right : keys.find((key) => key !== leftKey()) ?? keys[0];
+  return keys.includes(state.right) ? state.right : mappedFirst(keys).find((key) => key !== leftKey()) ?? keys[0];
 }
+function mappedFirst(keys) { return showsReferenceAsPicture() ? [...keys].sort((a, b) => (a === REFERENCE) - (b === REFERENCE)) : keys; }
+
+/** Whether what is shown is a map that the reference itself has none of: its picture is shown in the map's place. */
+function showsReferenceAsPicture() { return !["picture", "mean"].includes(state.show) && !(state.show === "error" && state.against !== REFERENCE); }
 
 /** What is painted for a key: the picture, or a map of it. {image, hole} */
 async function shownImage(key) {
   const reference = await referencePicture(errorLayer());
+  if (key === REFERENCE && reference && showsReferenceAsPicture()) return {...reference, asPicture: true};
   if (state.show === "picture") return state.layer === "beauty" ? wholePicture(key) : layerOf(key);
   if (state.show === "error") return errorOf(key, state.against);
   if (state.show === "flip") return flipOf(key);
@@ -106,7 +118,7 @@ async function drawViewer() {
   viewer.images = images;
   const whole = [...images.values()].filter((image) => !image.hole);
   chooseColours(whole, await layerOf(REFERENCE));
-  for (const [key, image] of images) if (!image.hole) image.canvas = painted(image, viewer.exposure, viewer.range, await countedPixels([key]));
+  for (const [key, image] of images) if (!image.hole) image.canvas = painted(image, viewer.exposure, image.asPicture ? null : viewer.range, await countedPixels([key]));
   layPanes(state.mode === "side" ? wanted.map((key) => [key]) : state.mode === "split" ? [[leftKey(), rightKey()]] : [[leftKey()]]);
   byId("meaning").textContent = shownText();
   byId("scale").replaceChildren(...(viewer.range ? [scaleBar(viewer.range, 300, "")] : [exposureText()]));
@@ -118,10 +130,10 @@ function exposureText() { return make("span", {}, `exposure ${short(viewer.expos
 
 function chooseColours(images, reference) {
   viewer.exposure = state.exposure !== "" ? Number(state.exposure)
-    : images.length ? usualExposure(state.layer !== "beauty" && !reference.hole && state.show === "picture" ? reference : images[0]) : 0;
+    : images.length ? usualExposure(reference.hole || (state.layer === "beauty" && state.show === "picture") ? images[0] : reference) : 0;
   viewer.range = null;
   if (!isFalseColour()) return;
-  const maps = images.map((image) => image.planes.length === 1 ? image : grey(image.width, image.height, (i) => luminance(image, i)));
+  const maps = images.filter((image) => !image.asPicture).map((image) => image.planes.length === 1 ? image : grey(image.width, image.height, (i) => luminance(image, i)));
   const range = state.show === "flip" ? {signed: false, log: false, low: 0, high: 1} : usualRange(maps, isSigned(), state.scale === "log");
   if (state.high !== "" && Number(state.high) > 0) { range.high = Number(state.high); if (range.signed) range.low = -range.high; }
   if (state.low !== "" && !range.signed && Number(state.low) < range.high && (Number(state.low) > 0 || !range.log)) range.low = Number(state.low);
@@ -173,7 +185,7 @@ function paintPane(pane) {
     context.clip();
     if (image?.canvas) {
       context.drawImage(image.canvas, left, top, width * at.zoom, height * at.zoom);
-      if (viewer.range?.signed && at.zoom >= 18 * ratio) paintSigns(context, image, at, left, top, canvas);
+      if (viewer.range?.signed && !image.asPicture && at.zoom >= 18 * ratio) paintSigns(context, image, at, left, top, canvas);
     } else paintHole(context, canvas, image?.hole ?? "no picture", ratio);
     context.restore();
   });
@@ -189,7 +201,7 @@ function captionOf(key) {
   const sign = cell ? `${methodSign(cell.method)} ` : "";
   const error = cell && layerError(cell) ? ` · ${errorLayer() === "caustic" ? "" : "indirect "}rmse ${withInterval(layerError(cell))}${cell.costs.work_s !== undefined ? ` · ${short(cell.costs.work_s, 3)} CPU s` : ""}` : "";
   const image = viewer.images.get(key);
-  const mean = image && !image.hole && image.planes.length === 1 && state.show !== "picture"
+  const mean = image?.asPicture ? ", its picture" : image && !image.hole && image.planes.length === 1 && state.show !== "picture"
     ? ` · mean of the map ${short(meanOfMap(image).mean)}` : "";
   return `${number} ${sign}${labelOf(key)}${error}${mean}`;
 }
