@@ -9,8 +9,14 @@ void BeamSearch::add_to(Counters& counters) const {
     counters["beam_point_hits"] += counts.beam_point_hits;
 }
 
-BeamEstimator::BeamEstimator(const Scene& scene, TracedScene traced)
-    : report_(traced.report()), sets_(std::move(traced.sets)), light_(scene, sets_) {}
+BeamEstimator::BeamEstimator(const Scene& scene, TracedScene traced, std::uint32_t rest_nearest,
+                             int threads)
+    : report_(traced.report()),
+      sets_(std::move(traced.sets)),
+      light_(scene, sets_),
+      rest_(std::move(traced.rest), rest_nearest, threads) {
+    report_.bytes += rest_.bytes();
+}
 
 std::unique_ptr<QueryContext> BeamEstimator::make_context() const {
     return std::make_unique<BeamSearch>();
@@ -18,16 +24,16 @@ std::unique_ptr<QueryContext> BeamEstimator::make_context() const {
 
 void BeamEstimator::radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                              QueryContext& context) const {
-    answer(points, out, context, &BeamLight::radiance);
+    answer(points, out, context, &BeamLight::radiance, &PhotonDiscs::radiance);
 }
 
 void BeamEstimator::irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                                QueryContext& context) const {
-    answer(points, out, context, &BeamLight::irradiance);
+    answer(points, out, context, &BeamLight::irradiance, &PhotonDiscs::irradiance);
 }
 
 void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                           QueryContext& context, Query query) const {
+                           QueryContext& context, Query query, RestQuery of_rest) const {
     auto& search = dynamic_cast<BeamSearch&>(context);
     constexpr std::size_t together = 64;
     search.hits.resize(together);
@@ -35,8 +41,12 @@ void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Esti
         const std::size_t count = std::min(together, points.size() - first);
         for (std::vector<BeamHit>& hits : search.hits) hits.clear();
         find(points.subspan(first, count), search);
-        for (std::size_t i = 0; i < count; ++i)
-            out[first + i] = {(light_.*query)(points[first + i], search.hits[i]), black()};
+        for (std::size_t i = 0; i < count; ++i) {
+            const ReceiverPoint& point = points[first + i];
+            out[first + i] = {(light_.*query)(point, search.hits[i]), black()};
+            if (!rest_.is_empty())
+                out[first + i].value += (rest_.*of_rest)(point, search.disc_stack);
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "beamtree/light/beam_light.h"
+#include "beamtree/rest/photon_discs.h"
 #include "beamtree/tracing/traced_scene.h"
 
 namespace caustics::beamtree {
@@ -14,6 +15,7 @@ public:
 
     std::vector<std::vector<BeamHit>> hits;  ///< of each point that is asked about
     std::vector<std::uint32_t> stack;
+    std::vector<std::uint32_t> disc_stack;
     SearchCounts counts;
 };
 
@@ -30,8 +32,10 @@ public:
     BuildReport build_report() const override { return report_; }
 
 protected:
-    /// Keeps the beams; the casters' meshes are needed no more.
-    BeamEstimator(const Scene& scene, TracedScene traced);
+    /// Keeps the beams, and the photons that complete their light, each with a disc that reaches to so many others;
+    /// the casters' meshes are needed no more.
+    BeamEstimator(const Scene& scene, TracedScene traced, std::uint32_t rest_nearest = 0,
+                  int threads = 1);
 
     const std::vector<BeamSet>& sets() const { return sets_; }
 
@@ -41,12 +45,15 @@ private:
     virtual void find(std::span<const ReceiverPoint> points, BeamSearch& search) const = 0;
 
     using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
+    using RestQuery = Spectrum (PhotonDiscs::*)(const ReceiverPoint&,
+                                                std::vector<std::uint32_t>&) const;
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                QueryContext& context, Query query) const;
+                QueryContext& context, Query query, RestQuery of_rest) const;
 
     BuildReport report_;
     std::vector<BeamSet> sets_;
     BeamLight light_;
+    PhotonDiscs rest_;
 };
 
 }  // namespace caustics::beamtree

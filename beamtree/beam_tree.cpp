@@ -18,8 +18,10 @@ public:
 
 class BeamTree final : public BeamEstimator {
 public:
-    BeamTree(const Scene& scene, TracedScene traced, Forest forest)
-        : BeamEstimator(scene, std::move(traced)), forest_(std::move(forest)) {}
+    BeamTree(const Scene& scene, TracedScene traced, Forest forest, std::uint32_t rest_nearest,
+             int threads)
+        : BeamEstimator(scene, std::move(traced), rest_nearest, threads),
+          forest_(std::move(forest)) {}
 
     std::unique_ptr<QueryContext> make_context() const override {
         return std::make_unique<ConeSearch>();
@@ -44,11 +46,15 @@ private:
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
     if (params.sampled) return sampled_beams(scene, "beamtree", params, options);
+    const bool completed = params.rest == BeamTreeParams::Rest::photons;
     TracedScene traced =
-        trace_scene(scene, "beamtree", params, options, params.intensity, params.footprint);
+        trace_scene(scene, "beamtree", params, options, params.intensity, params.footprint,
+                    completed ? static_cast<std::uint64_t>(params.rest_photons) : 0);
     options.phase("tree");
     Forest forest(scene, traced, params, options);
-    return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest));
+    return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest),
+                                      static_cast<std::uint32_t>(params.rest_nearest),
+                                      options.threads);
 }
 
 }  // namespace caustics::beamtree

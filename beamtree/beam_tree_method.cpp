@@ -63,6 +63,26 @@ std::vector<Parameter<P>> tree_parameters() {
                                                   "point that irradiance is averaged over."})
             .usually("none"),
         parameter::choice<P>(
+            &P::rest, {{"none", P::Rest::none}, {"photons", P::Rest::photons}},
+            {.key = "rest",
+             .meaning = "What becomes of light that prune and max_beams leave out: it is lost, or "
+                        "photons carry it from the polygons where it begins."})
+            .only_if([](const P& p) { return p.rest != P::Rest::none; }),
+        parameter::whole_number<P>(
+            &P::rest_photons, 1, 1'000'000'000,
+            {.key = "rest_photons",
+             .meaning = "With rest photons: paths for all light on casters; what is left out takes "
+                        "its share of them.",
+             .unit = "photons"})
+            .only_if([](const P& p) { return p.rest != P::Rest::none; }),
+        parameter::whole_number<P>(
+            &P::rest_nearest, 2, 10'000,
+            {.key = "rest_nearest",
+             .meaning =
+                 "With rest photons: a photon spreads its light as far as so many others lie.",
+             .unit = "photons"})
+            .only_if([](const P& p) { return p.rest != P::Rest::none; }),
+        parameter::choice<P>(
             &P::dispersion, {{"bins", Dispersion::bins}, {"intervals", Dispersion::intervals}},
             {.key = "dispersion",
              .meaning = "All light of a part of the wavelengths goes one way, or a point asks for "
@@ -87,6 +107,15 @@ void settle_bound(const JsonNode& node, P& params) {
             footprint->fail("only the bound \"two_slice\" averages over squares of its planes");
     if (params.dispersion == Dispersion::intervals && params.footprint > 0)
         node.at("dispersion").fail("intervals are of points, not of squares (leave out footprint)");
+}
+
+void settle_rest(const JsonNode& node, const P& params) {
+    if (params.rest == P::Rest::none)
+        for (const char* key : {"rest_photons", "rest_nearest"})
+            if (const auto given = node.find(key))
+                given->fail("only \"rest\": \"photons\" traces photons");
+    if (params.dispersion == Dispersion::intervals && params.rest != P::Rest::none)
+        node.at("dispersion").fail("photons complete no intervals (take \"bins\")");
 }
 
 // What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, have no
@@ -121,6 +150,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
              [](const JsonNode& node, P& params) {
                  settle_bound(node, params);
                  settle_tree(node, params);
+                 settle_rest(node, params);
              },
          .take_least_work = [](P& params) { params.sampled = true; }});
     return method;

@@ -21,6 +21,10 @@ struct BeamTreeParams : BeamParams {
         n,  ///< caustic polygons on the plane across the receiver's normal, as the paper says
         k   ///< on planes across a normal fixed for the tree
     };
+    enum class Rest {
+        none,    ///< light that `prune` and `max_beams` leave out is lost
+        photons  ///< and here it is not
+    };
     std::string preset = {};  ///< name of the settings that were taken in place of the defaults
     Bound bound = Bound::two_slice;
     double spread_threshold = 10;  ///< of `hybrid` [degrees]
@@ -32,6 +36,10 @@ struct BeamTreeParams : BeamParams {
     /// exactly [m]; 0: at the point alone. Only with the bound two_slice; beams that spread too far for
     /// a fixed plane, and polygons that the plane cuts, are asked at the point.
     float footprint = 0;
+    Rest rest = Rest::none;
+    std::int64_t rest_photons =
+        300'000;            ///< paths for all light on casters; what is left out has its share
+    int rest_nearest = 50;  ///< photons that a photon's disc reaches to
 
     /// The settings of [CC95]: hybrid cones, merged from their children's, over the caster's own
     /// subdivision; flux over the area of caustic polygons across the receiver's normal.

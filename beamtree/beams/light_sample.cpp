@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "beamtree/beams/area_light_sampler.h"
+#include "beamtree/beams/bin_share.h"
 #include "beamtree/beams/solid_angle.h"
 #include "core/math/rng.h"
 
@@ -91,20 +92,14 @@ std::vector<LightSample> drifting(const std::vector<LightSample>& samples, int w
 
 Spectrum share_of_wavelengths(const LightSample& light, double from, double to, float nm) {
     const WavelengthBin& bin = light.bin;
-    if (bin.nm == 0 || (nm == 0 && !light.drifts)) return Spectrum::Ones();
-    const Spectrum of_bin = (bin.weight > 0).select(1 / bin.weight, black());
+    if (bin.nm == 0 || !light.drifts) return share_of_bin(bin, nm);
     if (nm == 0)
         return channel_integral(light.places.wavelength_at(from), light.places.wavelength_at(to))
                    .cast<float>() *
-               of_bin;
-    const bool is_last = bin.to >= float{longest_wavelength};
-    if (nm < bin.from || (nm >= bin.to && !is_last)) return black();
-    if (light.drifts) {
-        const double place = light.places.place_of(static_cast<double>(nm));
-        if (place < from || place >= to) return black();
-    }
-    // The light of one wavelength that the picture without dispersion has: the bin's, but for its colour.
-    return of_bin;
+               whitened(bin);
+    const double place = light.places.place_of(static_cast<double>(nm));
+    if (place < from || place >= to) return black();
+    return share_of_bin(bin, nm);
 }
 
 Vec3 to_light(const LightSample& light, const Vec3& point) {

@@ -5,6 +5,7 @@
 #include "beamtree/beams/ray_spread.h"
 #include "beamtree/tracing/kept_beams.h"
 #include "beamtree/tracing/next_bounce.h"
+#include "beamtree/tracing/rest_photons.h"
 #include "core/base/parallel.h"
 
 namespace caustics::beamtree {
@@ -17,16 +18,14 @@ constexpr double own = 0.3;
 // What threads take at a time.
 constexpr std::size_t beams_together = 1024;
 
-double flux_of(const BeamSet& set) {
-    double sum = 0;
-    for (const Beam& beam : set.beams) sum += static_cast<double>(beam.flux.mean());
-    return sum;
-}
-
 double count_of(const std::vector<Level>& levels) {
     double sum = 0;
     for (const Level& level : levels) sum += static_cast<double>(level.traced.set.beams.size());
     return sum;
+}
+
+void append(const std::vector<RestPhoton>& some, std::vector<RestPhoton>& all) {
+    all.insert(all.end(), some.begin(), some.end());
 }
 
 /// Follows one level after the other, as far as it is worth it.
@@ -34,13 +33,14 @@ class Follower {
 public:
     Follower(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
              const BeamExtras& extras, const TraceSettings& settings, BeamBudget& budget,
-             TracedBeams& traced)
+             const RestPhotons& rest, TracedBeams& traced)
         : scene_(scene),
           boxes_(boxes),
           surface_(surface),
           extras_(extras),
           settings_(settings),
           budget_(budget),
+          rest_(rest),
           traced_(traced) {}
 
     void follow(Level& level, double first_flux, double mean_flux, const ProgressPart& part) {
@@ -52,13 +52,15 @@ public:
         if (goes_on) {
             NextSets next =
                 next_sets(scene_, boxes_, surface_, level, {settings_.prune * mean_flux, budget_},
-                          traced_.balance, settings_.threads, part.of(own));
+                          rest_, traced_.balance, settings_.threads, part.of(own));
+            append(next.rest, traced_.rest);
             const double beams = count_of(next.sets);
             for (Level& one : next.sets) {
                 const double flux = flux_of(one.traced.set);
                 if (one.worth < set_over_beam * settings_.prune * first_flux) {
                     traced_.balance.lost += flux;
                     traced_.balance.pruned += flux;
+                    complete(one);
                 } else {
                     follow(one, first_flux, mean_flux,
                            part.of((1 - own) * static_cast<double>(one.traced.set.beams.size()) /
@@ -84,6 +86,26 @@ public:
 private:
     void forget() {
         for (BeamSet& set : traced_.sets) set = {};
+        traced_.rest.clear();
+    }
+
+    // By photons, all light of a level that is left out.
+    void complete(const Level& level) {
+        const BeamSet& set = level.traced.set;
+        if (!rest_.is_on() || budget_.is_over()) return;
+        std::vector<std::vector<RestPhoton>> photons(chunk_count(set.beams.size(), beams_together));
+        parallel_chunks(
+            settings_.threads, set.beams.size(), beams_together, [&](const Chunk& chunk) {
+                for (std::size_t i = chunk.first; i < chunk.end; ++i) {
+                    const Beam& beam = set.beams[i];
+                    LeftOut part{
+                        level.parents[i], {}, level.event, static_cast<double>(beam.flux.mean())};
+                    for (std::size_t k = 0; k < 3; ++k)
+                        part.corners[k] = &level.traced.origins[beam.corners[k]];
+                    rest_.trace(*level.parent, part, photons[chunk.index]);
+                }
+            });
+        for (const std::vector<RestPhoton>& some : photons) append(some, traced_.rest);
     }
 
     void add_drifts(Level& level, const std::vector<bool>& kept) {
@@ -118,10 +140,17 @@ private:
     BeamExtras extras_;
     const TraceSettings& settings_;
     BeamBudget& budget_;
+    const RestPhotons& rest_;
     TracedBeams& traced_;
 };
 
 }  // namespace
+
+double flux_of(const BeamSet& set) {
+    double sum = 0;
+    for (const Beam& beam : set.beams) sum += static_cast<double>(beam.flux.mean());
+    return sum;
+}
 
 BeamBounces::BeamBounces(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
                          const BeamExtras& extras, const TraceSettings& settings,
@@ -140,13 +169,14 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
         flux += flux_of(one.set);
         beams += one.set.beams.size();
     }
+    const RestPhotons rest(scene_, surface_, settings_);
     for (const Event event : events) {
         if (first[event].set.beams.empty()) continue;
         Level level;
         level.event = event;
         level.traced = std::move(first[event]);
         level.departures = first_departures(level.traced);
-        Follower(scene_, boxes_, surface_, extras_, settings_, budget_, traced_)
+        Follower(scene_, boxes_, surface_, extras_, settings_, budget_, rest, traced_)
             .follow(level, flux, flux / static_cast<double>(beams),
                     part.of(static_cast<double>(level.traced.set.beams.size()) /
                             static_cast<double>(beams)));

@@ -9,6 +9,7 @@
 #include "beamtree/beams/mesh_neighbours.h"
 #include "beamtree/beams/ray_origin.h"
 #include "beamtree/beams/trace_progress.h"
+#include "beamtree/rest/rest_photon.h"
 #include "beamtree/tracing/beam_drift.h"
 #include "beamtree/tracing/ray_arrival.h"
 #include "beamtree/tracing/scene_boxes.h"
@@ -19,11 +20,15 @@ namespace caustics::beamtree {
 /// Beams, and the light that they do not carry.
 struct TracedBeams {
     std::vector<BeamSet> sets;
+    std::vector<RestPhoton> rest;  ///< photons of light that was left out, if they are asked for
     FluxBalance balance;
     DriftAccount drift;
     double least_light = 0;  ///< of a beam that the budget has room for [W]; 0: it has for all
     std::uint64_t unreceived = 0;  ///< beams left out because they meet no receiver
 };
+
+/// Of all beams of a set [W, mean of channels].
+double flux_of(const BeamSet& set);
 
 /// What sets get beside their rays; each may be null.
 struct BeamExtras {

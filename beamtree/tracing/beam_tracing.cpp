@@ -13,6 +13,15 @@ namespace {
 constexpr std::size_t large = 2048;
 constexpr std::size_t few = 8;
 
+// Of all casters and lights, were nothing between them [W].
+double first_flux(const Scene& scene, const std::vector<CasterMesh>& casters,
+                  const std::vector<LightSample>& lights, int threads) {
+    double sum = 0;
+    for (const LightSample& light : lights)
+        for (const CasterMesh& caster : casters) sum += first_flux(scene, caster, light, threads);
+    return sum;
+}
+
 // One light and caster may need more than its even share, but all together are not counted much more often than
 // there are beams in the end.
 BeamBudget part_of_budget(std::uint64_t most, std::size_t parts, double least) {
@@ -44,6 +53,11 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
     const SceneBoxes boxes = asks_boxes ? scene_boxes(scene) : SceneBoxes{};
     std::vector<TracedBeams> parts(lights.size() * casters.size());
     const double least = expected_least(scene, boxes, casters, lights, settings, options);
+    TraceSettings of_all = settings;
+    of_all.seed = options.seed;
+    if (settings.rest_photons > 0)
+        of_all.watts_per_photon = first_flux(scene, casters, lights, options.threads) /
+                                  static_cast<double>(settings.rest_photons);
     std::vector<BeamBudget> budgets(parts.size(),
                                     part_of_budget(settings.max_beams, parts.size(), least));
     const auto trace = [&](const std::vector<std::size_t>& which) {
@@ -51,7 +65,7 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
         const ProgressPart one{progress, 1 / static_cast<double>(which.size())};
         const auto part = [&](std::size_t i, int threads) {
             const std::size_t caster = i % casters.size();
-            TraceSettings own = settings;
+            TraceSettings own = of_all;
             own.threads = threads;
             parts[i] = trace_beams(scene, boxes, casters[caster],
                                    neighbours.empty() ? nullptr : &neighbours[caster],
@@ -79,6 +93,7 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
         all.balance.add(part.balance);
         all.drift.add(part.drift);
         all.unreceived += part.unreceived;
+        all.rest.insert(all.rest.end(), part.rest.begin(), part.rest.end());
         for (BeamSet& set : part.sets)
             if (!set.beams.empty()) all.sets.push_back(std::move(set));
     }

@@ -274,6 +274,16 @@ std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
     return {std::move(traced[0].set), std::move(traced[1].set)};
 }
 
+double first_flux(const Scene& scene, const CasterMesh& caster, const LightSample& light,
+                  int threads) {
+    const RunOptions options;
+    TraceProgress progress(options);
+    double sum = 0;
+    for (const TracedSet& one : first_sets(LitCaster(scene, caster, light), threads, {progress, 0}))
+        sum += flux_of(one.set);
+    return sum;
+}
+
 TracedBeams trace_beams(const Scene& scene, const SceneBoxes& boxes, const CasterMesh& caster,
                         const MeshNeighbours* neighbours, const LightSample& light,
                         const TraceSettings& settings, BeamBudget& budget,

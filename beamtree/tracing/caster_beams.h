@@ -20,6 +20,10 @@ namespace caustics::beamtree {
 std::array<BeamSet, 2> trace_beams(const Scene& scene, const CasterMesh& caster,
                                    const LightSample& light);
 
+/// The light that they have [W, mean of channels].
+double first_flux(const Scene& scene, const CasterMesh& caster, const LightSample& light,
+                  int threads);
+
 /// Beams of one caster lit by one light sample, after all events; only counted once they are more than the
 /// budget. Spreads want `neighbours`.
 TracedBeams trace_beams(const Scene& scene, const SceneBoxes& boxes, const CasterMesh& caster,

@@ -106,12 +106,13 @@ std::vector<Level> join_levels(const Scene& scene, const Level& parent,
 }
 
 NextBeams::NextBeams(const Scene& scene, const LitCaster& surface, const Level& level,
-                     const LeastLight& least, FluxBalance& balance)
+                     const LeastLight& least, const RestPhotons& rest, FluxBalance& balance)
     : scene_(scene),
       surface_(surface),
       level_(level),
       set_(level.traced.set),
       least_(least),
+      rest_(rest),
       balance_(balance) {}
 
 double NextBeams::flux(const Piece& piece) const {
@@ -173,8 +174,8 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
     const double clear = mean / left_of(corners);
     const double worth = clear / static_cast<double>(share);
     if (worth < least_.of_polygon || clear < least_.budget.least()) {
-        balance_.lost += mean;
-        (worth < least_.of_polygon ? balance_.pruned : balance_.over_budget) += mean;
+        leave_out({parent, {corners[0].origin, corners[1].origin, corners[2].origin}, event, mean},
+                  mean, worth < least_.of_polygon ? balance_.pruned : balance_.over_budget);
         return;
     }
     least_.budget.count(clear);
@@ -191,6 +192,13 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
     chunk.shares.push_back(share);
     chunk.parents.push_back(parent);
     chunk.places.push_back(first);
+}
+
+void NextBeams::leave_out(const LeftOut& part, double flux, double& cause) {
+    balance_.lost += flux;
+    cause += flux;
+    // Where the budget is over all is traced again.
+    if (!least_.budget.is_over()) rest_.trace(level_, part, photons_);
 }
 
 NextChunk& NextBeams::chunk_of(std::uint32_t shape, Event event) {

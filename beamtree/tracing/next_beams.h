@@ -6,6 +6,7 @@
 #include "beamtree/beams/flux_balance.h"
 #include "beamtree/tracing/beam_budget.h"
 #include "beamtree/tracing/beam_path.h"
+#include "beamtree/tracing/rest_photons.h"
 #include "beamtree/tracing/set_chunk.h"
 
 namespace caustics::beamtree {
@@ -43,9 +44,9 @@ std::vector<Level> join_levels(const Scene& scene, const Level& parent,
 /// The beams that go on from some of a level's, in chunks of their own: one a caster they meet and event there.
 class NextBeams {
 public:
-    /// Beams with less light than `least`, were media clear, are left out and counted by `balance`.
+    /// Beams with less light than `least`, were media clear, are left out.
     NextBeams(const Scene& scene, const LitCaster& surface, const Level& level,
-              const LeastLight& least, FluxBalance& balance);
+              const LeastLight& least, const RestPhotons& rest, FluxBalance& balance);
 
     /// A beam between corners that meet one piece of a surface and leave it by an event. It has `share` of its
     /// polygon, a beam of the level's set.
@@ -54,6 +55,9 @@ public:
     double flux(const Piece& piece) const;
     /// Whether a part of a polygon has too little light for the budget, whatever it meets.
     bool is_too_weak(const Piece& piece) const;
+    /// Completes light that no beam carries on, and counts it, `flux` [W], by its cause.
+    void leave_out(const LeftOut& part, double flux, double& cause);
+    std::vector<RestPhoton> take_rest() { return std::move(photons_); }
     std::vector<NextChunk> take() { return std::move(chunks_); }
 
 private:
@@ -65,8 +69,10 @@ private:
     const Level& level_;
     const BeamSet& set_;
     LeastLight least_;
+    const RestPhotons& rest_;
     FluxBalance& balance_;
     std::vector<NextChunk> chunks_;
+    std::vector<RestPhoton> photons_;
 };
 
 }  // namespace caustics::beamtree

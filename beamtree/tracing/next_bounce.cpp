@@ -27,6 +27,7 @@ constexpr std::size_t beams_together = 32;
 struct Followed {
     std::vector<NextChunk> chunks;
     std::vector<bool> stays;
+    std::vector<RestPhoton> rest;
     FluxBalance balance;
     BeamBudget budget;
 };
@@ -54,14 +55,15 @@ void land_all(const Scene& scene, const LitCaster& surface, Level& level, int th
 class NextBounce {
 public:
     NextBounce(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-               const Level& level, double least_of_polygon, BeamBudget budget)
+               const Level& level, double least_of_polygon, const RestPhotons& rest,
+               BeamBudget budget)
         : scene_(scene),
           boxes_(boxes),
           surface_(surface),
           level_(level),
           set_(level.traced.set),
           budget_(std::move(budget)),
-          next_(scene, surface, level, {least_of_polygon, budget_}, balance_) {}
+          next_(scene, surface, level, {least_of_polygon, budget_}, rest, balance_) {}
 
     // `goes_on` is asked after each beam.
     template <typename GoesOn>
@@ -76,7 +78,7 @@ public:
             steps.step();
             if (!more(budget_)) break;
         }
-        return {next_.take(), std::move(stays_), balance_, std::move(budget_)};
+        return {next_.take(), std::move(stays_), next_.take_rest(), balance_, std::move(budget_)};
     }
 
 private:
@@ -212,7 +214,7 @@ private:
         throw_if_interrupted();
         const auto& [a, b, c] = piece;
         if (next_.is_too_weak(piece)) {
-            leave_out(piece);
+            leave_out(beam, piece);
             return;
         }
         if (!goes_on(a) && !goes_on(b) && !goes_on(c)) {
@@ -249,12 +251,13 @@ private:
         if (more) balance_.lost += std::max(0.0, next_.flux(piece) - carried);
     }
 
-    // Light of a piece that goes on, as far as its corners tell, and is not followed.
-    void leave_out(const Piece& piece) {
+    // Light of a piece that goes on is not followed. Its corners tell about how much that is, but photons
+    // are drawn from all of the piece, whatever its corners do.
+    void leave_out(std::uint32_t beam, const Piece& piece) {
         const auto on = std::ranges::count_if(piece, goes_on);
-        const double flux = next_.flux(piece) * static_cast<double>(on) / 3;
-        balance_.lost += flux;
-        balance_.over_budget += flux;
+        const double flux = next_.flux(piece);
+        next_.leave_out({beam, {&piece[0].origin, &piece[1].origin, &piece[2].origin}, {}, flux},
+                        flux * static_cast<double>(on) / 3, balance_.over_budget);
     }
 
     // A piece none of whose corners goes on.
@@ -325,12 +328,14 @@ private:
 class Following {
 public:
     Following(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-              const Level& level, const LeastLight& least, int threads, const ProgressPart& part)
+              const Level& level, const LeastLight& least, const RestPhotons& rest, int threads,
+              const ProgressPart& part)
         : scene_(scene),
           boxes_(boxes),
           surface_(surface),
           level_(level),
           least_(least),
+          rest_(rest),
           threads_(threads),
           part_(part) {}
 
@@ -353,7 +358,7 @@ private:
     std::size_t beams() const { return level_.traced.set.beams.size(); }
 
     NextBounce bounce(BeamBudget budget) const {
-        return {scene_, boxes_, surface_, level_, least_.of_polygon, std::move(budget)};
+        return {scene_, boxes_, surface_, level_, least_.of_polygon, rest_, std::move(budget)};
     }
 
     // Nothing where the budget has no room.
@@ -381,6 +386,7 @@ private:
     const LitCaster& surface_;
     const Level& level_;
     const LeastLight& least_;
+    const RestPhotons& rest_;
     int threads_;
     ProgressPart part_;
 };
@@ -388,15 +394,16 @@ private:
 }  // namespace
 
 NextSets next_sets(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-                   Level& level, const LeastLight& least, FluxBalance& balance, int threads,
-                   const ProgressPart& part) {
+                   Level& level, const LeastLight& least, const RestPhotons& rest,
+                   FluxBalance& balance, int threads, const ProgressPart& part) {
     land_all(scene, surface, level, threads, part.of(0.2));
     std::vector<Followed> followed =
-        Following(scene, boxes, surface, level, least, threads, part.of(0.8)).run();
+        Following(scene, boxes, surface, level, least, rest, threads, part.of(0.8)).run();
     NextSets next;
     std::vector<std::vector<NextChunk>> chunks;
     for (Followed& one : followed) {
         balance.add(one.balance);
+        next.rest.insert(next.rest.end(), one.rest.begin(), one.rest.end());
         next.stays.insert(next.stays.end(), one.stays.begin(), one.stays.end());
         chunks.push_back(std::move(one.chunks));
     }

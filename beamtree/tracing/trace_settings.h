@@ -23,6 +23,11 @@ struct TraceSettings {
     std::uint64_t max_beams = BeamBudget::no_limit;
     /// Beams that pass all receivers' bounds by more than this [m] are left out; none: no beams are.
     std::optional<float> receiver_margin = {};
+    /// Photons complete the light which beams of several events leave out: a share of so many paths, as that light
+    /// is of all on casters. 0: none.
+    std::uint64_t rest_photons = 0;
+    double watts_per_photon = 0;  ///< of them [W]; trace_all_beams() finds it
+    std::uint64_t seed = 1;
     int threads = 1;
 };
 

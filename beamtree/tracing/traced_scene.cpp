@@ -42,6 +42,12 @@ BuildReport TracedScene::report() const {
     report.resolved["flux_share_pruned"] = balance.lit > 0 ? balance.pruned / balance.lit : 0;
     report.resolved["flux_share_over_budget"] =
         balance.lit > 0 ? balance.over_budget / balance.lit : 0;
+    if (is_completed) {
+        report.counters["rest_photons"] = rest.size();
+        double flux = 0;
+        for (const RestPhoton& photon : rest) flux += static_cast<double>(photon.flux.mean());
+        report.resolved["flux_share_rest"] = balance.lit > 0 ? flux / balance.lit : 0;
+    }
     if (least_light > 0) report.resolved["least_light"] = least_light;
     double bounces = 0;
     for (const BeamSet& set : sets)
@@ -62,7 +68,8 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 }
 
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
-                        const RunOptions& options, Intensity intensity, float footprint) {
+                        const RunOptions& options, Intensity intensity, float footprint,
+                        std::uint64_t rest_photons) {
     const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
     options.phase("beams");
     TracedScene traced;
@@ -72,10 +79,16 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
                                  .max_bounces = params.max_bounces,
                                  .prune = params.prune,
                                  .max_beams = static_cast<std::uint64_t>(params.max_beams),
-                                 .receiver_margin = near_receiver * scene.diameter() + footprint};
+                                 .receiver_margin = near_receiver * scene.diameter() + footprint,
+                                 .rest_photons = rest_photons};
     TracedBeams beams = trace_all_beams(scene, traced.casters, lights, settings, options);
     traced.sets = std::move(beams.sets);
+    traced.rest = std::move(beams.rest);
+    traced.is_completed = rest_photons > 0;
     traced.balance = beams.balance;
+    // What photons carry is not lost.
+    if (traced.is_completed)
+        traced.balance.lost -= traced.balance.pruned + traced.balance.over_budget;
     traced.drift = beams.drift;
     traced.unreceived = beams.unreceived;
     traced.least_light = beams.least_light;

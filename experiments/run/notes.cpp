@@ -155,6 +155,11 @@ void note_photons(const BuildReport& report, std::vector<std::string>& all) {
 }
 
 std::string lost_light(const Method& method, const BuildReport& report, double lost) {
+    if (resolved(report, "flux_share_rest"))
+        return fmt::format(
+            "{} loses {:.1f} % of the light between specular surfaces where polygons are too "
+            "coarse for what they meet (photonmap follows it)",
+            method.name, 100 * lost);
     const double pruned = resolved(report, "flux_share_pruned").value_or(0);
     const double over_budget = resolved(report, "flux_share_over_budget").value_or(0);
     const std::string beyond =

@@ -186,6 +186,16 @@ TEST(Knobs, OfBeamsOfSeveralEvents) {
     EXPECT_LT(count(few, "beams"), count(usual, "beams"));
     EXPECT_LT(few.mean(), usual.mean());
     EXPECT_EQ(beams({"mesh_resolution=8", "max_beams=900000"}, "slab").mean(), usual.mean());
+    const Answer whole = beams({"mesh_resolution=8", "max_beams=200", "rest=photons"}, "slab");
+    EXPECT_GT(whole.mean(), few.mean());
+    const Answer rough =
+        beams({"mesh_resolution=8", "max_beams=200", "rest=photons", "rest_photons=3000"}, "slab");
+    EXPECT_LT(4 * count(rough, "rest_photons"), count(whole, "rest_photons"));
+    EXPECT_NE(beams({"mesh_resolution=8", "max_beams=200", "rest=photons", "rest_photons=3000",
+                     "rest_nearest=10"},
+                    "slab")
+                  .mean(),
+              rough.mean());
 }
 
 TEST(Knobs, OfTheBeamTreeUnderALargeLight) {
@@ -255,7 +265,8 @@ TEST(Knobs, AreAllTurnedAbove) {
         {"beamtree",
          {"preset", "bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity",
           "footprint", "polygons", "light_samples", "mesh_resolution", "max_bounces", "prune",
-          "max_beams", "wavelengths", "dispersion"}},  // the last two: agreement/dispersion_test
+          "max_beams", "rest", "rest_photons", "rest_nearest", "wavelengths",
+          "dispersion"}},  // the last two: agreement/dispersion_test
         {"causticpolygons",
          {"polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
           "wavelengths", "receiver_resolution"}},
