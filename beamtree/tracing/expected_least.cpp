@@ -105,7 +105,17 @@ private:
     std::vector<Lot> drawn_;
 };
 
+double beams_of_polygon(double polygons, std::uint64_t max_beams) {
+    return filling * static_cast<double>(max_beams) / polygons;
+}
+
 }  // namespace
+
+std::size_t draw_count(double polygons, std::uint64_t max_beams) {
+    const double most = std::clamp(polygons, fewest_polygons, most_polygons);
+    return static_cast<std::size_t>(
+        std::clamp(enough / beams_of_polygon(polygons, max_beams), fewest_polygons, most));
+}
 
 double expected_least(const Scene& scene, const SceneBoxes& boxes,
                       const std::vector<CasterMesh>& casters,
@@ -115,9 +125,8 @@ double expected_least(const Scene& scene, const SceneBoxes& boxes,
     if (settings.max_bounces == 1 || settings.max_beams == BeamBudget::no_limit ||
         draws.polygons() == 0)
         return 0;
-    const double a_polygon = filling * static_cast<double>(settings.max_beams) / draws.polygons();
-    const auto count =
-        static_cast<std::size_t>(std::clamp(enough / a_polygon, fewest_polygons, most_polygons));
+    const double a_polygon = beams_of_polygon(draws.polygons(), settings.max_beams);
+    const std::size_t count = draw_count(draws.polygons(), settings.max_beams);
     Rng rng(options.seed, Stage::beams, lights.size());
     draws.draw(casters, count, rng);
     const TraceSettings alone{.max_bounces = settings.max_bounces, .prune = settings.prune};

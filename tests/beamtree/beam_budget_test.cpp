@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "beamtree/tracing/expected_least.h"
 #include "beamtree/tracing/traced_scene.h"
 #include "tests/beamtree/beam_scenes.h"
 
@@ -51,6 +52,15 @@ TEST(BeamBudget, DoesNotKnowAnOrder) {
     joined.add(other);
     EXPECT_EQ(forward.least(), backward.least());
     EXPECT_EQ(forward.least(), joined.least());
+}
+
+// A budget of one beam drew two thousand polygons of a mesh of two hundred, and took longer than one of thousands.
+TEST(BeamBudget, DrawsNoMorePolygonsThanThereAre) {
+    EXPECT_LE(draw_count(192, 1), 192U);
+    EXPECT_LE(draw_count(192, 2'000), 192U);
+    EXPECT_LE(draw_count(1e6, 1), 2'000U);
+    EXPECT_GE(draw_count(12, 1'000'000), 16U);
+    EXPECT_LT(draw_count(1e5, 1'000'000), draw_count(1e5, 100'000));
 }
 
 SceneDesc glass_ball() {
