@@ -5,7 +5,8 @@ import re
 from duel import curves, measures, plots, scores, tables, verdicts
 from duel.curves import Field
 from duel.race import LEFT_OUT, SEARCH, FINAL, cells_of
-from papers.page import comma, latex, markdown_table
+from papers.latex import latex_tables
+from papers.page import comma, markdown_table
 from papers.part import Table
 from papers.verdict import FAILS, HOLDS, UNDECIDED, UNMEASURED
 from report.report_files import write
@@ -144,7 +145,7 @@ def rendered(results):
     title = "The duel of photon map and beam tree"
     return {"README.md": words, "verdicts.json": json.dumps(found, indent=1, ensure_ascii=False) + "\n",
             "tables.md": f"# {title}: all tables\n\n{results.machine()}\n" + "".join(map(section, kept)),
-            "tables.csv": comma(list(map(plain, kept))), "tables.tex": latex(title, list(map(plain, kept)))}
+            "tables.csv": comma(list(map(plain, kept))), "tables.tex": latex_tables(title, list(map(plain, kept)))}
 
 
 def write_all(duel, output, quick=False):
