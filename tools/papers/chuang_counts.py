@@ -79,7 +79,9 @@ def watt(study):
     for name, more in (("n_s", get(cells=64)), ("n_d", get(receiver_resolution=16)), ("n_l", get(light_samples=4))):
         grown = more["receiver_polygons"] / first["receiver_polygons"] if name == "n_d" else more["beams"] / first["beams"]
         powers[name] = exponent([1, grown], [first["beam_polygon_tests"], more["beam_polygon_tests"]])
-    return Part({f"watt_{name}": counted(power, "", "of the tests of beam with polygon") for name, power in powers.items()}, [Table(
+    asked = [counters(trials, method="beamtree", cells=32, light_samples=lights)["cone_point_tests"] for lights in (1, 4)]
+    trees = counted(exponent([1, 4], asked), "", f"power of the number of trees: {asked[0]:,} cone-point tests for one light, {asked[1]:,} for four")
+    return Part({f"watt_{name}": counted(power, "", "of the tests of beam with polygon") for name, power in powers.items()} | {"tree_sum": trees}, [Table(
         "watt", "Watt's tests", ["n_s, beams of a light", "n_d, diffuse polygons", "n_l, lights", "tests of beam with polygon", "over n_s n_d n_l",
                                  "tree: tests of one small picture"], rows,
         "experiments/scenes/pool_area.json: points of an area light serve as lights; beams of reflection and refraction. The tree's tests "
