@@ -1,4 +1,4 @@
-"""Chen 2011: bowls of glass and of cut crystal by ray tracing, photons and beams; lights; one map for three views; open meshes."""
+"""Chen 2011: bowls of glass and of cut crystal by ray tracing, photons and beams; lights; three views by one map; what glass does to what is behind it."""
 import json
 import subprocess
 
@@ -17,38 +17,50 @@ VIEWS = ("[0.1,-0.62,0.42]", "[-0.55,-0.3,0.35]", "[0.3,-0.25,0.6]")
 
 
 def columns(study):
+    """Both bowls under a point and a disc: ray tracing only, photons, beams."""
     trials = study.sweep("bowls")
-    beams = {"bowl": study.sweep("beams"), "crystal_bowl": study.sweep("beams_crystal")}
-    bare = lambda scene, shadows: trials.picture(scene=scene, method="none", shadows=shadows)[""]
-    photons = {scene: trials.picture(scene=scene, method="photonmap") for scene in BOWLS}
-    tree = {scene: beams[scene].picture() for scene in BOWLS}
-    rows, table = [], []
+    beams = {(scene, lamp): study.sweep(f"beams{suffix}{area}")
+             for scene, suffix in (("bowl", ""), ("crystal_bowl", "_crystal")) for lamp, area in (("a point", ""), ("a disc of 2 cm", "_area"))}
+    lamps = dict(zip(LAMPS, sorted(trials.values("lamp"), key=disc_size)))
+    rows, table, brighter, peak = [], [], [], []
     for scene, what in BOWLS.items():
-        level = white(photons[scene][""])
-        rows.append([(f"{what}: opaque shadows", bare(scene, "opaque"), level), ("transparent shadows", bare(scene, "transparent"), level)])
-        rows.append([("photons", photons[scene][""], level), ("beams", tree[scene][""], level)])
-        by = {"photons": trials.where(scene=scene, method="photonmap")[0], "beams": beams[scene].where()[0]}
-        for name, row in by.items():
-            layers = photons[scene] if name == "photons" else tree[scene]
-            table.append([what, name, f"{int(float(row['photons_stored'] or row['beams'])):,}", f"{float(row['precompute_cpu_s']):.2f}",
-                          f"{float(row['render_cpu_s']):.2f}", f"{layers['caustic'].mean() / photons[scene]['caustic'].mean():.3f}"])
-    shadow = {scene: float(bare(scene, "opaque").mean()) for scene in BOWLS}
-    light = min(float(photons[scene]["caustic"].max() / trials.picture(scene=scene, method="photonmap")["direct"].max()) for scene in BOWLS)
-    brighter = min(float(photons[scene][""].mean()) / shadow[scene] for scene in BOWLS)
-    return Part({"caustics_added": counted(brighter, "mean radiance, photons over ray tracing", f"the caustic's brightest pixel is {light:.1f} times "
-                                           "the brightest of the direct light, or more")}, [Table(
+        for lamp, value in lamps.items():
+            bare = trials.picture(scene=scene, lamp=value, method="none")
+            photons, tree = trials.where(scene=scene, lamp=value, method="photonmap")[0], beams[scene, lamp].rows[0]
+            layers = trials.picture(scene=scene, lamp=value, method="photonmap")
+            by_beams = beams[scene, lamp].picture()
+            level = white(layers[""])
+            rows.append([(f"{what}, {lamp}: ray tracing only", bare[""], level), ("photons", layers[""], level), ("beams", by_beams[""], level)])
+            table += [row_of(f"{what}, {lamp}", name, row, float(own["caustic"].mean() / layers["caustic"].mean()))
+                      for name, row, own in (("photons", photons, layers), ("beams", tree, by_beams))]
+            brighter.append(float(layers[""].mean() / bare[""].mean()))
+            peak.append(float(layers["caustic"].max() / layers["direct"].max()))
+    return Part({"caustics_added": counted(min(brighter), "mean radiance, photons over ray tracing", f"the least of the four; a caustic's brightest pixel "
+                                           f"is {min(peak):.1f} to {max(peak):.1f} times the brightest of the direct light")}, [Table(
         "bowls", "The bowls by photons and by beams",
-        ["bowl", "by", "photons or beams", "preprocess [CPU s]", "rendering [CPU s]", "caustic over photons"], table,
-        "320 × 240 pixels, 25 rays each with photons, 4 with beams. Photons follow up to 64 events, beams 4, so that light that goes round in "
-        "the glass is missing from them; the beams' glass bowl has 48 sectors, the crystal's inside 24, and its light 3 wavelengths.")], [Figure(
-            "bowls", "A bowl of glass and one of cut crystal", "Above each: ray tracing only, with opaque shadows, and with light that goes straight "
-            "through, weakened. Below: caustics by the photon map and by beams. Each bowl at one exposure.", *strip(rows))])
+        ["bowl and lamp", "by", "photons or beams", "preprocess [CPU s]", "rendering [CPU s]", "caustic over photons"], table,
+        "320 × 240 pixels, 16 rays each with photons, 4 with beams. Photons follow up to 64 events, beams 4, so that light that goes round in "
+        "the glass is missing from them; the beams' glass bowl has 48 sectors (24 under the disc), the crystal's inside 24, its light 3 "
+        "wavelengths (1 under the disc). Beams take the disc as 4 points.")], [Figure(
+            "bowls", "A bowl of glass and one of cut crystal, by three methods, under two lamps", "Ray tracing only has a plain shadow where the "
+            "photon map and the beams have the caustic. Under the disc the photons' caustic softens; beams take it as a few points, whose caustics "
+            "lie beside each other. Each row at one exposure.", *strip(rows))])
+
+
+def disc_size(text):
+    """Of a lamp in a sweep; a point has none."""
+    return json.loads(text).get("to_world", [{"scale": [0]}])[0]["scale"][0]
+
+
+def row_of(what, name, row, light):
+    return [what, name, f"{int(float(row['photons_stored'] or row['beams'])):,}", f"{float(row['precompute_cpu_s']):.2f}",
+            f"{float(row['render_cpu_s']):.2f}", f"{light:.3f}"]
 
 
 def lights(study):
     """How wide the shadow's edge is: the share of the table that sees a part of the lamp."""
     trials = study.sweep("lights")
-    lamps = sorted({row["lamp"] for row in trials.rows}, key=lambda text: json.loads(text).get("to_world", [{"scale": [0]}])[0]["scale"][0])
+    lamps = sorted(trials.values("lamp"), key=disc_size)
 
     scene = json.loads((study.scenes.parents[1] / "scenes" / "bowl.json").read_text(encoding="utf-8"))
 
@@ -98,6 +110,20 @@ def views(study):
         "read the map.", *strip([[("", exr.read_layers(file)[""]) for file in files]]))])
 
 
+def through(study):
+    """How far glass moves what is seen through it: a checkered table with the bowl, and with a bowl of air in its place."""
+    trials = study.sweep("through")
+    air = trials.pictures(index=1)
+    bowl = (trials.picture(index=1.5)["albedo"] > 0.9).all(axis=2)  # glass has an albedo of 1
+    moved = lambda index: [float(np.abs(luminance(a[""] - b[""]))[bowl].mean() / luminance(b[""])[bowl].mean())
+                           for a, b in zip(trials.pictures(index=index), air)]
+    glass, crystal = moved(1.5), moved(1.7)
+    shown = strip([[(f"n = {index}", trials.picture(index=index)[""]) for index in (1.5, 1.7)]])
+    return Part({"distorts": ratio(crystal, glass, "mean deviation over the light of the table seen without glass")}, [], [Figure(
+        "through", "The table seen through the bowl", "A checkered table through one bowl of n = 1.5 and of 1.7: the greater index moves what "
+        "is seen farther, and reflects more.", *shown)])
+
+
 def difference(study):
     """A bowl made as a difference, its inner surface turned inside out: what `info` says of it, and of a sound one."""
     told = {}
@@ -108,8 +134,14 @@ def difference(study):
             return Part({"difference": unmeasured(f"info fails: {done.stderr.strip()}")})
         told[name] = [line.strip() for line in done.stdout.splitlines() if "caster" in line and "mesh" in line]
     study.keep("info", ["info", study.scenes / "chen_inverted.json"], 1)
+    seen = [(title, exr.read_layers(study.single("difference", "render", [
+        study.scenes / f"chen_{name}.json", "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--set", "/sensor/sampler/split_depth=4",
+        "--method", "none", "--param", "shadows=transparent", "--spp", "9", "--threads", "1"], f"{name}.exr")[0])[""])
+        for name, title in (("sound", "one closed surface"), ("inverted", "a difference of two"))]
     flawed = {name: any("inwards" in line or "open edges" in line or " lie on " in line for line in lines) for name, lines in told.items()}
-    return Part({"difference": counted(float(flawed["inverted"]) - float(flawed["sound"]), "", "info says: " + "; ".join(told["inverted"]))})
+    return Part({"difference": counted(float(flawed["inverted"]) - float(flawed["sound"]), "", "info says: " + "; ".join(told["inverted"]))}, [], [
+        Figure("difference", "A bowl as one surface and as a difference", "The same bowl as one closed surface, and made of an outside and of what is "
+               "taken away, two surfaces that face each other: the inside reflects and refracts wrongly.", *strip([seen]))])
 
 
-SECTIONS = {"bowls": columns, "lights": lights, "views": views, "difference": difference}
+SECTIONS = {"bowls": columns, "lights": lights, "views": views, "through": through, "difference": difference}

@@ -11,7 +11,8 @@ from papers.verdict import Measured, counted, ratio
 from papers.words import spread
 
 SIDE = 12  # pixels of a window in which contrast is local
-VIEWS = ("of the figure", "from the left", "from the right", "from low down")
+VIEWS = ("of the figure", "from the left", "from the right", "from low down", "from behind", "from behind, left", "from behind, right",
+         "from low down, left")
 
 
 def times(study):
@@ -26,7 +27,8 @@ def times(study):
               f"640 × 480 pixels, 4 rays a pixel, {study.paper.number('figure3_photons'):,} photons, N = 100.")], [
         Figure("figure3", "Figure 3: a glass of cognac on fractal sand",
                "2 · 1024² triangles of sand, alpha 0.6; three meshes that share rings: glass and air, glass and cognac, cognac and air. "
-               "Beer's law colours the light that goes through.", *strip([[("", trials.picture(tree="balanced", repeat=1)[""])]]))])
+               "Beer's law colours the light that goes through. The paper's photons and N = 100; 16 rays a pixel for print, 4 in the table.",
+               *strip([[("", study.sweep("figure3_picture").picture()[""])]]))])
 
 
 def twins(study):
@@ -41,7 +43,7 @@ def twins(study):
     rows = [[view, spread(contrast["alpha 0.6", eye]), spread(contrast["Lambert", eye]), f"{each:.3f}"]
             for view, eye, each in zip(VIEWS, eyes, ratios)]
     red = lambda layers: float(layers["caustic"][..., 0].sum() / layers["caustic"][..., 2].sum())
-    shades = lambda some, **wanted: [statistics.fmean(map(red, some.pictures(eye=eye, **wanted))) for eye in eyes]
+    shades = lambda some, **wanted: [statistics.fmean(map(red, some.pictures(eye=eye, **wanted))) for eye in clear.values("eye")]
     cognac, water = shades(trials, sand=sands["alpha 0.6"]), shades(clear)
     shown = lambda name, eye: trials.picture(sand=sands[name], eye=eye, seed=1)[""]
     pictures = strip([[("alpha = 0.6", shown("alpha 0.6", eyes[0])), ("Lambert's law", shown("Lambert", eyes[0]))],

@@ -33,6 +33,7 @@ def times(study):
         "ring_fixed": ratio(seconds("0.01", FIXED), seconds("1", FIXED), "CPU s"),
         "ring_bare": ratio(bare("1", FIXED), seconds("1", FIXED), "CPU s"),
         "ring_preprocess": ratio(preprocess(trials, alpha=1, max_samples=FIXED, method="photonmap"), seconds("1", FIXED), "CPU s"),
+        "ring_photons": ratio(variance(trials, "0.01"), variance(trials, "1"), "of the squared caustic", note="by pairs of seeds, at one N"),
         "ring_megabytes": counted(maps("map_bytes", "1", FIXED)[0] / 1e6, "MB"),
     }
     rows = [[alpha, spread([n / pixels for n in maps("camera_rays", alpha, ADAPTIVE)]), spread(seconds(alpha)),
@@ -48,6 +49,12 @@ def times(study):
         "is 2 % of the pixel."))
     part.figures += pictures(trials, study.paper.number("figure1_photons"))
     return part
+
+
+def variance(trials, alpha):
+    """Of the caustic between two seeds over its square, each seed with the next."""
+    some = [layers["caustic"] for layers in trials.pictures(method="photonmap", alpha=alpha, max_samples=ADAPTIVE)]
+    return [float(((a - b) ** 2).mean() / 2 / (((a + b) / 2) ** 2).mean()) for a, b in zip(some, [*some[1:], some[0]])]
 
 
 def preprocess(trials, **wanted):
