@@ -2,12 +2,14 @@
 """Measures what the global photon map gains over path tracing at equal error, and writes results/indirect/README.md.
 
 Runs the sweeps indirect_room.json on one thread and indirect_growth.json on one and on two; their trials stay in
-results/indirect/trials (not in git).
+results/indirect/trials (not in git). All take about a quarter of an hour on two quiet cores (estimated).
 Ratios are of CPU times of one thread on one machine, without what the other layers cost. `--mitsuba` adds Mitsuba's `path` on the
 same room, whose error and time it takes without those of its direct light (needs tools/crosscheck-requirements.txt, so that it
-runs by .venv/bin/python). Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
+runs by .venv/bin/python). `--quick` looks whether all of it runs, on films too small for its numbers to mean anything.
+Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
 import argparse
+import json
 import pathlib
 import re
 import resource
@@ -22,15 +24,15 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
 from report import indirect_growth, records
-from report.program import BENCH, Program, machine
+from report.program import BENCH, Program, exit_code, machine
 from report.report_files import write
 
 SCENE = ROOT / "experiments" / "scenes" / "room.json"
-FILM = ("--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240")
+SIZE, SMALL_SIZE = (320, 240), (160, 120)  # of the film: beside the sweep, beside Mitsuba
+QUICK_SIZE = (16, 12)  # in place of both
 SHADOW_RAYS = (20_000, 200_000, 2_000_000)
 # The room with nothing specular: all noise of a path tracer is of direct and indirect light.
 DULL = tuple(word for ball in ("glass", "mirror") for word in ("--set", f'/{ball}/bsdf={{"type":"diffuse","reflectance":0.5}}'))
-SMALL = ("--set", "/sensor/film/width=160", "--set", "/sensor/film/height=120")
 TRUTH_PATHS = 2048  # a pixel
 DEPTH = 30  # events of a path by Mitsuba: what is cut off is below 1e-5 of the light
 PATHS = 64  # a pixel, here and in Mitsuba
@@ -74,9 +76,38 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--keep", action="store_true", help="take the trials that are there, run only those that are not")
     parser.add_argument("--mitsuba", action="store_true", help="measure Mitsuba's path tracer, too")
+    parser.add_argument("--quick", action="store_true", help="small films and one seed: only whether it runs")
     parser.add_argument("--program", type=pathlib.Path, default=BENCH)
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "indirect", metavar="DIR")
-    return parser.parse_args()
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DIR", help="(default: results/indirect, or results/indirect/trials/quick)")
+    chosen = parser.parse_args()
+    chosen.output = (chosen.output or ROOT / "results" / "indirect" / ("trials/quick" if chosen.quick else ".")).resolve()
+    return chosen
+
+
+def film(size):
+    """The words of `render` and `export` that set the film."""
+    return tuple(word for name, pixels in zip(("width", "height"), size) for word in ("--set", f"/sensor/film/{name}={pixels}"))
+
+
+def quick_sweep(sweep, scenes):
+    """The sweep with one seed and small films, as many as it has; its scenes from any folder."""
+    width, height = QUICK_SIZE
+    sweep["scenes"] = [str((scenes / scene).resolve()) for scene in sweep["scenes"]]
+    sweep["seeds"] = sweep["seeds"][:1]
+    sweep["set"]["width"]["values"] = [width << step for step in range(len(sweep["set"]["width"]["values"]))]
+    sweep["set"]["height"]["values"] = [height]
+    return sweep
+
+
+def sweep_name(name, output, quick):
+    """The sweep's name, or where it is written to as a quick one."""
+    if not quick:
+        return name
+    folder = ROOT / "experiments" / "sweeps"
+    sweep = quick_sweep(json.loads((folder / f"{name}.json").read_text(encoding="utf-8")), folder)
+    (output / "trials").mkdir(parents=True, exist_ok=True)
+    write(output / "trials" / f"{name}.json", json.dumps(sweep))
+    return output / "trials" / name
 
 
 def median(rows, column):
@@ -116,9 +147,10 @@ def table(cells):
 def picture(program, file, *words):
     """Renders the room into the file; what the program says, and its CPU seconds."""
     start = child_seconds()
-    told = subprocess.run([program.path, "render", str(SCENE), *words, "--threads", "1", "-o", str(file)],
-                          check=True, capture_output=True, text=True).stderr
-    return told, child_seconds() - start
+    done = subprocess.run([program.path, "render", str(SCENE), *words, "--threads", "1", "-o", str(file)], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise ChildProcessError(f"render: {done.stderr.strip()}")
+    return done.stderr, child_seconds() - start
 
 
 def child_seconds():
@@ -126,9 +158,9 @@ def child_seconds():
     return used.ru_utime + used.ru_stime
 
 
-def shadow_lines(program, folder):
+def shadow_lines(program, folder, size):
     """The lines of the table, and the seconds without and with the most shadow photons."""
-    words = (*FILM, "--method", "none", "--indirect", "globalphotonmap", "--indirect-param", "photons=1000", "--indirect-param", "gather=0")
+    words = (*film(size), "--method", "none", "--indirect", "globalphotonmap", "--indirect-param", "photons=1000", "--indirect-param", "gather=0")
     all_rays = pathlib.Path(folder) / "all.exr"
     _, plain = picture(program, all_rays, *words)
     lines = []
@@ -166,13 +198,13 @@ def not_direct(layers):
     return layers["caustic"] + layers["indirect"]
 
 
-def ours_of(program, folder, mitsuba, room):
+def ours_of(program, folder, mitsuba, room, size):
     """{name: (squared error, seconds)} of caustic and indirect light by two ways, and the pixels that were compared."""
     import numpy
 
     def render(name, *words):
         file = pathlib.Path(folder) / f"{name}.exr"
-        seconds = picture(program, file, *room, *SMALL, "--spp", "16", *words)[1]
+        seconds = picture(program, file, *room, *film(size), "--spp", "16", *words)[1]
         return layers_of(mitsuba, file), seconds
     _, without = render("none", "--method", "none")
     made = [render(f"paths{seed}", "--seed", str(seed), *paths(PATHS)) for seed in (1, 2)]
@@ -191,10 +223,10 @@ def paths(count):
     return ("--method", "pathtrace", "--param", f"spp={count}", "--indirect", "pathtrace", "--indirect-param", f"spp={count}")
 
 
-def mitsuba_of(program, folder, mitsuba, room, mask):
+def mitsuba_of(program, folder, mitsuba, room, size, mask):
     """The same of Mitsuba's `path`: what its direct light alone has is taken off both."""
     import numpy
-    program.run("export", SCENE, *SMALL, *room, "--to", "mitsuba", "-o", pathlib.Path(folder) / "mitsuba", stderr=subprocess.DEVNULL)
+    program.run("export", SCENE, *film(size), *room, "--to", "mitsuba", "-o", pathlib.Path(folder) / "mitsuba", stderr=subprocess.DEVNULL)
     of_depth = {}
     for depth in (2, DEPTH):
         loaded = mitsuba.load_file(str(pathlib.Path(folder) / "mitsuba" / "scene.xml"), integrator="path", max_depth=str(depth))
@@ -207,7 +239,7 @@ def mitsuba_of(program, folder, mitsuba, room, mask):
     return tuple(all_light - direct for all_light, direct in zip(of_depth[DEPTH], of_depth[2]))
 
 
-def mitsuba_section(program):
+def mitsuba_section(program, size):
     import mitsuba
     mitsuba.set_variant("scalar_rgb")
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
@@ -215,40 +247,38 @@ def mitsuba_section(program):
     lines = []
     for name, room in (("as it is", ()), ("both balls diffuse", DULL)):
         with tempfile.TemporaryDirectory() as folder:
-            found, mask = ours_of(program, folder, mitsuba, room)
-            theirs = mitsuba_of(program, folder, mitsuba, room, mask)
+            found, mask = ours_of(program, folder, mitsuba, room, size)
+            theirs = mitsuba_of(program, folder, mitsuba, room, size, mask)
         for who, (square, seconds) in {"Mitsuba's `path`": theirs, **found}.items():
             ratio = theirs[0] * theirs[1] / (square * seconds)
             lines.append(f"| {name} | {who} | {square ** 0.5:.3g} | {seconds:.1f} | {ratio:.2g} |\n")
     return MITSUBA.format(version=mitsuba.__version__, paths=PATHS, lines="".join(lines))
 
 
+def measure(options):
+    program = Program("measure_indirect", options.program.resolve())
+    folder = options.output / "trials" / "indirect_room"
+    program.sweep(sweep_name("indirect_room", options.output, options.quick), folder, options.keep)
+    rows = [row for _, row in records.read_rows(folder / "records.csv")[1] if row["status"] == "done"]
+    without = median([row for row in rows if not row["indirect"]], "cpu_s")
+    cells = measured(rows, without)
+    growth = [options.output / "trials" / f"indirect_growth_{threads}" for threads in (1, 2)]
+    for threads, each in enumerate(growth, 1):
+        program.sweep(sweep_name("indirect_growth", options.output, options.quick), each, options.keep, "--threads", threads)
+    size, small = (QUICK_SIZE, QUICK_SIZE) if options.quick else (SIZE, SMALL_SIZE)
+    with tempfile.TemporaryDirectory() as work:
+        shadows, plain, asked = shadow_lines(program, work, size)
+    mitsuba = mitsuba_section(program, small) if options.mitsuba else ""
+    flags = "".join(f" --{name}" for name in ("mitsuba", "quick") if getattr(options, name))
+    write(options.output / "README.md",
+          PAGE.format(options=flags, machine=machine([folder]), none=without, reference=REFERENCE_PATHS,
+                      rows="".join(table(cells)), growth=indirect_growth.section(*growth), mitsuba=mitsuba,
+                      shadows="".join(shadows), plain=plain, asked=asked, most=f"{SHADOW_RAYS[-1]:,}"))
+
+
 def main():
     options = arguments()
-    try:
-        program = Program("measure_indirect", options.program)
-        folder = options.output / "trials" / "indirect_room"
-        program.sweep("indirect_room", folder, options.keep)
-        rows = [row for _, row in records.read_rows(folder / "records.csv")[1] if row["status"] == "done"]
-        without = median([row for row in rows if not row["indirect"]], "cpu_s")
-        cells = measured(rows, without)
-        growth = [options.output / "trials" / f"indirect_growth_{threads}" for threads in (1, 2)]
-        for threads, each in enumerate(growth, 1):
-            program.sweep("indirect_growth", each, options.keep, "--threads", threads)
-        with tempfile.TemporaryDirectory() as work:
-            shadows, plain, asked = shadow_lines(program, work)
-            mitsuba = mitsuba_section(program) if options.mitsuba else ""
-        write(options.output / "README.md",
-              PAGE.format(options=" --mitsuba" if options.mitsuba else "", machine=machine([folder]), none=without, reference=REFERENCE_PATHS,
-                          rows="".join(table(cells)), growth=indirect_growth.section(*growth), mitsuba=mitsuba,
-                          shadows="".join(shadows), plain=plain, asked=asked, most=f"{SHADOW_RAYS[-1]:,}"))
-    except records.RecordsError as error:
-        print(f"measure_indirect: {error}", file=sys.stderr)
-        return 2
-    except (ChildProcessError, subprocess.CalledProcessError) as error:
-        print(f"measure_indirect: {error}", file=sys.stderr)
-        return 1
-    return 0
+    return exit_code("measure_indirect", lambda: measure(options))
 
 
 if __name__ == "__main__":
