@@ -20,8 +20,10 @@ struct ReceiverPoint {
     std::uint32_t shape = 0;     ///< index into Scene::shapes
     bool front = true;           ///< whether the viewer is on the front side of the surface
     float nm = 0;                ///< wavelength that glass before the viewer has chosen; 0: none
-    std::uint64_t id = 0;        ///< names the point's random numbers
-    float radius = 0;            ///< of the disc that `lighttrace` gathers over [m]
+    /// Absorption [1/m] of the medium on that side; null: as far as is known, none.
+    const Spectrum* medium = nullptr;
+    std::uint64_t id = 0;  ///< names the point's random numbers
+    float radius = 0;      ///< of the disc that `lighttrace` gathers over [m]
 };
 
 /// The receiver point at a surface point, seen along `wo`; its normals are turned to that side.

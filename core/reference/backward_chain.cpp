@@ -67,6 +67,7 @@ std::optional<WeightedPoint> receiver_ahead(const Scene& scene, BackwardChain& c
         auto point = receiver_point(scene, *hit, towards);
         if (!point) return {};
         point->nm = chain.wavelength.nm;
+        point->medium = chain.start_absorption;
         return WeightedPoint{*point, chain.weight / (1 - specular)};
     }
 }

@@ -78,16 +78,15 @@ private:
         const float kept = std::min(1.0F, after.mean() / path.weight.mean());
         if (!(u3 < kept)) return false;
         path.weight = after / kept;
-        // What lies on this side of the surface lay there before.
         path.chain = {.ray = spawn_ray({at.position, at.geometric_normal, at.offset}, *wi),
                       .wavelength = path.chain.wavelength,
-                      .start_absorption = path.chain.start_absorption};
+                      .start_absorption = at.medium};
         return true;
     }
 
     // Of direct light and caustics, leaving a point of the path.
     Spectrum arriving(const ReceiverPoint& at, Rng& rng) const {
-        Spectrum light = direct_radiance(scene_, at, rng);
+        Spectrum light = direct_radiance(scene_, at, rng, Shadows::opaque, Cosine::geometric);
         if (caster_bounds_.empty()) return light;
         const DirectionMixture mixture(caster_bounds_, at);
         return light + caustic_sample(scene_, at, mixture, true, params_.max_bounces, rng);

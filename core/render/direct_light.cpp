@@ -10,9 +10,10 @@ namespace caustics {
 namespace {
 
 // f_r times the cosine of a direction on the lit side; 0 below the geometric surface.
-Spectrum scattering(const ReceiverPoint& p, const Vec3& wi) {
+Spectrum scattering(const ReceiverPoint& p, const Vec3& wi, Cosine cosine) {
     if (p.geometric_normal.dot(wi) <= 0) return black();
-    return evaluate(*p.bsdf, p.uv, p.shading_normal, p.wo, wi) * p.shading_normal.dot(wi);
+    const Vec3& normal = cosine == Cosine::shading ? p.shading_normal : p.geometric_normal;
+    return evaluate(*p.bsdf, p.uv, p.shading_normal, p.wo, wi) * normal.dot(wi);
 }
 
 constexpr int most_crossings = 256;
@@ -63,8 +64,13 @@ StraightWay straight_way(const Scene& scene, Ray ray) {
 /// What reaches a receiver point straight from lights.
 class DirectLight {
 public:
-    DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows, ShadowRays& rays)
-        : scene_(scene), p_(point), opaque_(shadows == Shadows::opaque), rays_(rays) {}
+    DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows, Cosine cosine,
+                ShadowRays& rays)
+        : scene_(scene),
+          p_(point),
+          opaque_(shadows == Shadows::opaque),
+          cosine_(cosine),
+          rays_(rays) {}
 
     Spectrum from_all(Rng& rng) const {
         const std::vector<Light>& lights = scene_.lights();
@@ -80,7 +86,7 @@ private:
         const auto arrival =
             arrival_from(scene_.lights()[light], scene_.surroundings(), p_.position, rng);
         if (!arrival) return black();
-        const Spectrum f = scattering(p_, arrival->wi);
+        const Spectrum f = scattering(p_, arrival->wi, cosine_);
         if (is_black(f) || is_black(arrival->strength)) return black();
         const Spectrum seen = seen_from(light, *arrival);
         const float other_way = arrival->is_delta ? 0 : pdf(arrival->wi);
@@ -93,7 +99,7 @@ private:
         const float u2 = rng.next();
         const auto wi = sample_direction(*p_.bsdf, p_.shading_normal, p_.wo, u0, u1, u2);
         if (!wi) return black();
-        const Spectrum f = scattering(p_, *wi);
+        const Spectrum f = scattering(p_, *wi, cosine_);
         if (is_black(f)) return black();
         const StraightWay way = way_along(*wi);
         // Light from all around is found in this way alone.
@@ -148,20 +154,21 @@ private:
     const Scene& scene_;
     const ReceiverPoint& p_;
     bool opaque_;
+    Cosine cosine_;
     ShadowRays& rays_;
 };
 
 }  // namespace
 
-Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
-                         Shadows shadows) {
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng, Shadows shadows,
+                         Cosine cosine) {
     ShadowRays rays;
-    return DirectLight(scene, point, shadows, rays).from_all(rng);
+    return DirectLight(scene, point, shadows, cosine, rays).from_all(rng);
 }
 
 Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
                          ShadowRays& rays) {
-    return DirectLight(scene, point, Shadows::opaque, rays).from_all(rng);
+    return DirectLight(scene, point, Shadows::opaque, Cosine::shading, rays).from_all(rng);
 }
 
 }  // namespace caustics

@@ -7,13 +7,19 @@
 
 namespace caustics {
 
+/// The normal whose cosine weighs light that arrives.
+enum class Cosine {
+    shading,   ///< as pictures of smooth meshes show it
+    geometric  ///< flux per area of the surface, as light paths bring it
+};
+
 /// One sample of the radiance that light arriving straight from the lights (L D) leaves along the
 /// point's `wo`. Area lights by multiple importance sampling of light and BSDF (balance
 /// heuristic). With opaque shadows every surface between casts a full one, specular ones too. With
 /// transparent ones light goes straight through dielectrics, times what Fresnel's formulas let pass at
 /// each (the angle taken on its thinner side) and Beer's law between.
 Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
-                         Shadows shadows = Shadows::opaque);
+                         Shadows shadows = Shadows::opaque, Cosine cosine = Cosine::shading);
 
 /// The same with opaque shadows, whose rays are spared where they are known. Counts them.
 Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,

@@ -95,6 +95,7 @@ EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum
             path.emitted += branch.weight * light->radiance;
         if (auto point = receiver_point(scene, *hit, wo)) {
             point->nm = branch.wavelength.nm;
+            point->medium = branch.start_absorption;
             points.push_back({*point, branch.weight});
         }
         if (is_caster(bsdf) && branch.bounces < max_eye_bounces)

@@ -33,7 +33,7 @@ struct EyePath {
 /// specular surfaces to every receiver point it sees. A dielectric
 /// splits the path while both parts matter, later one of them is drawn by its weight; radiance is
 /// scaled by (n on the eye's side / n on the far side)^2 at each refraction and by Beer's law
-/// along each segment. Behind dispersive glass light has the wavelength that `wavelength` chooses, a
+/// along each segment. The points refer to `absorption` where nothing has changed the medium. Behind dispersive glass light has the wavelength that `wavelength` chooses, a
 /// number of [0, 1); none: drawn. Appends the points found; their ids are left 0.
 EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum& absorption,
                        Rng& rng, std::vector<WeightedPoint>& points,

@@ -4,16 +4,15 @@
 #include <cmath>
 
 #include "core/material/optics.h"
+#include "core/math/frame.h"
 
 namespace caustics {
 namespace {
 
-constexpr int rays = 4096;
-
-// Evenly over the sphere: Fibonacci's lattice.
-Vec3 direction(int i) {
+// Evenly over the sphere, for all i < count: Fibonacci's lattice.
+Vec3 direction(int i, int count) {
     const double golden_angle = pi_d * (3 - std::sqrt(5.0));
-    const double z = 1 - (2 * i + 1.0) / rays;
+    const double z = 1 - (2 * i + 1.0) / count;
     const double across = std::sqrt(1 - z * z);
     return Vec3d(across * std::cos(i * golden_angle), across * std::sin(i * golden_angle), z)
         .cast<float>()
@@ -26,6 +25,13 @@ bool absorbs_somewhere(const Shape& shape) {
            !(is_black(dielectric->absorption) && is_black(dielectric->ext_absorption));
 }
 
+// What the dielectric that a ray meets first says of the side that it comes from; null: it meets none.
+const Spectrum* medium_along(const Scene& scene, const Ray& ray) {
+    const auto hit = scene.intersect(ray);
+    if (!hit) return nullptr;
+    return medium_absorption(scene.shape_at(*hit).bsdf, hit->geometric_normal, -ray.direction);
+}
+
 }  // namespace
 
 EyeMedium eye_medium(const Scene& scene) {
@@ -33,18 +39,27 @@ EyeMedium eye_medium(const Scene& scene) {
     if (std::ranges::none_of(scene.shapes(), absorbs_somewhere)) return medium;
     const Vec3 eye = scene.camera().position();
     const Spectrum* found = nullptr;
+    constexpr int rays = 4096;
     for (int i = 0; i < rays; ++i) {
-        const Ray ray{eye, direction(i)};
-        const auto hit = scene.intersect(ray);
-        if (!hit) continue;
-        const Spectrum* const here =
-            medium_absorption(scene.shape_at(*hit).bsdf, hit->geometric_normal, -ray.direction);
+        const Spectrum* const here = medium_along(scene, {eye, direction(i, rays)});
         if (here == nullptr) continue;
         if (found == nullptr) found = here;
         if ((*here != *found).any()) return {black(), true};
     }
     if (found != nullptr) medium.absorption = *found;
     return medium;
+}
+
+const Spectrum* medium_at(const Scene& scene, const SegmentEnd& point) {
+    if (std::ranges::none_of(scene.shapes(), absorbs_somewhere)) return nullptr;
+    constexpr int rays = 256;
+    const Frame frame(point.geometric_normal);
+    for (int i = 0; i < rays; ++i) {
+        // The half of the sphere's lattice above its equator.
+        const Vec3 up = frame.to_world(direction(i, 2 * rays));
+        if (const Spectrum* const here = medium_along(scene, spawn_ray(point, up))) return here;
+    }
+    return nullptr;
 }
 
 }  // namespace caustics

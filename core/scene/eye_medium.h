@@ -17,4 +17,8 @@ struct EyeMedium {
 
 EyeMedium eye_medium(const Scene& scene);
 
+/// Absorption [1/m] on the side of a surface's normal at one of its points, as a dielectric that is seen from
+/// there says; null where none of 256 rays over the hemisphere meets one first.
+const Spectrum* medium_at(const Scene& scene, const SegmentEnd& point);
+
 }  // namespace caustics

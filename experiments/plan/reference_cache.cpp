@@ -47,8 +47,9 @@ Reference::Light light_of(const Film& film, const std::string& layer, const Pixe
     return {mean(film, layer, reached), relative_standard_error(film, layer, reached)};
 }
 
-/// Pictures of version 1 keep no standard error of their indirect layer.
-constexpr int indirect_version = 2;
+/// Pictures of version 1 keep no standard error of their indirect layer; of version 2, `pathtrace` left out the water before
+/// the eye's receivers, and weighed direct light about smooth normals.
+constexpr int indirect_version = 3;
 
 }  // namespace
 

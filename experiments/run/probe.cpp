@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/coordinate_limit.h"
+#include "core/scene/eye_medium.h"
 #include "experiments/run/notes.h"
 
 namespace caustics::experiments {
@@ -108,6 +109,8 @@ Questions questions(const Scene& scene, const MethodOf<Estimator>& method, const
         receiver->wo = point.wo;
         receiver->id = row;
         receiver->radius = point.radius;
+        receiver->medium =
+            medium_at(scene, {receiver->position, receiver->geometric_normal, receiver->offset});
         asked.points.push_back(*receiver);
         asked.rows.push_back(row);
     }

@@ -9,6 +9,7 @@
 #include "core/reference/light_trace.h"
 #include "core/render/direct_light.h"
 #include "core/render/renderer.h"
+#include "core/scene/eye_medium.h"
 #include "photonmap/global_photon_map.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
@@ -178,11 +179,8 @@ Scene box_with_ball() {
     return Scene(std::move(desc));
 }
 
-TEST(IndirectLight, IsTheSameByAllMethodsBesideGlass) {
-    const Scene scene = box_with_ball();
-    std::vector<ReceiverPoint> points;
-    for (const Vec3d& at : {Vec3d(-0.5, -0.5, 0), Vec3d(0.3, 0.2, 0), Vec3d(-0.5, 0.6, 0)})
-        points.push_back(support::probe(scene, 0, at, Vec3d::UnitZ(), points.size(), 0.08F));
+// Channel by channel.
+void expect_same_by_all_methods(const Scene& scene, const std::vector<ReceiverPoint>& points) {
     const auto paths =
         support::irradiance(*build(scene, IndirectPathTraceParams{.spp = 100'000}, {}), points);
     const auto particles = support::irradiance(
@@ -190,13 +188,63 @@ TEST(IndirectLight, IsTheSameByAllMethodsBesideGlass) {
     const auto gathered = support::irradiance(
         *build(scene, GlobalMapParams{.photons = 400'000, .nearest = 60, .gather = 4000}, {}),
         points);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double path = static_cast<double>(paths[i].value.mean());
-        const double error = std::hypot(static_cast<double>(paths[i].standard_error.mean()),
-                                        static_cast<double>(particles[i].standard_error.mean()));
-        EXPECT_NEAR(static_cast<double>(particles[i].value.mean()), path, 4 * error + 0.01 * path);
-        EXPECT_NEAR(static_cast<double>(gathered[i].value.mean()) / path, 1, 0.04) << i;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const auto path = static_cast<double>(paths[i].value[c]);
+            const double error = std::hypot(static_cast<double>(paths[i].standard_error[c]),
+                                            static_cast<double>(particles[i].standard_error[c]));
+            EXPECT_NEAR(static_cast<double>(particles[i].value[c]), path, 4 * error + 0.01 * path)
+                << i << ", channel " << c;
+            EXPECT_NEAR(static_cast<double>(gathered[i].value[c]) / path, 1, 0.04)
+                << i << ", channel " << c;
+        }
+}
+
+TEST(IndirectLight, IsTheSameByAllMethodsBesideGlass) {
+    const Scene scene = box_with_ball();
+    std::vector<ReceiverPoint> points;
+    for (const Vec3d& at : {Vec3d(-0.5, -0.5, 0), Vec3d(0.3, 0.2, 0), Vec3d(-0.5, 0.6, 0)})
+        points.push_back(support::probe(scene, 0, at, Vec3d::UnitZ(), points.size(), 0.08F));
+    expect_same_by_all_methods(scene, points);
+}
+
+// Light from wall to wall of a pool is dimmed by its water, whatever end it is followed from.
+TEST(IndirectLight, IsTheSameByAllMethodsInAPool) {
+    SceneDesc desc;
+    const Bsdf grey = support::diffuse(0.8F);
+    desc.shapes = {
+        support::horizontal("floor", 0, 1, true, grey),
+        support::rectangle("left", {-1, 0, 0.5}, {0, 1, 0}, {0, 0, 0.5}, grey),
+        support::rectangle("right", {1, 0, 0.5}, {0, 0, 0.5}, {0, 1, 0}, grey),
+        support::rectangle("back", {0, 1, 0.5}, {1, 0, 0}, {0, 0, 0.5}, grey),
+        support::rectangle("front", {0, -1, 0.5}, {0, 0, 0.5}, {1, 0, 0}, grey),
+        support::horizontal("water", 1, 1, true, support::glass(1.33F, 1, {0.05F, 0.4F, 1.2F})),
+        support::horizontal("lamp", 2, 0.8, false, support::diffuse(0))};
+    desc.shapes.back().radiance = Spectrum(Spectrum::Constant(10));
+    const Scene scene(std::move(desc));
+    std::vector<ReceiverPoint> points;
+    for (const Vec3d& at : {Vec3d(-0.6, -0.5, 0), Vec3d(0.8, 0.2, 0)}) {
+        points.push_back(support::probe(scene, 0, at, Vec3d::UnitZ(), points.size(), 0.08F));
+        ReceiverPoint& point = points.back();
+        point.medium = medium_at(scene, {point.position, point.geometric_normal, point.offset});
     }
+    expect_same_by_all_methods(scene, points);
+}
+
+// Normals that lean towards the lamp turn no flux: what a wall sends on is the light on its true area.
+TEST(IndirectLight, IsTheSameByAllMethodsBesideSmoothMeshes) {
+    TriangleMesh leaning;
+    leaning.positions = {{1, -1, 0}, {1, 1, 0}, {1, 1, 2}, {1, -1, 2}};
+    leaning.triangles = {{0, 2, 1}, {0, 3, 2}};
+    leaning.normals.assign(4, Vec3(-1, 0, 1).normalized());
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 1, true, support::diffuse(0.5F)),
+                   support::mesh("wall", leaning, Transform::Identity(), support::diffuse(0.8F)),
+                   support::horizontal("lamp", 2, 0.3, false, support::diffuse(0))};
+    desc.shapes.back().radiance = Spectrum(Spectrum::Constant(10));
+    const Scene scene(std::move(desc));
+    expect_same_by_all_methods(scene,
+                               {support::probe(scene, 0, {0.7, 0.2, 0}, Vec3d::UnitZ(), 0, 0.08F)});
 }
 
 TEST(IndirectLight, PicturesAreTheSameByThreadsAndInstructionSets) {

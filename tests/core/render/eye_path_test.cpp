@@ -164,5 +164,27 @@ TEST(EyePath, DispersiveGlassIsInvisibleInAFurnace) {
     EXPECT_NEAR(outside.mean(), 1, 4 * outside.standard_error() + 2e-4);
 }
 
+// Air before the pool, water in it; a mirror does not say what it lies in.
+TEST(EyePath, PointsKnowTheMediumThatTheyAreSeenThrough) {
+    const Spectrum ink(0.2F, 0.5F, 1.1F), fog(0.1F, 0.1F, 0.1F);
+    SceneDesc desc;
+    desc.shapes = {
+        support::horizontal("water", 0, 1, true, support::glass(1.33F, 1, ink, fog)),
+        support::horizontal("floor", -2, 9, true, support::diffuse(0.5F)),
+        support::rectangle("mirror", {5, 0, 0}, {0, 0, 1}, {0, 1, 0}, support::mirror())};
+    const Scene scene(std::move(desc));
+    const auto seen = [&](const Vec3& origin, const Vec3& direction) {
+        Rng rng(1, Stage::test, 0);
+        std::vector<WeightedPoint> points;
+        trace_eye_path(scene, {origin, direction.normalized()}, fog, rng, points);
+        EXPECT_EQ(points.size(), 1U);
+        return points.at(0).point.medium;
+    };
+    EXPECT_EQ(seen(Vec3(3, 0, 1), -Vec3::UnitZ()), &fog);
+    EXPECT_EQ(seen(Vec3(0, 0, 1), -Vec3::UnitZ()),
+              &std::get<Dielectric>(scene.shapes()[0].bsdf.model).absorption);
+    EXPECT_EQ(seen(Vec3(4, 0, 0.5F), Vec3(1, 0, -0.5F)), nullptr);
+}
+
 }  // namespace
 }  // namespace caustics
