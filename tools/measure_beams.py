@@ -3,7 +3,8 @@
 
 Runs the sweeps experiments/sweeps/beam_*.json on one thread, one after another; their trials stay in
 results/beamtree/trials (not in git). Counts are exact on any machine; times are CPU times of one
-thread, so run it where nothing else runs. Needs build/release (tools/build.sh release causticbench).
+thread, so run it where nothing else runs. With --rest it measures beams of several events that photons complete
+instead (experiments/sweeps/rest_photons*.json), and writes rest.md. Needs build/release (tools/build.sh release causticbench).
 Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
 import argparse
@@ -18,16 +19,20 @@ sys.path.insert(0, str(ROOT / "tools"))
 from report import beam_report
 from report import beam_trials
 from report import records
-from report.program import Program, machine
+from report import rest_report
+from report.program import BENCH, Program, machine
 from report.report_files import write
 
 SWEEPS = ("counts", "counts_quads", "bounds_pool", "bounds_ring", "height", "watt_ns", "watt_nd", "watt_nl")
+REST = ("rest_photons", "rest_photons_crystal")
 BLOCK = "<!-- {0} -->\n{1}<!-- end of {0} -->"
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--keep", action="store_true", help="take the trials that are there, run only those that are not")
+    parser.add_argument("--rest", action="store_true", help="beams of several events, completed by photons, beside the photon map")
+    parser.add_argument("--program", type=pathlib.Path, default=BENCH)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "beamtree", metavar="DIR",
                         help="a folder with the page README.md to fill in (default: results/beamtree)")
     return parser.parse_args()
@@ -59,21 +64,35 @@ def write_results(output, folders):
         write(output / name, text)
 
 
+def write_rest(output, folders):
+    rows = [row for folder in folders for _, row in records.read_rows(folder / "records.csv")[1] if row["status"] == "done"]
+    write(output / "rest.md", rest_report.page(rows, machine(folders)))
+
+
+def measure(chosen):
+    """Runs the sweeps and writes their page, whose name it returns."""
+    program = Program("measure_beams", chosen.program)
+    folders = {name: chosen.output / "trials" / name for name in (REST if chosen.rest else SWEEPS)}
+    for name, folder in folders.items():
+        program.sweep(name if chosen.rest else f"beam_{name}", folder, chosen.keep)
+    if chosen.rest:
+        write_rest(chosen.output, folders.values())
+        return "rest.md"
+    write_results(chosen.output, folders)
+    return "README.md"
+
+
 def main():
     chosen = arguments()
-    folders = {name: chosen.output / "trials" / name for name in SWEEPS}
     try:
-        program = Program("measure_beams")
-        for name, folder in folders.items():
-            program.sweep(f"beam_{name}", folder, chosen.keep)
-        write_results(chosen.output, folders)
+        page = measure(chosen)
     except records.RecordsError as error:
         print(f"measure_beams: {error}", file=sys.stderr)
         return 2
     except (ChildProcessError, ImportError, OSError) as error:
         print(f"measure_beams: {error}", file=sys.stderr)
         return 1
-    print(f"measure_beams: {chosen.output / 'README.md'}")
+    print(f"measure_beams: {chosen.output / page}")
     return 0
 
 

@@ -10,6 +10,7 @@ from report import beam_report
 from report import beam_trials
 import measure_beams
 from report import records
+from report import rest_report
 
 
 def cell(method="beamtree", parameters=None, counters=None, render=1.0, build=0.5):
@@ -73,6 +74,37 @@ class Page(unittest.TestCase):
         measure_beams.fill(page, {name: "" for name in names})
         for name in measure_beams.SWEEPS:
             self.assertTrue((root / "experiments" / "sweeps" / f"beam_{name}.json").exists(), name)
+
+
+def map_trial(count, seconds, rmse):
+    return {"method": "photonmap", "photons": count, "precompute_cpu_s": seconds, "rmse": rmse, "mean_ratio": "1.0",
+            "reference_stderr": "0.01"}
+
+
+def beam_trial(rest, seconds, rmse):
+    return {"method": "beamtree", "rest": rest, "rest_photons": "300", "max_beams": "50", "precompute_cpu_s": seconds / 2,
+            "render_cpu_s": seconds / 2, "rmse": rmse, "mean_ratio": "0.9", "flux_share_captured": "0.7",
+            "flux_share_pruned": "0.1", "flux_share_over_budget": "0.15"}
+
+
+class CompletedBeams(unittest.TestCase):
+    def lines(self, *rows):
+        found = rest_report.table("bowl", [map_trial("1000", 1, "0.4"), map_trial("9000", 9, "0.1"), *rows])
+        return [line for line in found.splitlines() if line.startswith("| beamtree")]
+
+    def test_ratio_is_the_photon_maps_time_for_the_error(self):
+        # 0.2 lies in the middle of 0.4 and 0.1 as powers go: 3 s.
+        [line] = self.lines(beam_trial("photons", 6.0, "0.2"))
+        self.assertIn("rest: photons | 50 | 300 | 0.900 | 0.250 | 0.300 | 6.00 | 0.2 | 0.5 |", line)
+
+    def test_an_error_that_the_photon_map_never_had_gives_a_bound(self):
+        [line] = self.lines(beam_trial("none", 3.0, "0.05"))
+        self.assertTrue(line.endswith("| ≥ 3 |"), line)
+
+    def test_scene_and_noise_are_named(self):
+        text = rest_report.table("bowl", [map_trial("1000", 1, "0.4")])
+        self.assertIn("## bowl", text)
+        self.assertIn("0.01", text)
 
 
 if __name__ == "__main__":
