@@ -76,33 +76,82 @@ std::optional<RayInterval> clip_to_box(const SineHeightfield& field, const Vec3d
 
 }  // namespace
 
-// Marches g(t) = z(t) - h(x(t), y(t)) to its first zero. |g''| <= C bounds how soon g can vanish
-// after t: not before the smaller positive root of |g| + s g' sign - C s^2 / 2 = 0, so no step
-// passes a zero, and near a simple zero the steps are Newton's. Where rounding does carry the last
-// step past the zero, the sign changes. Rays that skim fine ripples take thousands of steps.
+namespace {
+
+/// Along a ray: the height above the surface, g(t) = z(t) - h(x(t), y(t)), and its derivative.
+class AboveSurface {
+public:
+    AboveSurface(const SineHeightfield& field, const Vec3d& o, const Vec3d& d)
+        : field_(field),
+          o_(o),
+          d_(d),
+          curvature_(field.max_curvature() * d.head<2>().squaredNorm() + 1e-300),
+          least_advance_(1e-15 / d.norm()) {}
+
+    Vec2d xy(double t) const { return o_.head<2>() + t * d_.head<2>(); }
+    double at(double t) const { return o_.z() + t * d_.z() - field_.height(xy(t)); }
+    /// How far g cannot vanish from t on, where it is `g`: |g''| <= C, so not before the smaller positive root of
+    /// |g| + s g' sign - C s^2 / 2 = 0. Near a simple zero these steps are Newton's.
+    double safe_step(double t, double g) const {
+        const double slope = (d_.z() - field_.gradient(xy(t)).dot(d_.head<2>())) * (g < 0 ? -1 : 1);
+        const double root = std::sqrt(slope * slope + 2 * curvature_ * std::abs(g));
+        return slope < 0 ? 2 * std::abs(g) / (root - slope) : (slope + root) / curvature_;
+    }
+    /// A 64th of the fastest wave along the ray.
+    double stride() const {
+        double fastest = 1e-300;
+        for (const SineWave& wave : field_.waves)
+            fastest = std::max(fastest, std::abs(wave.wave_vector.dot(d_.head<2>())));
+        return 2 * pi_d / (64 * fastest);
+    }
+    double least(double t) const { return std::max(least_advance_, 4e-16 * std::abs(t)); }
+    /// Where the sign changes between two places.
+    double zero_between(double from, double to) const {
+        const bool below = at(from) < 0;
+        for (int halving = 0; halving < 60; ++halving) {
+            const double middle = (from + to) / 2;
+            ((at(middle) < 0) == below ? from : to) = middle;
+        }
+        return to;
+    }
+
+private:
+    const SineHeightfield& field_;
+    const Vec3d& o_;
+    const Vec3d& d_;
+    double curvature_;
+    double least_advance_;
+};
+
+}  // namespace
+
+// Marches to the first zero by steps that pass none. Where rounding does carry the last step past the zero, the
+// sign changes. Rays that skim fine ripples take thousands of steps, and those along waves that cancel each other
+// as many as one likes: after a million it strides on, passing over dips of less than a 64th of a wave only.
 std::optional<ExactHit> Heightfield::intersect(const Vec3d& o, const Vec3d& d,
                                                RayInterval range) const {
     const std::optional<RayInterval> inside = clip_to_box(field, o, d, range);
     if (!inside) return {};
-    const Vec2d d2 = d.head<2>();
-    const double curvature = field.max_curvature() * d2.squaredNorm() + 1e-300;
+    const AboveSurface above(field, o, d);
     const double close = 1e-13 * (1 + o.norm() + field.max_height());
-    const double least_advance = 1e-15 / d.norm();
-    constexpr int max_steps = 1'000'000;
-    double t = inside->low;
+    constexpr int most_safe_steps = 1'000'000;
     bool was_below = false;
-    for (int step = 0; step < max_steps && t <= inside->high; ++step) {
-        const Vec2d xy = o.head<2>() + t * d2;
-        const double g = o.z() + t * d.z() - field.height(xy);
+    double stride = 0;
+    double before = inside->low;
+    double t = inside->low;
+    for (int step = 0; t <= inside->high; ++step) {
+        const double g = above.at(t);
         const bool below = g < 0;
-        const double slope = (d.z() - field.gradient(xy).dot(d2)) * (below ? -1 : 1);
         const bool passed = step > 0 && below != was_below;
-        if ((std::abs(g) <= close || passed) && range.holds(t))
+        if ((std::abs(g) <= close || passed) && range.holds(t)) {
+            if (passed && step > most_safe_steps) t = above.zero_between(before, t);
+            const Vec2d xy = above.xy(t);
             return ExactHit{t, Vec3d(xy.x(), xy.y(), field.height(xy))};
-        const double root = std::sqrt(slope * slope + 2 * curvature * std::abs(g));
-        const double advance =
-            slope < 0 ? 2 * std::abs(g) / (root - slope) : (slope + root) / curvature;
-        t += std::max({advance, least_advance, 4e-16 * std::abs(t)});
+        }
+        if (step == most_safe_steps) stride = above.stride();
+        const double advance = step < most_safe_steps ? above.safe_step(t, g) : stride;
+        before = t;
+        t += std::max(advance, above.least(t));
         was_below = below;
     }
     return {};

@@ -92,5 +92,18 @@ TEST(Heightfield, BoundOfOneWaveIsReached) {
     EXPECT_DOUBLE_EQ(field.height(Vec2d::Zero()), -0.5);
 }
 
+/// Waves that cancel each other leave a plane, and a bound of its curvature with which a ray that comes down slowly
+/// takes six million steps.
+TEST(Heightfield, ARayThatTakesMillionsOfSafeStepsMeetsItStill) {
+    SineHeightfield field;
+    field.waves = {{0.05, {3e4, 0}, 0}, {-0.05, {3e4, 0}, 0}};
+    const Heightfield shape{field};
+    const auto hit = shape.intersect({-1, 0.1, 2.1e-5}, {1, 0, -1e-5}, {0, 10});
+    EXPECT_FALSE(hit) << "it leaves the rectangle at its height";
+    const auto lower = shape.intersect({-1, 0.1, 1.9e-5}, {1, 0, -1e-5}, {0, 10});
+    ASSERT_TRUE(lower);
+    EXPECT_NEAR(lower->distance, 1.9, 1e-9);
+}
+
 }  // namespace
 }  // namespace caustics
