@@ -23,7 +23,8 @@ constexpr std::array<std::string_view, 16> ignored_keywords = {
     "l", "p", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 
 constexpr auto max_float = static_cast<double>(std::numeric_limits<float>::max());
-constexpr std::size_t lines_between_looks = 1 << 14;  // for Ctrl-C
+constexpr std::size_t lines_between_looks = 1 << 14;          // for Ctrl-C
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 constexpr std::string_view white_space = " \t\r\v\f";
 
 template <class Number>
@@ -157,10 +158,9 @@ private:
             if (more) rest.remove_prefix(slash + 1);
         }
         Corner found{place(word, parts[0], positions_.size(), "position")};
-        // v//vn is the only form with an empty part.
-        if (count == 2 || (count == 3 && !parts[1].empty()))
-            found.uv = place(word, parts[1], uvs_.size(), "uv");
-        if (count == 3) found.normal = place(word, parts[2], normals_.size(), "normal");
+        // What is empty is not there: v//vn, and v/, v// or v/vt/ of writers that leave the slashes.
+        if (!parts[1].empty()) found.uv = place(word, parts[1], uvs_.size(), "uv");
+        if (!parts[2].empty()) found.normal = place(word, parts[2], normals_.size(), "normal");
         return found;
     }
 
@@ -220,7 +220,9 @@ TriangleMesh read_obj(const std::string& bytes, const std::string& name) {
     ObjReader reader(name);
     std::string joined;  // lines that a backslash at their end continues
     std::size_t number = 0;
-    for (std::string_view rest = bytes; !rest.empty();) {
+    std::string_view rest = bytes;
+    if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+    while (!rest.empty()) {
         std::string_view line = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(std::min(line.size() + 1, rest.size()));
         ++number;

@@ -72,6 +72,14 @@ TEST_F(MeshIo, ObjMayCountBackwardsContinueLinesAndColourVertices) {
     expect_same(plain, load("d.obj", corners + "f 1 2 3 4"));
     expect_same(plain,
                 load("e.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 1\nv 0 1 0 # d\nf 1 2 3 4"));
+    expect_same(plain, load("g.obj", "\xEF\xBB\xBF" + corners + "f 1 2 3 4\n"));
+    for (const std::string slashes : {"/", "//"}) {
+        std::string face = "f";
+        for (const char* corner : {" 1", " 2", " 3", " 4"}) face += corner + slashes;
+        expect_same(plain, load("h.obj", corners + face + "\n"));
+    }
+    expect_same(load("i.obj", corners + "vt 0 0.25\nf 1/1 2/1 3/1\n"),
+                load("j.obj", corners + "vt 0 0.25\nf 1/1/ 2/1/ 3/1/\n"));
     std::string dos;
     for (const char c : corners + "f 1 2 3 4\n") dos += c == '\n' ? "\r\n" : std::string(1, c);
     expect_same(plain, load("f.OBJ", dos));
@@ -133,6 +141,9 @@ TEST_F(MeshIo, BrokenObjFilesAreRefusedWithTheLine) {
     expect_refused("a.obj", corners + "f 1 2 3\nf 1 3", ":6: a face needs");
     expect_refused("a.obj", corners + "f 1 a 3\n", "face corner 'a'");
     expect_refused("a.obj", corners + "f 1/1/1/1 2 3\n", "more than three");
+    expect_refused("a.obj", corners + "f 1/// 2 3\n", "more than three");
+    expect_refused("a.obj", corners + "f /1 2 3\n", "face corner '/1' is not v");
+    expect_refused("a.obj", corners + "f 1// 2 3\n\xEF\xBB\xBFv 0 0 0\n", ":6: '???v'");
     expect_refused("a.obj", corners + "vt 0 0\nf 1/1 2/2 3/1\n", ":6: face corner '2/2': no uv 2");
     expect_refused("a.obj", corners + "vn 0 0 1\nf 1//1 2//2 3//1\n", "no normal 2");
     expect_refused("a.obj", corners + "vt 0 0\nf 1/1 2 3/1\n", "same form");
