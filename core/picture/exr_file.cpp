@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
@@ -18,6 +19,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/picture/primaries.h"
 
 namespace caustics {
 namespace {
@@ -135,8 +137,26 @@ struct ExrFile::Opened {
     Imf::InputFile file;
 };
 
+namespace {
+
+void require_one_part(const std::string& bytes) {
+    MemoryInput memory(bytes);
+    const int parts = Imf::MultiPartInputFile(memory).parts();
+    if (parts != 1)
+        throw std::runtime_error("it holds " + std::to_string(parts) +
+                                 " parts, and pictures of one are read");
+}
+
+Primaries primaries(const Imf::Chromaticities& of) {
+    return {of.red.x,  of.red.y,  of.green.x, of.green.y,
+            of.blue.x, of.blue.y, of.white.x, of.white.y};
+}
+
+}  // namespace
+
 ExrFile::ExrFile(const std::string& bytes) : opened_(std::make_unique<Opened>(bytes)) {
     const Imf::Header& header = opened_->header();
+    require_one_part(bytes);
     if (header.hasType() && Imf::isDeepData(header.type()))
         throw std::runtime_error("it holds deep data");
     const Imf::ChannelList& channels = header.channels();
@@ -146,6 +166,7 @@ ExrFile::ExrFile(const std::string& bytes) : opened_(std::make_unique<Opened>(by
                                      " has less than one value a pixel");
     if (header.dataWindow() != header.displayWindow())
         throw std::runtime_error("its data window is not the whole picture");
+    if (Imf::hasChromaticities(header)) require_rec709(primaries(Imf::chromaticities(header)));
 }
 
 ExrFile::~ExrFile() = default;

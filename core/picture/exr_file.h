@@ -22,11 +22,13 @@ std::string encode_exr(int width, int height, const std::vector<ExrChannel<const
 /// Whether these are the first bytes of an OpenEXR file.
 bool is_exr(const std::string& bytes);
 
-/// An OpenEXR file, scan lines or tiles: its first part. Values of other types are read as float32.
+/// An OpenEXR file of one part, scan lines or tiles. Values of other types are read as float32, whole numbers as they
+/// are.
 class ExrFile {
 public:
     /// `bytes` must outlive it. Throws std::runtime_error for what is no such file, deep data, channels
-    /// of less than one value a pixel, and a data window that is not the whole picture.
+    /// of less than one value a pixel, a data window that is not the whole picture, and colours of other primaries
+    /// than Rec. 709.
     explicit ExrFile(const std::string& bytes);
     ~ExrFile();
     ExrFile(const ExrFile&) = delete;

@@ -14,6 +14,7 @@
 
 #include "core/base/lower_case.h"
 #include "core/picture/foreign_picture.h"
+#include "core/picture/primaries.h"
 
 namespace caustics {
 namespace {
@@ -46,12 +47,31 @@ OIIO::ImageSpec reading() {
     return config;
 }
 
+/// What an OpenEXR file says of its values is not passed over.
+void require_plain_exr(const OIIO::ImageSpec& spec) {
+    const int parts = spec.get_int_attribute("oiio:subimages", 1);
+    if (parts > 1)
+        throw std::runtime_error("it holds " + std::to_string(parts) +
+                                 " parts, and pictures of one are read");
+    for (int channel = 0; channel < spec.nchannels; ++channel)
+        if (!spec.channelformat(channel).is_floating_point())
+            throw std::runtime_error("its channel " + std::string(spec.channel_name(channel)) +
+                                     " holds whole numbers (UINT), which have no scale; write half "
+                                     "or float");
+    constexpr OIIO::TypeDesc eight(OIIO::TypeDesc::FLOAT, 8);
+    Primaries primaries = rec709_primaries;
+    if (const OIIO::ParamValue* given = spec.find_attribute("chromaticities", eight))
+        std::copy_n(static_cast<const float*>(given->data()), primaries.size(), primaries.begin());
+    if (spec.nchannels >= 3) require_rec709(primaries);
+}
+
 class OpenImageIoSource : public PictureSource {
 public:
     OpenImageIoSource(const std::filesystem::path& file, const std::string& bytes) {
         const SilentStandardError silent;
         open_input(file, bytes);
         const OIIO::ImageSpec& spec = input_->spec();
+        if (std::string(input_->format_name()) == "openexr") require_plain_exr(spec);
         shape_ = {spec.width,
                   spec.height,
                   spec.nchannels,

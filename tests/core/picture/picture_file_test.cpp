@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -12,7 +14,9 @@
 #include "core/material/texture.h"
 #include "core/picture/foreign_picture.h"
 #include "core/picture/png_file.h"
+#include "core/picture/primaries.h"
 #include "core/render/film.h"
+#include "tests/support/exr_kinds.h"
 #include "tests/support/png_kinds.h"
 #include "tests/support/temporary_folder.h"
 
@@ -98,6 +102,44 @@ TEST(PictureFile, PrintsNothingOfItsOwnWhereThePictureIsBroken) {
     testing::internal::CaptureStderr();
     std::fputs("heard", stderr);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "heard");
+}
+
+std::string refusal(const std::function<void()>& reading) {
+    try {
+        reading();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "read";
+}
+
+TEST(PictureFile, WhatAnOpenExrFileSaysOfItsValuesIsNotPassedOver) {
+    const support::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "a.exr";
+    const auto put = [&](const support::ExrKind& kind) {
+        write_atomic_file(file, support::exr_of_kind(kind));
+    };
+    const auto as_texture = [&] { return refusal([&] { load_bitmap(file, true); }); };
+    const auto as_film = [&] { return refusal([&] { read_exr(file); }); };
+    constexpr std::array<float, 8> aces = {0.7347F, 0.2653F, 0,        1,
+                                           0.0001F, -0.077F, 0.32168F, 0.33767F};
+    put({.chromaticities = Primaries(rec709_primaries)});
+    EXPECT_EQ(as_texture(), "read");
+    EXPECT_EQ(as_film(), "read");
+    EXPECT_EQ(load_bitmap(file, true).texels[3][1], 1);
+    put({.chromaticities = aces});
+    for (const std::string& why : {as_texture(), as_film()})
+        EXPECT_NE(why.find("a.exr: cannot be read (its attribute chromaticities"),
+                  std::string::npos)
+            << why;
+    put({.channels = {"Y"}, .chromaticities = aces});
+    EXPECT_EQ(as_texture(), "read") << "one channel has no hue";
+    put({.parts = 2});
+    for (const std::string& why : {as_texture(), as_film()})
+        EXPECT_NE(why.find("a.exr: cannot be read (it holds 2 parts"), std::string::npos) << why;
+    put({.whole_numbers = true});
+    EXPECT_NE(as_texture().find("its channel R holds whole numbers (UINT)"), std::string::npos);
+    EXPECT_EQ(read_exr(file).rgb("", 3)[0], 1) << "a film's values are as they are";
 }
 
 TEST(PictureFile, HasNoMorePixelsThanAFilm) {
