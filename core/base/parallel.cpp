@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <optional>
 
 #ifdef CAUSTICS_STD_THREADS
 #include <atomic>
@@ -80,6 +81,11 @@ void parallel_for(int threads, std::size_t count,
 
 void parallel_for(int threads, std::size_t count,
                   const std::function<void(std::size_t, std::size_t)>& body) {
+    // oneTBB starts no more threads than there are processors, and warns on standard error, unless told to.
+    std::optional<tbb::global_control> more;
+    if (threads > available_threads())
+        more.emplace(tbb::global_control::max_allowed_parallelism,
+                     static_cast<std::size_t>(threads));
     tbb::task_arena arena(std::max(1, threads));
     arena.execute([&] {
         tbb::parallel_for(

@@ -78,27 +78,33 @@ TEST(ParallelFor, RethrowsAnExceptionAfterAllHaveStopped) {
     }
 }
 
-// Both bodies wait for each other, so the loop only ends early if two workers run at once; the
+// All bodies wait for each other, so the loop only ends early if the workers run at once; the
 // wait is bounded in tries, not to hang where they do not.
-bool two_workers_meet() {
+bool workers_meet(int workers) {
     std::atomic<int> arrived{0};
     std::atomic<int> met{0};
-    parallel_for(2, 2, [&](std::size_t, std::size_t) {
+    parallel_for(workers, static_cast<std::size_t>(workers), [&](std::size_t, std::size_t) {
         ++arrived;
-        for (int i = 0; i < 20'000 && arrived < 2; ++i)
+        for (int i = 0; i < 20'000 && arrived < workers; ++i)
             std::this_thread::sleep_for(std::chrono::microseconds(100));
-        if (arrived == 2) ++met;
+        if (arrived == workers) ++met;
     });
-    return met == 2;
+    return met == workers;
 }
 
 TEST(ParallelFor, UsesTwoWorkersAfterASceneWasBuilt) {
     if (available_threads() < 2) GTEST_SKIP() << "one processor";
-    EXPECT_TRUE(two_workers_meet());
+    EXPECT_TRUE(workers_meet(2));
     SceneDesc desc;
     desc.shapes.push_back(support::sphere("ball", Vec3d::Zero(), 1, support::glass(1.5F)));
     const Scene scene(std::move(desc));
-    EXPECT_TRUE(two_workers_meet());
+    EXPECT_TRUE(workers_meet(2));
+}
+
+TEST(ParallelFor, StartsMoreThreadsThanProcessorsWithoutAWordWhereAskedTo) {
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(workers_meet(available_threads() + 3));
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(ParallelFor, RunSingleThreadedRunsItsWorkAndPassesItsException) {
