@@ -113,7 +113,12 @@ private:
             out_.notes.emplace_back("Mitsuba has no adaptive sampler: independent samples instead");
         xml_.open("sampler", {{"type", sampling.stratified ? "stratified" : "independent"}});
         value("integer", "sample_count", "$spp");
-        if (sampling.stratified) value("boolean", "jitter", sampling.jitter ? "true" : "false");
+        // Without jitter Mitsuba takes all random numbers of a pixel, those of its light paths too, from the
+        // strata's middles: the same few for each pixel.
+        if (sampling.stratified && !sampling.jitter)
+            out_.notes.emplace_back(
+                "Mitsuba's sampler without jitter would take the same light paths for each pixel: "
+                "jittered samples instead");
         xml_.close();
     }
 

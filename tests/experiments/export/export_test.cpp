@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <regex>
 
@@ -168,6 +169,21 @@ TEST(MitsubaScene, TakesPathsAsLongAsTheyCanBe) {
     EXPECT_EQ(depth(), 16 + 2);
     desc.shapes.resize(1);
     EXPECT_EQ(depth(), 2) << "light between receivers is no part of the picture";
+}
+
+TEST(MitsubaScene, NeverAsksForStrataWithoutJitter) {
+    SceneDesc desc = small_scene();
+    desc.sampling.stratified = true;
+    for (const bool jitter : {true, false}) {
+        desc.sampling.jitter = jitter;
+        const ExportedScene exported = to_mitsuba(desc, {});
+        EXPECT_EQ(exported.files[0].bytes.find("\"jitter\""), std::string::npos)
+            << "its strata's middles would be the numbers of the light paths too";
+        const auto names_it = [](const std::string& note) {
+            return note.find("jitter") != std::string::npos;
+        };
+        EXPECT_EQ(std::ranges::any_of(exported.notes, names_it), !jitter);
+    }
 }
 
 TEST(MeshBytes, AreReadBackAsTheyWere) {
