@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "experiments/base/file_io.h"
 
 namespace caustics::experiments {
@@ -132,9 +133,13 @@ NumberTable read_numbers(const std::filesystem::path& file,
     if (!std::getline(in, line) || trimmed(line).empty())
         throw InputError(
             fmt::format("{}: empty, a header is needed ({})", name, fmt::join(required, ",")));
+    // Spreadsheets begin UTF-8 with a byte order mark.
+    if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     table.header = split(line);
     check_header(name, table.header, required, optional);
+    constexpr std::size_t rows_between_looks = 1 << 12;  // for Ctrl-C
     while (std::getline(in, line)) {
+        if (table.rows.size() % rows_between_looks == 0) throw_if_interrupted();
         if (trimmed(line).empty() && in.peek() == std::istringstream::traits_type::eof()) break;
         const std::string place = fmt::format("{}: row {}", name, table.rows.size() + 1);
         const std::vector<std::string> cells = split(line);

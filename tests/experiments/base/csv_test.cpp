@@ -63,6 +63,10 @@ TEST_F(NumberTables, TakeTheirColumnsInAnyOrder) {
     EXPECT_EQ(table.column("z"), table.header.size());
 }
 
+TEST_F(NumberTables, MayBeginWithAByteOrderMark) {
+    EXPECT_EQ(read("\xEF\xBB\xBFx,y\n1,2\n").rows[0][1], 2);
+}
+
 TEST_F(NumberTables, NameWhatIsWrong) {
     EXPECT_EQ(error("x,y,z\n1,2,3\n"), "t.csv: unknown column \"z\" (known: x, y, radius)");
     EXPECT_EQ(error("x\n1\n"), "t.csv: column \"y\" is missing (needed: x, y)");
