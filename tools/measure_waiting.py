@@ -150,21 +150,17 @@ def start_row(name, words, program, folder):
 
 
 def eta_error(work):
-    """Median of |ETA - what it took| over what it took, of lines with 2 s or more to go; of a phase where that is told."""
+    """Median of |ETA - what it took| over what it took, of lines with 2 s or more to go that tell of the whole command."""
     errors = []
-    states = work.states()
-    for place, (at, line) in enumerate(states):
-        found = re.search(r"ETA (?:at least )?(?:(\d+):)?(\d+):(\d\d)", line)
-        if not found or "at least" in line:
+    for at, line in work.states():
+        found = re.search(r"ETA (?:(\d+):)?(\d+):(\d\d)", line)
+        if not found:
             continue
         hours, minutes, seconds = (int(part or 0) for part in found.groups())
         told = 3600 * hours + 60 * minutes + seconds
-        phase = line.split()[0]
-        end = work.seconds_in_all
-        if "phase ETA" in line:
-            end = next((later for later, other in states[place:] if other.split()[0] != phase), end)
-        if end - at >= 2:
-            errors.append(abs(told - (end - at)) / (end - at))
+        left = work.seconds_in_all - at
+        if left >= 2:
+            errors.append(abs(told - left) / left)
     return f"{100 * statistics.median(errors):.0f} % of {len(errors)}" if errors else "-"
 
 
@@ -215,8 +211,8 @@ def table(program, stops):
         for name, words in STARTS.items():
             yield start_row(name, words, program, folder)
         yield (f"\nAt a terminal of {COLUMNS} columns; Ctrl-C {stops} times, at random moments. *First*: seconds until something is "
-               "shown; *silence*: the longest stretch without news, of the whole time; *ETA*: median of its error, where 2 s or "
-               "more were to go; *Ctrl-C*: the longest until the end, in CPU seconds of the program and seconds on the wall.\n")
+               "shown; *silence*: the longest stretch without news, of the whole time; *ETA*: median of its error, where it is of the "
+               "whole command and 2 s or more were to go; *Ctrl-C*: the longest until the end, in CPU seconds of the program and seconds on the wall.\n")
         yield ("| verb | CPU s | first | silence | widest line | ETA off by | Ctrl-C CPU s | wall s | exit code | left behind |\n"
                "|---|---|---|---|---|---|---|---|---|---|")
         for name, words in WAITS.items():

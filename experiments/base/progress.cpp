@@ -6,14 +6,10 @@
 
 namespace caustics::experiments {
 
-namespace {
-
-std::string eta(const std::optional<Eta>& remaining) {
+std::string eta_text(const std::optional<Eta>& remaining) {
     if (!remaining) return "-";
     return (remaining->at_least ? "at least " : "") + clock_text(remaining->seconds);
 }
-
-}  // namespace
 
 std::string clock_text(double seconds) {
     const long whole = std::lround(seconds);
@@ -24,14 +20,14 @@ std::string clock_text(double seconds) {
 
 void Progress::show(const std::string& what, double share, const std::optional<Eta>& remaining) {
     // What the line's end loses on a narrow terminal is a part of the name.
-    line_.show(fmt::format("[{}/{}] ETA {}, {:.0f} % {}", finished_, steps_, eta(remaining),
+    line_.show(fmt::format("[{}/{}] ETA {}, {:.0f} % {}", finished_, steps_, eta_text(remaining),
                            100 * share, what));
 }
 
 void Progress::end(const std::string& result, bool notable, const std::optional<Eta>& remaining) {
     ++finished_;
     if (!line_.is_on_terminal() || notable)
-        note(fmt::format("[{}/{}] {}, ETA {}", finished_, steps_, result, eta(remaining)));
+        note(fmt::format("[{}/{}] {}, ETA {}", finished_, steps_, result, eta_text(remaining)));
 }
 
 }  // namespace caustics::experiments

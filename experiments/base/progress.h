@@ -37,6 +37,9 @@ private:
     StatusLine line_;
 };
 
+/// "0:12", "at least 0:12", or "-" where nothing is known.
+std::string eta_text(const std::optional<Eta>& remaining);
+
 /// "1:02:03" or "2:03" for a number of seconds.
 std::string clock_text(double seconds);
 

@@ -70,7 +70,7 @@ std::string told_counts(const Counters& counters) {
 RunResult run_shown(const Scene& scene, const RunRequest& request, const RunFlags& flags,
                     Stopwatch& stopwatch) {
     RunOptions options = flags.options(request.samples_per_pixel);
-    const RunProgress progress(options);
+    const RunProgress progress(options, pass_count(request.method));
     return run(scene, request, options, stopwatch);
 }
 

@@ -94,9 +94,42 @@ TEST(Progress, ATextIsCutBetweenCharacters) {
 }
 
 TEST(Progress, APhaseHasABarAndTheRestOfItsTime) {
-    EXPECT_EQ(phase_text("trace", 0.25, 10), "trace [#####...............] 25 %, phase ETA 0:30");
-    EXPECT_EQ(phase_text("tree", 0, 10), "tree [....................] 0 %, phase ETA -");
-    EXPECT_EQ(phase_text("render", 1, 10), "render [####################] 100 %, phase ETA 0:00");
+    EXPECT_EQ(phase_text("trace", 0.25, Eta(30, true)),
+              "trace [#####...............] 25 %, ETA at least 0:30");
+    EXPECT_EQ(phase_text("tree", 0, {}), "tree [....................] 0 %, ETA -");
+    EXPECT_EQ(phase_text("render", 1, Eta(0)), "render [####################] 100 %, ETA 0:00");
+}
+
+TEST(RunEta, IsThatOfTheWholeRunOnceItRenders) {
+    RunEta eta(1);
+    eta.begin("precompute", 0);
+    eta.begin("trace", 1);
+    EXPECT_FALSE(eta.at(0, 2));
+    EXPECT_TRUE(eta.at(0.5, 4)->at_least);
+    EXPECT_DOUBLE_EQ(eta.at(0.5, 4)->seconds, 3);
+    eta.begin("render", 7);
+    EXPECT_FALSE(eta.at(0, 7));
+    EXPECT_FALSE(eta.at(0.25, 9)->at_least);
+    EXPECT_DOUBLE_EQ(eta.at(0.25, 9)->seconds, 6);
+}
+
+TEST(RunEta, CountsTheLaterPassesByWhatTheFirstOnesTook) {
+    // Four passes, each 2 s of build and 3 s of render.
+    RunEta eta(4);
+    double now = 0;
+    for (int pass = 0; pass < 4; ++pass) {
+        const double whole = 20 - 5 * pass;
+        eta.begin("trace", now);
+        EXPECT_EQ(eta.pass(), pass + 1);
+        if (pass > 0) {
+            EXPECT_NEAR(eta.at(0.5, now + 1)->seconds, whole - 1, 1e-9);
+            EXPECT_FALSE(eta.at(0.5, now + 1)->at_least);
+        }
+        eta.begin("render", now + 2);
+        EXPECT_EQ(eta.pass(), pass + 1);
+        EXPECT_NEAR(eta.at((pass + 0.5) / 4, now + 3.5)->seconds, whole - 3.5, 1e-9);
+        now += 5;
+    }
 }
 
 TEST(Progress, ARunShowsItsPhasesOnATerminalAndLeavesNothingThere) {
