@@ -96,11 +96,11 @@ class Terminal:
         return time.monotonic() - self.begun
 
     def cpu(self):
-        """CPU seconds so far, of a program that has ended in all."""
+        """CPU seconds so far, with those of children that have ended."""
         if self.used:
             return self.used.ru_utime + self.used.ru_stime
         fields = pathlib.Path(f"/proc/{self.process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-        return sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
+        return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
     def lines(self):
         """(seconds, line) of all that was shown."""
@@ -187,9 +187,9 @@ def wait_row(name, words, program, folder, stops):
         codes.add(stopped.code)
         left.update(left_in(folder))
     clear(folder)
-    cpu, wall = (max(values) for values in zip(*delays)) if delays else (float("nan"), float("nan"))
+    cpu, wall = (f"{max(values):.2f}" for values in zip(*delays)) if delays else ("-", "-")
     return (f"| {name} | {work.cpu():.1f} | {shown[0] if shown else work.seconds_in_all:.1f} | {100 * silence:.0f} % | {wide} | "
-            f"{eta_error(work)} | {cpu:.2f} | {wall:.2f} | {', '.join(map(str, sorted(codes)))} | {', '.join(sorted(left)) or '-'} |")
+            f"{eta_error(work)} | {cpu} | {wall} | {', '.join(map(str, sorted(codes)))} | {', '.join(sorted(left)) or '-'} |")
 
 
 def clear(folder):

@@ -1,5 +1,6 @@
 """tools/plot_records.py from outside: medians by hand, same bytes twice, and every broken table named in one line."""
 import csv
+import html
 import os
 import pathlib
 import re
@@ -185,6 +186,66 @@ class Plots(unittest.TestCase):
         self.assertIn("rmse_vs_photons of ring (no row has stored photons and rmse)", output)
         ring = [cell for cell in self.summary() if cell["scene"] == "ring"]
         self.assertEqual([cell["rmse_median"] for cell in ring], ["", ""])
+
+    def labels(self, name):
+        """The words of a figure; those of SVG are outlines, named by their letters."""
+        text = (self.report / "plots" / name).read_text(encoding="utf-8")
+        return {html.unescape(words) for words in re.findall(r"<!-- (.*?) -->", text)}
+
+    def compare_methods(self):
+        header = (*FIXED, "photons", "render_cpu_s", "intensity", "paths")
+        beams = dict(method="beamtree", photons="", nearest="", photons_stored="")
+        rows = [record(seed=s, photons=p, mesh_resolution="", render_cpu_s=p * 1e-4) for p in (1000, 10000) for s in (1, 2)]
+        rows += [record(seed=s, mesh_resolution=m, intensity="area", rmse=0.1 / m, render_cpu_s=m, trial=f"b{m}-{s}", **beams)
+                 for m in (16, 64) for s in (1, 2)]
+        rows += [record(seed=s, method="lighttrace", photons="", nearest="", mesh_resolution="", paths=p, photons_stored=p, render_cpu_s=1,
+                        trial=f"l{p}-{s}") for p in (1000, 5000) for s in (1, 2)]
+        self.table(rows, header)
+
+    def test_lines_run_along_meshes_and_paths(self):
+        self.compare_methods()
+        self.succeeds()
+        self.assertIn("rmse_vs_mesh_resolution-pool.svg", self.plots())
+        found = self.labels("rmse_vs_time-pool.svg")
+        self.assertLessEqual({"beamtree", "lighttrace", "photonmap, N = 25", "CPU time of build and query [s]"}, found)
+        self.assertEqual([words for words in found if "mesh_resolution" in words or "paths" in words or "intensity" in words], [])
+
+    def test_methods_without_photons_are_levels(self):
+        self.compare_methods()
+        self.succeeds()
+        self.assertIn("beamtree (mesh_resolution 64, no photons)", self.labels("rmse_vs_photons-pool.svg"))
+
+    def test_times_are_wall_where_cpu_is_not_recorded(self):
+        self.table(product())
+        self.succeeds()
+        self.assertIn("wall time of the whole trial [s]", self.labels("rmse_vs_time-pool.svg"))
+
+    def test_a_figure_is_what_is_asked_for(self):
+        self.table(product())
+        out = self.directory / "figures"
+        for form, start in (("svg", b"<?xml"), ("pdf", b"%PDF"), ("png", b"\x89PNG")):
+            result = self.run_tool("-o", str(out / form), "--metric", "relmse", "--x", "alpha", "--format", form, "--bare", "--slope", "-0.5",
+                                   "--filter", "nearest=25", "--filter", "photons=1e3", "--filter", "mesh_resolution=32.0", "--width", "5")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual([path.name for path in (out / form / "plots").iterdir()], [f"relmse_vs_alpha-pool.{form}"])
+            content = (out / form / "plots" / f"relmse_vs_alpha-pool.{form}").read_bytes()
+            self.assertEqual(content[:len(start)], start)
+        text = (out / "svg" / "plots" / "relmse_vs_alpha-pool.svg").read_text(encoding="utf-8")
+        self.assertIn('width="360pt"', text)
+        self.assertIn("slope −0.5", text)
+        self.assertNotIn("median and range", text)
+        with open(out / "svg" / "summary.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual({(row["nearest"], row["photons"], row["mesh_resolution"]) for row in csv.DictReader(file)}, {("25", "1000", "32")})
+
+    def test_figures_that_cannot_be_are_refused(self):
+        self.table(product())
+        for words, reason in ((("--metric", "speed"), "--metric speed: no number of the table (known: "),
+                              (("--x", "colour"), "--x colour: not time, photons or a swept number (alpha, "),
+                              (("--filter", "nearest"), "not a KEY=VALUE"), (("--filter", "nearest=7"), "no record that is done has it")):
+            result = self.run_tool("-o", str(self.directory / "out"), *words)
+            self.assertEqual((result.returncode, len(result.stderr.splitlines())), (2, 1), result.stderr)
+            self.assertIn(reason, result.stderr)
+        self.assertIn("need -o", self.run_tool("--metric", "rmse").stderr)
 
     def test_values_that_vary_only_together_make_no_series(self):
         self.table([record(alpha=a, mesh_resolution=m, seed=s) for a, m in ((0.1, 32), (1, 64)) for s in (1, 2)])

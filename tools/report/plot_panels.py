@@ -4,9 +4,11 @@ A line is one method with its N (photons in the estimate); what else varies make
 """
 import dataclasses
 
-from report.records import PHOTON_PARAMETERS, natural
+from report.records import PHOTON_PARAMETERS, as_number, natural
 
 QUANTITIES = {"photons": "stored photons", "time": "time", "alpha": "alpha", "mesh_resolution": "mesh_resolution"}
+WORK = ("paths", "mesh_resolution")  # what a line runs along, where only some methods have it
+CPU_PARTS = ("precompute_cpu_s", "balance_cpu_s", "indirect_cpu_s", "render_cpu_s")
 # Okabe and Ito's palette without its yellow: distinct to every kind of colour vision.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 MARKERS = "osD^vPX*"
@@ -25,9 +27,9 @@ class Kind:
     def x_of(self, cell):
         """The cell's place on the x axis, or None where the quantity does not apply to it."""
         if self.x in ("photons", "time"):
-            spread = cell.spread("photons_stored" if self.x == "photons" else "total_s")
+            spread = cell.spread("photons_stored" if self.x == "photons" else "time_s")
             return spread.median if spread else None
-        return float(cell.parameters[self.x]) if self.x in cell.parameters else None
+        return as_number(cell.parameters[self.x]) if self.x in cell.parameters else None
 
     def parameters_on_axes(self):
         """The parameters that x or the marks show, so that they make no panels."""
@@ -38,16 +40,33 @@ KINDS = (Kind("rmse", "photons"), Kind("rmse", "time"), Kind("rmse", "alpha"), K
          Kind("rmse", "mesh_resolution"), Kind("mean_ratio", "mesh_resolution"))
 
 
+def set_times(cells):
+    """Gives each record the time that plots are over, `time_s`, and returns what that is: CPU seconds of build and query, which
+    other work on the machine hardly changes, where all records have them, else the wall time of the trial."""
+    rows = [record for cell in cells for record in cell.records]
+    if all(record.get("render_cpu_s") for record in rows):
+        for record in rows:
+            record["time_s"] = repr(sum(float(record.get(part) or 0) for part in CPU_PARTS))
+        return "CPU time of build and query [s]"
+    for record in rows:
+        record["time_s"] = record["total_s"]
+    return "wall time of the whole trial [s]"
+
+
 class Series:
     """Which line a cell belongs to, and how that line looks in every plot of the report.
 
-    A line is a method and its N, and those parameters that only some methods have.
+    A line is a method and its N, and those parameters that vary within methods and that only some methods have; along
+    `work`, which are such parameters too, it runs.
     """
 
     def __init__(self, cells):
         methods = sorted({cell.method for cell in cells}, key=natural)
-        self.own_parameters = [name for name in varying(cells) if name not in PHOTON_PARAMETERS + ("nearest",)
-                               and one_sided(name, cells, methods)]
+        own = [name for name in varying(cells) if name not in PHOTON_PARAMETERS + ("nearest",)
+               and one_sided(name, cells, methods)]
+        self.work = [name for name in own if name in WORK]
+        self.own_parameters = [name for name in own if name not in WORK and varies_within(name, cells, methods)]
+        self.ignored = [name for name in own if name not in WORK and name not in self.own_parameters]
         self.one_method = len(methods) == 1
         keys = sorted({self.key(cell) for cell in cells}, key=lambda key: [natural(part) for part in key])
         self.styles = {key: (COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)],
@@ -59,7 +78,8 @@ class Series:
     def label(self, key):
         method, nearest, *others = key
         words = [f"N = {nearest}"] if nearest else []
-        words += [f"{name} {value}" for name, value in zip(self.own_parameters, others) if value]
+        words += [{"true": name, "false": f"not {name}"}.get(value, f"{name} {value}")
+                  for name, value in zip(self.own_parameters, others) if value]
         return ", ".join(words) if self.one_method and words else ", ".join([method, *words])
 
     def split(self, cells):
@@ -73,6 +93,10 @@ def varying(cells):
     return [name for name in names if len({cell.parameters.get(name) for cell in cells}) > 1]
 
 
+def varies_within(name, cells, methods):
+    return any(len({cell.parameters.get(name) for cell in cells if cell.method == method}) > 1 for method in methods)
+
+
 def one_sided(name, cells, methods):
     """Whether some methods never have this parameter."""
     having = {cell.method for cell in cells if name in cell.parameters}
@@ -82,13 +106,14 @@ def one_sided(name, cells, methods):
 def arrange(kind, cells, series):
     """The panels of one plot, [(title, cells)], or the reason why there are none."""
     cells = [cell for cell in cells if kind.x_of(cell) is not None and cell.spread(kind.y)]
-    quantity = QUANTITIES[kind.x]
+    quantity = QUANTITIES.get(kind.x, kind.x)
     if not cells:
         return [], f"no row has {quantity} and {kind.y}"
     if len({kind.x_of(cell) for cell in cells}) < 2:
         return [], f"fewer than two values of {quantity}"
     names = [name for name in varying(cells)
-             if name not in (*kind.parameters_on_axes(), "nearest", *series.own_parameters)]
+             if name not in (*kind.parameters_on_axes(), "nearest", *series.own_parameters, *series.ignored)
+             and not (kind.x in ("photons", "time") and name in series.work)]
     panels = {}
     # A method without photons is compared with every number of photons, so it is drawn in all of their panels.
     photons = [name for name in names if name in PHOTON_PARAMETERS]
@@ -105,6 +130,16 @@ def arrange(kind, cells, series):
         return [], f"no two values of {quantity} with all else equal"
     keys = sorted(panels, key=lambda key: [natural(part) for part in key])
     return [(panel_title(names, key, len(keys)), panels[key]) for key in keys], None
+
+
+def without_photons(kind, members, cells, series):
+    """The series that have no place on an axis of photons, each with its best cell beside a panel's: [(key, cell)]."""
+    names = [name for name in varying(cells) if name not in (*PHOTON_PARAMETERS, "nearest", *series.own_parameters, *series.ignored,
+                                                         *series.work)]
+    settings = [{name: member.parameters.get(name) for name in names} for member in members]
+    beside = [cell for cell in cells if kind.x_of(cell) is None and cell.spread(kind.y) and cell.method != "none"
+              and any(all(cell.parameters.get(name, value) == value for name, value in each.items()) for each in settings)]
+    return [(key, min(group, key=lambda cell: cell.spread(kind.y).median)) for key, group in series.split(beside).items()]
 
 
 def shows_change(kind, cells, series):

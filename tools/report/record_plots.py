@@ -2,6 +2,7 @@
 
 In every plot a point is the median over the seeds of one cell and the band or bar its range.
 """
+import dataclasses
 import io
 import math
 import urllib.parse
@@ -14,7 +15,7 @@ import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, MaxNLocator, NullFormatter, NullLocator
 
-from report.plot_panels import KINDS, MARKERS, QUANTITIES, Series, arrange, counted, note
+from report.plot_panels import KINDS, MARKERS, QUANTITIES, Series, arrange, counted, note, set_times, without_photons
 from report.records import FORMULAS, UNITS, natural
 
 COLUMN = 3.5  # inches: one column of a two-column page
@@ -28,17 +29,30 @@ STYLE = {"font.family": "DejaVu Sans", "font.size": 8, "axes.labelsize": 8, "axe
          "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7,
          "xtick.minor.pad": 5, "ytick.minor.pad": 5, "lines.linewidth": 1.2, "lines.markersize": 3.5,
          "axes.titley": 1.0, "svg.fonttype": "path", "svg.hashsalt": "causticbench"}
-X_LABELS = {"photons": "stored photons [1]", "time": "total_s: wall time of the whole trial [s]",
-            "alpha": "alpha [1]", "mesh_resolution": "mesh_resolution [1]"}
+X_LABELS = {"photons": "stored photons [1]", "alpha": "alpha [1]", "mesh_resolution": "polygons along a side of the mesh [1]"}
+FORMATS = ("svg", "pdf", "png")
 
 
-def make(records):
-    """All plots the records carry: [(file name, caption, SVG text)], and [(plot, reason)] for those left out."""
+@dataclasses.dataclass(frozen=True)
+class Look:
+    """How figures are drawn: the file's format, the width of one panel alone [inch], the exponent of a guide (or None), and
+    whether the words above the axes are left to the paper's caption."""
+    format: str = "svg"
+    width: float = COLUMN
+    slope: float | None = None
+    bare: bool = False
+    time: str = ""
+
+
+def make(records, kinds=KINDS, look=Look()):
+    """All plots the records carry: [(file name, caption, content)], and [(plot, reason)] for those left out. Of other kinds than
+    the usual ones they are all there is."""
     matplotlib.rcdefaults()
     plots, left_out = [], []
+    look = dataclasses.replace(look, time=set_times(records.cells))
     with matplotlib.rc_context(STYLE):
         series = Series(records.cells)
-        for kind in KINDS:
+        for kind in kinds:
             for scene in records.scenes():
                 cells = [cell for cell in records.cells if cell.scene == scene]
                 panels, reason = arrange(kind, cells, series)
@@ -46,29 +60,35 @@ def make(records):
                     left_out.append((kind.name(), scene, reason))
                 for first in range(0, len(panels), PANELS_PER_PAGE):
                     number = f"-{first // PANELS_PER_PAGE + 1}" if len(panels) > PANELS_PER_PAGE else ""
-                    figure = draw(kind, scene, panels[first:first + PANELS_PER_PAGE], series)
-                    name = f"{kind.name()}-{urllib.parse.quote(scene, safe='')}{number}.svg"
-                    plots.append((name, f"{scene}: {kind.y} against {QUANTITIES[kind.x]}; {note(cells)}", svg(figure)))
-        cells = [cell for cell in records.cells if cell.spread("mean_ratio")]
-        if cells:
-            plots.append(("mean_ratio.svg", "mean_ratio per scene: bars the range over all trials, large marks their "
-                          "median, small marks the medians of the cells", svg(draw_energy(cells, series))))
-        else:
-            left_out.append(("mean_ratio", None, "no row has a mean_ratio"))
+                    figure = draw(kind, scene, panels[first:first + PANELS_PER_PAGE], series, look, cells)
+                    name = f"{kind.name()}-{urllib.parse.quote(scene, safe='')}{number}.{look.format}"
+                    plots.append((name, f"{scene}: {kind.y} against {QUANTITIES.get(kind.x, kind.x)}; {note(cells)}", saved(figure, look.format)))
+        if kinds is KINDS:
+            cells = [cell for cell in records.cells if cell.spread("mean_ratio")]
+            if cells:
+                plots.append((f"mean_ratio.{look.format}", "mean_ratio per scene: bars the range over all trials, large marks "
+                              "their median, small marks the medians of the cells", saved(draw_energy(cells, series), look.format)))
+            else:
+                left_out.append(("mean_ratio", None, "no row has a mean_ratio"))
     return plots, left_out
 
 
-def draw(kind, scene, panels, series):
+def draw(kind, scene, panels, series, look, others=()):
     columns = 1 if len(panels) == 1 else min(len(panels), columns_for(panels))
     rows = math.ceil(len(panels) / columns)
     cells = [cell for _, members in panels for cell in members]
-    groups = legend_groups(kind, cells, series)
-    figure, grid, foot = canvas(rows, columns, groups, COLUMN if columns == 1 else PAGE)
+    levels = [without_photons(kind, members, others, series) if kind.x == "photons" else [] for _, members in panels]
+    groups = legend_groups(kind, cells, dict(level for each in levels for level in each), series)
+    figure, grid, foot = canvas(rows, columns, groups, look.width if columns == 1 else look.width / COLUMN * PAGE, look.bare)
     axes = [ax for line in grid for ax in line]
-    for ax, (title, members) in zip(axes, panels):
+    for ax, (title, members), level in zip(axes, panels, levels):
+        draw_levels(kind, ax, level, series)
         draw_panel(kind, ax, members, series)
         ax.set_title(title, loc="left", fontsize=7.5, pad=3)
-    set_scales(kind, axes[0], cells)
+    set_scales(kind, axes[0], [*cells, *(cell for each in levels for _, cell in each)])
+    if look.slope is not None:
+        for ax in axes[:len(panels)]:
+            draw_slope(ax, look.slope)
     for i, ax in enumerate(axes):
         if i >= len(panels):
             ax.remove()
@@ -76,11 +96,16 @@ def draw(kind, scene, panels, series):
         below = i + columns < len(panels)
         ax.tick_params(labelbottom=not below, labelleft=i % columns == 0, which="both")
         if i % columns == 0:
-            ax.set_ylabel(f"{kind.y} [{UNITS[kind.y]}]")
-    formula = FORMULAS[kind.y] + (trust(cells) if kind.y == "rmse" else "")
-    label_figure(figure, f"{scene}: {note(cells)}", formula, X_LABELS[kind.x], foot, LEFT)
+            ax.set_ylabel(f"{kind.y} [{unit(kind.y)}]")
+    formula = FORMULAS.get(kind.y, "") + (trust(cells) if kind.y == "rmse" else "")
+    words = ("", "") if look.bare else (f"{scene}: {note(cells)}", formula)
+    label_figure(figure, *words, look.time if kind.x == "time" else X_LABELS.get(kind.x, kind.x), foot, LEFT)
     legends(figure, groups)
     return figure
+
+
+def unit(column):
+    return UNITS.get(column, "W m⁻² sr⁻¹" if column.endswith("rmse") else "1")
 
 
 def columns_for(panels):
@@ -90,18 +115,19 @@ def columns_for(panels):
     return run if 1 < run <= 5 and heads[0] else 4 if len(panels) > 3 else len(panels)
 
 
-def canvas(rows, columns, groups, width):
+def canvas(rows, columns, groups, width, bare=False):
     """A figure laid out in inches, and its axes; `foot` is the height kept for the legend."""
     foot = legend_height(groups, width)
+    top = 0.1 if bare else TOP
     title = 0.14 if rows * columns > 1 else 0.0
     gap_x, gap_y = 0.12, 0.30
     across = (width - LEFT - RIGHT - gap_x * (columns - 1)) / columns
     up = 1.9 if columns == 1 and rows == 1 else max(1.15, min(1.6, 0.85 * across))
-    height = TOP + title + BOTTOM + foot + rows * up + (rows - 1) * gap_y
+    height = top + title + BOTTOM + foot + rows * up + (rows - 1) * gap_y
     figure = plt.figure(figsize=(width, height))
     grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, gridspec_kw={
         "left": LEFT / width, "right": 1 - RIGHT / width, "bottom": (BOTTOM + foot) / height,
-        "top": 1 - (TOP + title - 0.14) / height,
+        "top": 1 - (top + title - 0.14 * (not bare)) / height,
         "wspace": gap_x / across, "hspace": gap_y / up})
     return figure, grid, foot
 
@@ -137,6 +163,30 @@ def label_figure(figure, title, below_title, x, foot, left):
     figure.text((left + width - RIGHT) / 2 / width, (foot + 0.04) / height, x, va="bottom", ha="center")
 
 
+def draw_levels(kind, ax, levels, series):
+    """Methods without photons: what their best setting reaches, and its range."""
+    for key, cell in levels:
+        colour, _, line = series.styles[key]
+        spread = cell.spread(kind.y)
+        ax.axhspan(spread.low, spread.high, color=colour, alpha=0.12, linewidth=0)
+        ax.axhline(spread.median, color=colour, linestyle=line, linewidth=0.9)
+
+
+def draw_slope(ax, slope):
+    """A guide of that exponent, in the upper right of the axes."""
+    if ax.get_xscale() != "log" or ax.get_yscale() != "log":
+        return
+    (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
+    from_x, to_x, top = x0 * (x1 / x0) ** 0.62, x0 * (x1 / x0) ** 0.92, y0 * (y1 / y0) ** 0.95
+    fall = (to_x / from_x) ** slope
+    start = top if slope < 0 else top / fall
+    ax.plot([from_x, to_x], [start, start * fall], color=GREY, linewidth=0.8, zorder=0)
+    ax.text(math.sqrt(from_x * to_x), start * math.sqrt(fall), f" slope {slope:g}".replace("-", "−"), color=GREY, fontsize=7,
+            va="bottom", ha="left")
+    ax.set_xlim(x0, x1)
+    ax.set_ylim(y0, y1)
+
+
 def draw_panel(kind, ax, cells, series):
     for key, group in series.split(cells).items():
         colour, marker, line = series.styles[key]
@@ -147,7 +197,7 @@ def draw_panel(kind, ax, cells, series):
         if kind.x == "time":
             ax.plot(x, y, linestyle=line, color=colour, linewidth=0.7)
             for cell, spread in zip(group, spreads):
-                bars(ax, cell.spread("total_s"), spread, colour, *photon_mark(cell))
+                bars(ax, cell.spread("time_s"), spread, colour, *(photon_mark(cell) or (marker, 4.5)))
         else:
             ax.plot(x, y, linestyle=line, marker=marker, color=colour)
             low, high = [spread.low for spread in spreads], [spread.high for spread in spreads]
@@ -185,10 +235,10 @@ def draw_reference_error(kind, ax, cells):
 
 
 def photon_mark(cell):
-    """Marker and size that stand for a number of photons, the same in every panel and plot."""
+    """Marker and size that stand for a number of photons, the same in every panel and plot; None without photons."""
     spread = cell.spread("photons_stored")
     if not spread or spread.median <= 0:
-        return "*", 5.0
+        return None
     step = round(2 * math.log10(spread.median))
     return MARKERS[step % (len(MARKERS) - 1)], 2.5 + 0.35 * max(0, step - 6)
 
@@ -199,16 +249,21 @@ def bars(ax, x, y, colour, marker, size):
                 elinewidth=0.7, linestyle="none")
 
 
-def legend_groups(kind, cells, series):
+def legend_groups(kind, cells, levels, series):
     handles, marked, dotted = [], [], []
-    for key in series.split(cells):
+    for key, group in series.split(cells).items():
         colour, marker, line = series.styles[key]
-        handles.append(Line2D([], [], color=colour, marker=None if kind.x == "time" else marker, linestyle=line,
+        by_photons = kind.x == "time" and any(photon_mark(cell) for cell in group)
+        handles.append(Line2D([], [], color=colour, marker=None if by_photons else marker, linestyle=line,
                               label=series.label(key)))
+    for key, cell in levels.items():
+        colour, _, line = series.styles[key]
+        best = [f"{name} {cell.parameters[name]}" for name in series.work if name in cell.parameters]
+        handles.append(Line2D([], [], color=colour, linestyle=line, linewidth=0.9, label=f"{series.label(key)} ({', '.join([*best, 'no photons'])})"))
     if kind.x == "time":
         marks = {}
         for cell in cells:
-            if cell.spread("photons_stored"):
+            if photon_mark(cell):
                 marks.setdefault(photon_mark(cell), []).append(cell.spread("photons_stored").median)
         for (marker, size), counts in sorted(marks.items(), key=lambda item: item[1]):
             ends = dict.fromkeys((counted(min(counts)), counted(max(counts))))
@@ -221,7 +276,7 @@ def legend_groups(kind, cells, series):
 
 def set_scales(kind, ax, cells):
     """Scales and ticks of all panels, which share the axes of the first."""
-    x = sorted({kind.x_of(cell) for cell in cells})
+    x = sorted({kind.x_of(cell) for cell in cells} - {None})
     if x[0] > 0:
         ax.set_xscale("log")
     if kind.y != "mean_ratio" and min(cell.spread(kind.y).low for cell in cells) > 0:
@@ -307,11 +362,18 @@ def draw_energy_row(ax, y, cells, style):
     ax.plot([middle], [y], marker, color=colour, markersize=4.5)
 
 
-def svg(figure):
-    text = io.StringIO()
+def saved(figure, form):
+    """The figure as SVG text, or as the bytes of a PDF or a PNG (of 300 pixels an inch)."""
+    file = io.StringIO() if form == "svg" else io.BytesIO()
     for label in figure.findobj(matplotlib.text.Text):
         if "$" in label.get_text():  # of a name; those of ticks come later, by drawing
             label.set_parse_math(False)
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": "causticbench"})
+    about = {"svg": {"Date": None, "Creator": "causticbench"}, "pdf": {"CreationDate": None, "Creator": "causticbench", "Producer": None},
+             "png": {"Software": "causticbench"}}[form]
+    figure.savefig(file, format=form, dpi=300, metadata=about)
     plt.close(figure)
-    return text.getvalue()
+    return file.getvalue()
+
+
+def svg(figure):
+    return saved(figure, "svg")

@@ -106,6 +106,12 @@ def as_number(text):
         return None
 
 
+def same(text, value):
+    """Whether two spellings are of one number, or of one word."""
+    numbers = as_number(text), as_number(value)
+    return text == value if None in numbers else numbers[0] == numbers[1]
+
+
 def read(path):
     """Reads and groups the table at `path`; raises RecordsError."""
     header, rows = read_rows(path)

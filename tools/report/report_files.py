@@ -9,14 +9,14 @@ from report import records
 PACKAGES = "Debian's python3-matplotlib and python3-scipy"
 
 
-def write(path, text):
+def write(path, content):
     """Whole files only, whatever stops the program or the machine: a reader never sees half of one."""
     part = f"{path}.part"
     if os.path.islink(part) or os.path.isfile(part):
         os.remove(part)  # of a killed process, or a link that leads elsewhere
     try:
-        with open(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        with open(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "wb") as file:
+            file.write(content.encode("utf-8") if isinstance(content, str) else content)
             file.flush()
             os.fsync(file.fileno())  # before it has its name: a disk may take the two in any order
         os.replace(part, path)
