@@ -20,7 +20,8 @@ def finer(study):
     sides = sorted({int(row["cells"].strip("[]").split(",")[0]) for row in trials.rows})
     pictures = {side: [trials.picture(method=method, cells=f"[{side},{side}]")[layer] for method, layer in (("beamtree", "caustic"), ("none", ""))]
                 for side in sides}
-    finest = pictures[sides.pop()]
+    last = sides.pop()
+    finest = pictures[last]
     off = lambda kind: [float(np.abs(luminance(pictures[side][kind] - finest[kind])).mean() / luminance(finest[kind]).mean()) for side in sides]
     caustic, surface = off(0), off(1)
     needed = crossing(sides, caustic, surface[0])
@@ -39,13 +40,10 @@ def finer(study):
     note = f"the caustic comes as near as the surface of {sides[0]} × {sides[0]} cells with {needed:.0f} × {needed:.0f}"
     return Part({"finer_polygons": counted(needed / sides[0], "sides of polygons", note)}, [Table(
         "finer", "Polygons for the caustic and for the surface", ["cells", "deviation of the caustic [%]", "of the picture without caustics [%]", "ratio"],
-        rows, f"The pool, waves x 1.5, 100 × 100 pixels, 4 rays each; mean deviation from the picture of {max(trials_sides(trials))}² cells, over its mean.")], [
+        rows, "The pool, waves x 1.5, 100 × 100 pixels, 4 rays each; mean deviation from the picture of the finest mesh, "
+              f"{last} × {last} cells, over its mean.")], [
         Figure("finer", "Polygons for the caustic and for the surface", "How far pictures are from those of the finest mesh. A mesh that shows the "
                "water well is far too coarse for the light below it: a caustic follows the curvature, the surface its slope.", plot(draw, 5.2, 3.2))])
-
-
-def trials_sides(trials):
-    return [int(row["cells"].strip("[]").split(",")[0]) for row in trials.rows]
 
 
 def crossing(places, values, level):

@@ -150,7 +150,8 @@ def blur(study):
     return Part({"ball_blur": ratio(stray[fewer], stray[nice], "of the light in the dark",
                                     note="the width of the spot does not show it: it is wider than the discs of the estimates")}, [Table(
         "figure2_blur", "Figure 2: blur over photons", ["photons", "light in the dark [%]", "width of the spot [mm]"], rows,
-        f"N = 100, alpha 0.1. Dark: below {100 * DARK:g} % of the spot in the picture of the most photons. Width: across the light's direction, where the light summed over 0.2 m along it falls to a half.")],
+        f"N = 100, alpha 0.1. Dark: below {100 * DARK:g} % of the spot in the picture of the most photons. Width: across the light's direction, "
+        "where the light summed over 0.2 m along it falls to a half.")],
         [Figure("figure2_blur", "Figure 2: fewer photons make the caustic more blurred",
                 "The same view with 1 % of the paper's photons to four times as many, at one N = 100 and one exposure.",
                 *strip([titled(counts[:2]), titled(counts[2:])]))])

@@ -122,8 +122,9 @@ ANEW = "`tools/reproduce.sh {} --only SECTION` makes the rows, tables and figure
 
 
 def commands(entries):
-    return [[entry["claim"], entry["region"], entry["tolerance_from"], entry["section"], f"{entry['minutes']:.1f}", "" if entry["megabytes"] is None else f"{entry['megabytes']:.1f}",
-             entry["command"]] for entry in entries]
+    disk = lambda entry: "" if entry["megabytes"] is None else f"{entry['megabytes']:.1f}"
+    return [[entry["claim"], entry["region"], entry["tolerance_from"], entry["section"], f"{entry['minutes']:.1f}", disk(entry), entry["command"]]
+            for entry in entries]
 
 
 def seconds(paper):
