@@ -31,7 +31,7 @@ def columns(study):
             layers = trials.picture(scene=scene, lamp=value, method="photonmap")
             by_beams = beams[scene, lamp].picture()
             level = white(layers[""])
-            rows.append([(f"{what}, {lamp}: ray tracing only", bare[""], level), ("photons", layers[""], level), ("beams", by_beams[""], level)])
+            rows.append([(f"{what}, {lamp}: ray tracing", bare[""], level), ("photons", layers[""], level), ("beams", by_beams[""], level)])
             table += [row_of(f"{what}, {lamp}", name, row, float(own["caustic"].mean() / layers["caustic"].mean()))
                       for name, row, own in (("photons", photons, layers), ("beams", tree, by_beams))]
             brighter.append(float(layers[""].mean() / bare[""].mean()))
