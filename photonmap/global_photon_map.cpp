@@ -184,7 +184,8 @@ private:
                                              sample.direction),
                             .wavelength = {.nm = point.nm},
                             .start_absorption = point.medium};
-        const auto ahead = receiver_ahead(scene_, chain, params_.max_bounces, rng);
+        const auto ahead =
+            receiver_ahead(scene_, chain, scene_.intersect(chain.ray), params_.max_bounces, rng);
         if (!ahead) return;
         const bool known = maps_.irradiance && reflects_by_irradiance(ahead->point);
         (known ? context.diffuse : context.others).push_back(ahead->point);

@@ -50,10 +50,9 @@ bool BackwardChain::turn(const SurfacePoint& hit, const Bsdf& bsdf, Rng& rng, fl
 }
 
 std::optional<WeightedPoint> receiver_ahead(const Scene& scene, BackwardChain& chain,
-                                            int max_bounces, Rng& rng) {
-    for (;;) {
-        const std::optional<SurfacePoint> hit = scene.intersect(chain.ray);
-        if (!hit) return {};
+                                            std::optional<SurfacePoint> hit, int max_bounces,
+                                            Rng& rng) {
+    for (; hit; hit = scene.intersect(chain.ray)) {
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
         chain.arrive(*hit, bsdf);
         if (is_black(chain.weight)) return {};
@@ -70,6 +69,7 @@ std::optional<WeightedPoint> receiver_ahead(const Scene& scene, BackwardChain& c
         point->medium = chain.start_absorption;
         return WeightedPoint{*point, chain.weight / (1 - specular)};
     }
+    return {};
 }
 
 }  // namespace caustics

@@ -26,9 +26,10 @@ struct BackwardChain {
     bool turn(const SurfacePoint& hit, const Bsdf& bsdf, Rng& rng, float& chance);
 };
 
-/// The receiver at the end of a chain of at most `max_bounces` events; none where it leaves the scene or
-/// ends. A surface that is receiver and caster is either, by chance.
+/// The receiver at the end of a chain of at most `max_bounces` events, whose ray meets `hit`; none where it leaves
+/// the scene or ends. A surface that is receiver and caster is either, by chance.
 std::optional<WeightedPoint> receiver_ahead(const Scene& scene, BackwardChain& chain,
-                                            int max_bounces, Rng& rng);
+                                            std::optional<SurfacePoint> hit, int max_bounces,
+                                            Rng& rng);
 
 }  // namespace caustics

@@ -12,6 +12,9 @@
 namespace caustics {
 namespace {
 
+// Every path goes on from its first receivers, the one that is seen among them.
+constexpr int sure_receivers = 2;
+
 class IndirectPathTrace : public IndirectEstimator {
 public:
     IndirectPathTrace(const Scene& scene, const IndirectPathTraceParams& params,
@@ -36,8 +39,10 @@ public:
 private:
     /// A path as far as it has come: what one unit of light from there brings to the first receiver.
     struct Path {
-        Spectrum weight;
-        BackwardChain chain;
+        Spectrum weight = Spectrum::Ones();
+        BackwardChain chain = {};
+        float pdf = 0;    ///< of the chain's direction [1/sr]
+        float share = 1;  ///< of the light from there that the last receiver sends on
     };
 
     Estimate estimate(const ReceiverPoint& point, float factor) const {
@@ -47,14 +52,16 @@ private:
 
     Spectrum sample(const ReceiverPoint& start, Rng& rng) const {
         Spectrum light = black();
-        Path path{Spectrum::Ones(), {.ray = {}, .wavelength = {.nm = start.nm}}};
+        Path path;
+        path.chain.wavelength.nm = start.nm;
         ReceiverPoint at = start;
-        // At the receiver that the light comes to first, it is direct or a caustic.
-        for (int receivers = 1; receivers != params_.diffuse_bounces; ++receivers) {
-            require_end(receivers);
-            if (!turn(at, path, rng)) return light;
-            const auto ahead = receiver_ahead(scene_, path.chain, params_.max_bounces, rng);
-            if (!ahead) return light;
+        for (int receivers = 1; turn(at, path, rng); ++receivers) {
+            const auto hit = scene_.intersect(path.chain.ray);
+            // At the receiver that the light comes to first, it is direct or a caustic.
+            if (receivers > 1) light += path.weight * met(hit, path);
+            if (receivers == params_.diffuse_bounces || !goes_on(receivers, path, rng)) break;
+            const auto ahead = receiver_ahead(scene_, path.chain, hit, params_.max_bounces, rng);
+            if (!ahead) break;
             path.weight *= ahead->weight;
             at = ahead->point;
             light += path.weight * arriving(at, rng);
@@ -62,31 +69,45 @@ private:
         return light;
     }
 
-    // Into a direction of f_r; false for the end by chance, whose survivors have the same weight.
+    // Into a direction of f_r; false where that is below the surface.
     static bool turn(const ReceiverPoint& at, Path& path, Rng& rng) {
         const float u0 = rng.next();
         const float u1 = rng.next();
         const float u2 = rng.next();
-        const float u3 = rng.next();
         const auto wi = sample_direction(*at.bsdf, at.shading_normal, at.wo, u0, u1, u2);
         if (!wi) return false;
         const float cosine = at.geometric_normal.dot(*wi);
-        const float pdf = direction_pdf(*at.bsdf, at.shading_normal, at.wo, *wi);
-        if (!(cosine > 0) || !(pdf > 0)) return false;
-        const Spectrum after =
-            path.weight * evaluate(*at.bsdf, at.uv, at.shading_normal, at.wo, *wi) * (cosine / pdf);
-        const float kept = std::min(1.0F, after.mean() / path.weight.mean());
-        if (!(u3 < kept)) return false;
-        path.weight = after / kept;
+        path.pdf = direction_pdf(*at.bsdf, at.shading_normal, at.wo, *wi);
+        if (!(cosine > 0) || !(path.pdf > 0)) return false;
+        const Spectrum after = path.weight * (cosine / path.pdf) *
+                               evaluate(*at.bsdf, at.uv, at.shading_normal, at.wo, *wi);
+        path.share = after.mean() / path.weight.mean();
+        path.weight = after;
         path.chain = {.ray = spawn_ray({at.position, at.geometric_normal, at.offset}, *wi),
                       .wavelength = path.chain.wavelength,
                       .start_absorption = at.medium};
-        return true;
+        return path.share > 0;
     }
 
-    // Of direct light and caustics, leaving a point of the path.
+    // The first receivers bring most of the light; behind them a path ends by chance as light does.
+    static bool goes_on(int receivers, Path& path, Rng& rng) {
+        require_end(receivers);
+        if (receivers <= sure_receivers) return true;
+        const float kept = std::min(1.0F, path.share);
+        path.weight /= kept;
+        return rng.next() < kept;
+    }
+
+    // Direct light that comes along the chain's ray, its share of two ways to find it.
+    Spectrum met(const std::optional<SurfacePoint>& hit, const Path& path) const {
+        const MetLight found =
+            met_light(scene_, hit, path.chain.ray.direction, hit ? hit->distance : 0);
+        return found.radiance * (path.pdf / (found.pdf + path.pdf));
+    }
+
+    // Of direct light by samples of lights, and of caustics, leaving a point of the path.
     Spectrum arriving(const ReceiverPoint& at, Rng& rng) const {
-        Spectrum light = direct_radiance(scene_, at, rng, Shadows::opaque, Cosine::geometric);
+        Spectrum light = sampled_light(scene_, at, rng, Cosine::geometric);
         if (caster_bounds_.empty()) return light;
         const DirectionMixture mixture(caster_bounds_, at);
         return light + caustic_sample(scene_, at, mixture, true, params_.max_bounces, rng);

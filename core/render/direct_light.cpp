@@ -73,10 +73,13 @@ public:
           rays_(rays) {}
 
     Spectrum from_all(Rng& rng) const {
-        const std::vector<Light>& lights = scene_.lights();
+        Spectrum sum = by_light_samples(rng);
+        if (std::ranges::any_of(scene_.lights(), has_extent)) sum += by_bsdf_sample(rng);
+        return sum;
+    }
+    Spectrum by_light_samples(Rng& rng) const {
         Spectrum sum = black();
-        for (std::size_t i = 0; i < lights.size(); ++i) sum += from(i, rng);
-        if (std::ranges::any_of(lights, has_extent)) sum += by_bsdf_sample(rng);
+        for (std::size_t i = 0; i < scene_.lights().size(); ++i) sum += from(i, rng);
         return sum;
     }
 
@@ -102,16 +105,9 @@ private:
         const Spectrum f = scattering(p_, *wi, cosine_);
         if (is_black(f)) return black();
         const StraightWay way = way_along(*wi);
-        // Light from all around is found in this way alone.
-        if (!way.end)
-            return is_black(scene_.background())
-                       ? black()
-                       : Spectrum(f * way.left * scene_.background() / pdf(*wi));
-        const AreaLight* light = scene_.area_light(way.end->shape);
-        const float cos_light = -way.end->geometric_normal.dot(*wi);
-        if (light == nullptr || cos_light <= 0) return black();
-        const float light_pdf = light->pdf_w(way.distance * way.distance, cos_light);
-        return f * way.left * light->radiance / (light_pdf + pdf(*wi));
+        const MetLight met = met_light(scene_, way.end, *wi, way.distance);
+        if (is_black(met.radiance)) return black();
+        return f * way.left * met.radiance / (met.pdf + pdf(*wi));
     }
 
     SegmentEnd start() const { return {p_.position, p_.geometric_normal, p_.offset}; }
@@ -160,10 +156,25 @@ private:
 
 }  // namespace
 
-Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng, Shadows shadows,
-                         Cosine cosine) {
+MetLight met_light(const Scene& scene, const std::optional<SurfacePoint>& hit,
+                   const Vec3& direction, float distance) {
+    // Light from all around is found in this way alone.
+    if (!hit) return {scene.background(), 0};
+    const AreaLight* const light = scene.area_light(hit->shape);
+    const float cos_light = -hit->geometric_normal.dot(direction);
+    if (light == nullptr || cos_light <= 0) return {};
+    return {light->radiance, light->pdf_w(distance * distance, cos_light)};
+}
+
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         Shadows shadows) {
     ShadowRays rays;
-    return DirectLight(scene, point, shadows, cosine, rays).from_all(rng);
+    return DirectLight(scene, point, shadows, Cosine::shading, rays).from_all(rng);
+}
+
+Spectrum sampled_light(const Scene& scene, const ReceiverPoint& point, Rng& rng, Cosine cosine) {
+    ShadowRays rays;
+    return DirectLight(scene, point, Shadows::opaque, cosine, rays).by_light_samples(rng);
 }
 
 Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,

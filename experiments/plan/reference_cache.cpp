@@ -48,8 +48,8 @@ Reference::Light light_of(const Film& film, const std::string& layer, const Pixe
 }
 
 /// Pictures of version 1 keep no standard error of their indirect layer; of version 2, `pathtrace` left out the water before
-/// the eye's receivers, and weighed direct light about smooth normals.
-constexpr int indirect_version = 3;
+/// the eye's receivers, and weighed direct light about smooth normals; of version 3, it drew other numbers.
+constexpr int indirect_version = 4;
 
 }  // namespace
 

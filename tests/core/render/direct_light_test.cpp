@@ -62,6 +62,46 @@ TEST(DirectLight, OfADiscIsTheClosedForm) {
     }
 }
 
+// In two halves, as paths use it: samples of the lights, and what rays along samples of the BSDF meet.
+TEST(DirectLight, IsSamplesOfLightsAndWhatRaysMeet) {
+    for (const double radius : {0.1, 10.0}) {
+        SceneDesc desc = floor_scene();
+        Shape lamp = support::horizontal("lamp", 2, radius, false, support::diffuse(0));
+        lamp.primitive = Primitive::disk;
+        lamp.radiance = Spectrum(Spectrum::Constant(4));
+        desc.shapes.push_back(lamp);
+        const Scene scene(std::move(desc));
+        const ReceiverPoint p = support::probe(scene, 0, {0, 0, 0}, Vec3d::UnitZ(), 0);
+        support::Moments value;
+        for (std::uint64_t i = 0; i < 20'000; ++i) {
+            Rng rng(1, Stage::test, i);
+            Spectrum light = sampled_light(scene, p, rng, Cosine::geometric);
+            const float u0 = rng.next(), u1 = rng.next();
+            const Vec3 wi = *sample_direction(*p.bsdf, p.shading_normal, p.wo, u0, u1, 0);
+            const auto hit = scene.intersect(spawn_ray({p.position, wi, p.offset}, wi));
+            const MetLight met = met_light(scene, hit, wi, hit ? hit->distance : 0);
+            const float pdf = direction_pdf(*p.bsdf, p.shading_normal, p.wo, wi);
+            light += reflectance * met.radiance * (pdf / (met.pdf + pdf));
+            value.add(static_cast<double>(light[1]));
+        }
+        const double expected = 4 * 0.5 * radius * radius / (radius * radius + 4);
+        EXPECT_NEAR(value.mean(), expected, 4 * value.standard_error() + 1e-5 * expected) << radius;
+    }
+}
+
+TEST(DirectLight, IsFluxOfTheTrueAreaByTheGeometricCosine) {
+    SceneDesc desc = floor_scene();
+    desc.lights.push_back(support::directional_light({1, 0, -1}, 3));
+    const Scene scene(std::move(desc));
+    ReceiverPoint p = support::probe(scene, 0, {0, 0, 0}, Vec3d::UnitZ(), 0);
+    p.shading_normal = Vec3(-1, 0, 1).normalized();
+    Rng rng(1, Stage::test, 0);
+    const double along = 3 * 0.5 / pi_d;
+    EXPECT_NEAR(static_cast<double>(sampled_light(scene, p, rng, Cosine::shading)[0]), along, 1e-5);
+    EXPECT_NEAR(static_cast<double>(sampled_light(scene, p, rng, Cosine::geometric)[0]),
+                along * std::sqrt(0.5), 1e-5);
+}
+
 // E = pi L (R/d)^2 cos of a whole sphere above the horizon.
 TEST(DirectLight, OfASphereIsTheClosedForm) {
     SceneDesc desc = floor_scene();
