@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/atomic_file.h"
+#include "core/base/decimal.h"
 #include "core/base/error.h"
 #include "core/scene_file/json_document.h"
 
@@ -47,6 +48,7 @@ std::string contents(const json& value) {
 
 json value_or_string(const std::string& text, const std::string& place) {
     if (json::accept(text)) return parse_json(text, place);
+    if (const std::optional<double> number = decimal<double>(text)) return *number;
     if (!is_utf8(text)) throw InputError(place + ": the value is not valid UTF-8");
     return parse_json(json(text).dump(), place);
 }

@@ -2,19 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
-#include <optional>
 #include <string>
 
-namespace caustics::experiments {
+#include "core/base/decimal.h"
 
-/// A whole number or a finite number in decimal, as sweep files write it: no "010", "0x10", "nan", "inf"
-/// or "1e400", nothing before or after. Empty where the text is no such number, or the type cannot
-/// hold it.
-template <typename Number>
-std::optional<Number> decimal(const std::string& text);
-extern template std::optional<double> decimal(const std::string&);
-extern template std::optional<int> decimal(const std::string&);
-extern template std::optional<std::uint64_t> decimal(const std::string&);
+namespace caustics::experiments {
 
 /// The number that an option was given as. Throws InputError naming the option unless it is a
 /// decimal() from `low` to `high`.

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/decimal.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "experiments/base/bounded_json.h"
@@ -57,6 +58,17 @@ std::optional<IndirectMethod> parse_indirect(const std::string& name, const Json
                                  fmt::join(indirect_names(), ", ")));
 }
 
+namespace {
+
+json value_or_string(const std::string& text) {
+    json value = parse_bounded_or_discard(text);
+    if (!value.is_discarded()) return value;
+    const std::optional<double> number = decimal<double>(text);
+    return number ? json(*number) : json(text);
+}
+
+}  // namespace
+
 JsonNode parameters_node(const std::vector<std::string>& assignments, const std::string& option) {
     json object = json::object();
     for (const std::string& assignment : assignments) {
@@ -67,8 +79,7 @@ JsonNode parameters_node(const std::vector<std::string>& assignments, const std:
         const std::string text = assignment.substr(equals + 1);
         if (object.contains(key))
             throw InputError(fmt::format("{} \"{}\": given twice", option, key));
-        json value = parse_bounded_or_discard(text);
-        object[key] = value.is_discarded() ? json(text) : std::move(value);
+        object[key] = value_or_string(text);
     }
     return JsonNode::parse_text(object.dump(), option);
 }

@@ -347,6 +347,9 @@ TEST(SceneHash, FollowsTheContentAndNotTheLayout) {
     EXPECT_NE(plain, hash(scene_with(R"(, "x": {"type": "disk", "resolution": 3})")));
     EXPECT_EQ(plain, hash(scene_with(R"(, "x": {"type": "disk", "resolution": 3})"),
                           {{"/x/resolution", "2"}}));
+    EXPECT_EQ(plain, hash(scene_with(R"(, "x": {"type": "disk", "resolution": 3})"),
+                          {{"/x/resolution", "2."}}))
+        << "a number without digits after its point";
 }
 
 TEST(Scene, IncludedPartsResolveTheirFilesBesideThemselves) {

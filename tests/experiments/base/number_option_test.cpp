@@ -84,6 +84,11 @@ TEST(Decimal, HoldsTheWholeRangeOfItsType) {
     EXPECT_EQ(decimal<double>("-0.5"), -0.5);
     EXPECT_EQ(decimal<double>("1e-3"), 0.001);
     EXPECT_FALSE(decimal<double>("-01"));
+    EXPECT_EQ(decimal<double>(".15"), 0.15);
+    EXPECT_EQ(decimal<double>("-.5"), -0.5);
+    EXPECT_EQ(decimal<double>("2."), 2);
+    for (const std::string text : {".", "-", "-.", "+.5", "1.5.2", ".e3", "00.5", " .5", ".5x"})
+        EXPECT_FALSE(decimal<double>(text)) << text;
 }
 
 }  // namespace

@@ -167,6 +167,10 @@ TEST(Methods, TakeValuesAsJsonOrElseAsStrings) {
     EXPECT_EQ(describe(method("photonmap", {"photons=1e4"})).at("photons"), 10000);
     EXPECT_EQ(describe(method("photonmap", {"estimator=raw"})).at("estimator"), "raw");
     EXPECT_EQ(describe(method("photonmap", {"estimator=\"raw\""})).at("estimator"), "raw");
+    EXPECT_EQ(describe(method("photonmap", {"radius=.15"})).at("radius"), 0.15);
+    EXPECT_EQ(describe(method("photonmap", {"radius=2."})).at("radius"), 2);
+    for (const std::string text : {"nan", "inf", "-inf", "015", "0x1", "+.5", ".", "1e400", ""})
+        EXPECT_NE(error("photonmap", {"radius=" + text}), "no error") << text;
 }
 
 TEST(Methods, NameTheAlternatives) {
