@@ -111,6 +111,8 @@ void require_writable_place(const std::filesystem::path& file) {
     std::error_code unknown;
     if (!fs::is_directory(folder, unknown))
         fail("the folder " + folder.string() + " does not exist");
+    if (fs::is_symlink(fs::symlink_status(file, unknown)))
+        fail("is a symbolic link, which a new file would replace; name the file it leads to");
     const fs::file_status status = fs::status(file, unknown);
     if (fs::is_directory(status)) fail("is a folder, not a file");
     if (fs::exists(status) && !fs::is_regular_file(status)) fail("is no regular file");

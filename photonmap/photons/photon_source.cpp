@@ -35,7 +35,10 @@ SavedPhotons source(const Scene& scene, const Params& params, PhotonOrigin origi
                     const RunOptions& options, const Trace& trace) {
     if (!params.load.empty()) return loaded(scene, params.load, origin.whole_paths, options);
     // Tried now, rather than after the tracing.
-    if (!params.save.empty()) AtomicFile trial(params.save);
+    if (!params.save.empty()) {
+        require_writable_place(params.save);
+        const AtomicFile trial(params.save);
+    }
     options.phase("trace");
     origin.seed = options.seed;
     origin.max_bounces = params.max_bounces;

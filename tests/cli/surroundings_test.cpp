@@ -82,6 +82,20 @@ TEST_F(Surroundings, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
     EXPECT_EQ(run("$P sweep $D/sweep.json -o $D/out").exit_code, 0) << "and it goes on from there";
 }
 
+TEST_F(Surroundings, NoLinkIsReplacedByAPicture) {
+    write_atomic_file(folder_ / "file.exr", "precious");
+    fs::create_symlink("file.exr", folder_ / "link.exr");
+    for (const std::string verb : {"render $S --method none -o $D/link.exr",
+                                   "render $S --method photonmap --param photons=100 --param "
+                                   "save=$D/link.exr -o $D/a.exr"}) {
+        const ProgramResult result = run("$P " + verb);
+        EXPECT_EQ(result.exit_code, 2) << verb;
+        EXPECT_NE(result.err.find("link.exr: is a symbolic link"), std::string::npos) << result.err;
+    }
+    EXPECT_EQ(read_whole_file(folder_ / "link.exr"), "precious");
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link.exr"));
+}
+
 TEST_F(Surroundings, AWorkingFolderThatIsGoneIsNamed) {
     const std::string gone = "mkdir $D/gone; cd $D/gone; rmdir $D/gone; ";
     const ProgramResult sweep = run(gone + "$P sweep $D/sweep.json -o $D/out");

@@ -122,5 +122,21 @@ TEST(AtomicFile, ReplacesNoPipeOrDevice) {
     EXPECT_NO_THROW(require_writable_place(folder / "new"));
 }
 
+TEST(AtomicFile, IsPutInThePlaceOfNoLinkThatAUserNames) {
+    const support::TemporaryFolder folder;
+    write_atomic_file(folder / "file", "kept");
+    for (const std::string to : {"file", "nowhere"}) {
+        std::filesystem::remove(folder / "link");
+        std::filesystem::create_symlink(to, folder / "link");
+        try {
+            require_writable_place(folder / "link");
+            ADD_FAILURE() << to;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("link: is a symbolic link"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
 }  // namespace
 }  // namespace caustics
