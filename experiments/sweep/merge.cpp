@@ -4,11 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "experiments/base/atomic_folder.h"
 #include "experiments/base/bounded_json.h"
 #include "experiments/base/file_io.h"
@@ -99,16 +103,30 @@ void require_whole(const Survey& survey, const PlanFile& plan) {
         throw InputError("records of different instruction sets: " + all(survey.isa));
 }
 
+/// Not by the library's function, which blames the source where the disk is full.
+void copy_bytes(const fs::path& from, const fs::path& to) {
+    if (fs::exists(to)) return;
+    const std::string bytes = read_whole_file(from);
+    errno = 0;
+    std::ofstream out(to, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out)
+        throw fs::filesystem_error(
+            "copy", to, std::error_code(errno != 0 ? errno : EIO, std::generic_category()));
+}
+
 /// Copies a file, or a folder with all in it. A symbolic link is refused, because it would bring in
 /// whatever it names.
 void copy_plain(const fs::path& from, const fs::path& to) {
+    throw_if_interrupted();
     const fs::file_status status = fs::symlink_status(from);
     if (fs::is_directory(status)) {
         fs::create_directories(to);
         for (const fs::directory_entry& entry : fs::directory_iterator(from))
             copy_plain(entry.path(), to / entry.path().filename());
     } else if (fs::is_regular_file(status)) {
-        fs::copy_file(from, to, fs::copy_options::skip_existing);
+        copy_bytes(from, to);
     } else {
         throw InputError(fmt::format("{}: {}, and only plain files and folders are merged",
                                      from.string(),

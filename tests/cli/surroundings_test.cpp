@@ -80,6 +80,11 @@ TEST_F(Surroundings, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
     EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
     EXPECT_FALSE(fs::exists(folder_ / "exported"));
     EXPECT_EQ(run("$P sweep $D/sweep.json -o $D/out").exit_code, 0) << "and it goes on from there";
+    const ProgramResult merge = run("ulimit -f 1; $P merge $D/out -o $D/merged");
+    EXPECT_EQ(merge.exit_code, 2);
+    EXPECT_NE(merge.err.find("merged.part/"), std::string::npos) << merge.err;
+    EXPECT_NE(merge.err.find("File too large"), std::string::npos) << merge.err;
+    EXPECT_EQ(temporary_files(), 0U);
 }
 
 TEST_F(Surroundings, NoLinkIsReplacedByAPicture) {
