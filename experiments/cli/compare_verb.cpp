@@ -93,11 +93,26 @@ std::string judged_layer(const CompareOptions& options, const Film& picture,
     return options.layer;
 }
 
+/// A picture of luminance alone cannot be told from one of another hue.
+void require_colours(const Film& film, const std::string& file) {
+    if (film.has_layer("")) return;
+    std::vector<std::string> channels;
+    for (const Plane& plane : film.planes()) channels.push_back(plane.channel);
+    throw InputError(
+        fmt::format("{}: has no channels R, G and B to judge, but {}; name a layer that both files "
+                    "have by --layer, or write its values to R, G and B",
+                    file, one_line(fmt::format("{}", fmt::join(channels, ", ")))));
+}
+
 int compare(const CompareOptions& options) {
     if (!options.strip.empty()) require_writable_place(options.strip);
     const Film picture = read_exr(options.picture);
     const Film reference = read_exr(options.reference);
     const std::string layer = judged_layer(options, picture, reference);
+    if (layer.empty()) {
+        require_colours(picture, options.picture);
+        require_colours(reference, options.reference);
+    }
     const PixelMask reached = reached_pixels(picture, reference);
     const nlohmann::json whole = to_json(measure(picture, reference, layer, reached));
     const PixelMask mask = options.mask.empty()

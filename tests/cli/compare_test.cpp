@@ -60,6 +60,21 @@ TEST_F(Compare, JudgesByAnotherProgramsPicture) {
     EXPECT_EQ(causticbench({"compare", picture, reference}).exit_code, 0);
 }
 
+TEST_F(Compare, NamesAPictureOfLuminanceAlone) {
+    const std::string picture = render("a.exr");
+    Film grey(read_exr(picture).width(), read_exr(picture).height());
+    grey.plane("Y");
+    const std::string reference = folder_ / "grey.exr";
+    write_exr(grey, reference);
+    for (const auto& files : {std::pair(picture, reference), std::pair(reference, picture)}) {
+        const ProgramResult result = causticbench({"compare", files.first, files.second});
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_NE(result.err.find("grey.exr: has no channels R, G and B to judge, but Y"),
+                  std::string::npos)
+            << result.err;
+    }
+}
+
 TEST_F(Compare, RefusesToneMappedPictures) {
     const std::string tone_mapped = render("a.png");
     const std::string picture = render("a.exr");
