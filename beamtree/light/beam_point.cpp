@@ -225,10 +225,13 @@ BeamHit hit_in(const Projected& found, std::size_t triangle, const TestPlane& pl
     return hit;
 }
 
+// Of a triangle; less is cut off by the rounding of a corner that lies on the plane.
+constexpr double least_cut = 1e-6;
+
 /// What became of a triangle's test.
 struct Tested {
     Projected found;
-    bool apart;  ///< clipped, or not lit evenly
+    bool apart;  ///< cut, or not lit evenly
 
     bool is_hit() const { return found.is_hit(); }
 };
@@ -239,7 +242,8 @@ inline Tested test_triangle(const Corners& corners, const TestPlane& plane) {
     const bool uneven = is_uneven(rays);
     Tested tested{
         whole ? projected(rays[0].at, rays[1].at, rays[2].at) : project_clipped(plane, rays),
-        !whole || uneven};
+        uneven};
+    tested.apart = uneven || tested.found.share < 1 - least_cut;
     if (uneven && tested.found.winding != 0) measure_across(corners, plane, tested.found);
     return tested;
 }

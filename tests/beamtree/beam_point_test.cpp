@@ -215,5 +215,22 @@ TEST(BeamPoint, TakesFourCorners) {
     EXPECT_EQ(hits[0].flux_share, 0.5);
 }
 
+// At water's edge corners lie on the wall's plane, above or below it by rounding: one caustic polygon nonetheless.
+TEST(BeamPoint, TakesFourCornersWhereSomeLieOnThePlane) {
+    for (const float height : {1e-9F, 0.0F, -1e-9F}) {
+        BeamSet set;
+        for (const Vec3& p : {Vec3(0, 0, height), Vec3(3, 0, height), Vec3(2, 1, 1), Vec3(0, 1, 1)})
+            set.rays.push_back({p, Vec3(0, 0.6F, -0.8F)});
+        Beam beam;
+        beam.corners = {0, 1, 2, 3};
+        beam.first_share = 0.5F;
+        set.beams = {beam};
+        std::array<BeamHit, 2> hits;
+        ASSERT_EQ(test_beam(set, beam, TestPlane({1, 0.5F, 0}, Vec3::UnitZ()), hits), 1) << height;
+        EXPECT_NEAR(hits[0].area, 4.375, 1e-6) << height;
+        EXPECT_NEAR(hits[0].flux_share, 1, 1e-6) << height;
+    }
+}
+
 }  // namespace
 }  // namespace caustics::beamtree
