@@ -28,7 +28,8 @@ const char* most_frequent_end(const LightPathCounts& counts) {
                "(face_normals: true shades their triangles flat)";
     return counts.refracted == 0 && counts.reflected > 0
                ? "all light was reflected at the casters, none refracted, and met no receiver"
-               : "light that left the casters met no receiver";
+               : "light that left the casters met no receiver; casters far larger than what they "
+                 "light send most of it elsewhere: cut them to the part that lights it";
 }
 
 }  // namespace
