@@ -56,10 +56,10 @@ ProbeAnswers probe_shown(const Scene& scene, const RunRequest& request, const Pr
 int probe_points(const ProbeOptions& options) {
     const bool to_file = options.output != "-";
     if (to_file) require_writable_place(options.output);
-    const SceneFile file = options.scene.load();
+    SceneFile file = options.scene.load();
     const RunRequest request = request_of(options);
     const ProbeList list = read_probe_list(options.points);
-    const Scene scene(file.desc);
+    const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     RunOptions run = options.run.options(1);
     run.origin = command("probe", request);
     const ProbeAnswers answers = probe_shown(scene, request, list, run);

@@ -76,14 +76,14 @@ RunResult run_shown(const Scene& scene, const RunRequest& request, const RunFlag
 
 int render_picture(const RenderOptions& options) {
     check_outputs(options.outputs);
-    const SceneFile file = options.scene.load();
+    SceneFile file = options.scene.load();
     const RunRequest request{options.scene.file,
                              options.scene.overrides(),
                              options.method.parse(),
                              options.run.seed,
                              samples_per_pixel(file.desc.sampling, options.spp),
                              options.indirect.parse()};
-    const Scene scene(file.desc);
+    const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     Stopwatch stopwatch;
     RunResult result = run_shown(scene, request, options.run, stopwatch);
 
