@@ -60,7 +60,7 @@ def reproduce(name, chosen):
     for number, section in enumerate(wanted, 1):
         study.log(f"section {number} of {len(wanted)}: {section}")
         part.add(sections[section](study).of(section))
-    where = " ".join(each for each in (machine(study.folders()) if study.done else "", chosen.note) if each)
+    where = f"{machine(study.folders())} {chosen.note}".strip() if study.done else ""  # nothing was timed without a sweep
     rows, pieces = kept.of_some(study, part, where, list(sections), wanted) if partial(chosen) else kept.of_whole_run(study, part, where)
     write_page(study.output, paper, rows, pieces, part.figures)
     study.copy_records()

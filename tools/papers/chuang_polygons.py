@@ -64,10 +64,11 @@ def texels(study):
              for height in (calm, rough)}
     seeds = range(len(error[calm][sides[0]]))
     needed = {height: [crossing(sides, [error[height][side][seed] for side in sides], NEAR) for seed in seeds] for height in error}
+    short_of = " (a bound from below: the finest map is not near enough)" if min(error[rough][sides[-1]]) > NEAR else ""
     rows = [[f"{side} × {side}", *[spread([100 * each for each in error[height][side]]) for height in (calm, rough)]] for side in sides]
     return Part({"arvo": Measured([(a / b) ** 2 for a, b in zip(needed[rough], needed[calm])],
                                   note=f"waves x {rough} against x {calm}; texels along a side for an error of {100 * NEAR:g} %: "
-                                       f"{spread(needed[rough])} against {spread(needed[calm])}")}, [Table(
+                                       f"{spread(needed[rough])}{short_of} against {spread(needed[calm])}")}, [Table(
         "texels", "An illumination map's texels", ["texels of the floor", f"error, waves x {calm} [%]", f"waves x {rough} [%]"], rows,
         "Root mean square error against light tracing over the mean, pool_overhead.json, 64 × 64 pixels, 1,000,000 light paths, three seeds. "
         "Beyond the best number each texel has too few light paths.")])
