@@ -79,6 +79,8 @@ Verb add_export(CLI::App& app) {
         ->type_name("DIR");
     add_number(*verb, "--max-bounces", options->settings.max_bounces, 1, 1000,
                "Specular events between light and receiver (default 16)");
+    verb->add_flag("--indirect", options->settings.indirect,
+                   "With the light between receivers, as `render --indirect` has it");
     add_number(*verb, "--mesh-resolution", options->settings.mesh_resolution, 1, 4096,
                "Of exact shapes that the other renderer does not know (default 256)");
     add_number(
@@ -88,8 +90,9 @@ Verb add_export(CLI::App& app) {
     verb->footer(
         "Units stay: metres, watts, and pixels in W/(m^2 sr). A scene that the other renderer "
         "cannot express is refused (exit code 3).\n"
-        "Mitsuba also follows light from one diffuse surface to another: compare over dark "
-        "receivers. POV-Ray does not scale radiance by n^2 where the eye looks into a medium.\n"
+        "Without --indirect, Mitsuba still follows some light from one diffuse surface to another: "
+        "compare over dark receivers. POV-Ray does not scale radiance by n^2 where the eye looks "
+        "into a medium.\n"
         "Example:\n  causticbench export ring.json --to mitsuba -o ring "
         "--set '/floor/bsdf={\"type\":\"diffuse\",\"reflectance\":0.01}'\n"
         "  mitsuba -m scalar_rgb -D spp=4096 ring/scene.xml");

@@ -21,6 +21,7 @@ struct ExportSettings {
     std::string scene_file = {};  ///< for messages
     int mesh_resolution = 256;    ///< of exact shapes that the renderer does not know
     int max_bounces = 16;         ///< specular events between light and receiver
+    bool indirect = false;        ///< with the light between receivers: paths of any length
 };
 
 /// Refuses what the renderer cannot express: throws UnsupportedScene naming the scene file, the

@@ -74,13 +74,15 @@ private:
         // Mitsuba counts segments: the specular events, the receiver and the camera. Where nothing is
         // specular, longer paths would add the light between receivers alone.
         const int events = casters ? settings_.max_bounces : 0;
-        xml_.leaf("default", {{"name", "max_depth"}, {"value", std::to_string(events + 2)}});
+        const std::string longest = std::to_string(events + 2);
+        xml_.leaf("default",
+                  {{"name", "max_depth"}, {"value", settings_.indirect ? "-1" : longest}});
         xml_.leaf("default",
                   {{"name", "spp"}, {"value", std::to_string(scene_.sampling.sample_count)}});
         xml_.open("integrator", {{"type", "$integrator"}});
         value("integer", "max_depth", "$max_depth");
-        // No roulette: it would thin out long chains behind a dark receiver.
-        value("integer", "rr_depth", "$max_depth");
+        // No roulette before it is needed: it would thin out long chains behind a dark receiver.
+        value("integer", "rr_depth", settings_.indirect ? longest : "$max_depth");
         xml_.close();
     }
 

@@ -186,6 +186,23 @@ TEST(MitsubaScene, NeverAsksForStrataWithoutJitter) {
     }
 }
 
+TEST(MitsubaScene, TakesAllPathsForLightBetweenReceivers) {
+    const std::string text = to_mitsuba(small_scene(), {.indirect = true}).files[0].bytes;
+    EXPECT_EQ(numbers_after(text, "name=\"max_depth\" value=\"")[0], -1);
+    EXPECT_EQ(numbers_after(text, "name=\"rr_depth\" value=\"")[0], 16 + 2);
+}
+
+TEST(PovrayScene, TakesRadiosityForLightBetweenReceivers) {
+    const auto exported = [](bool indirect) {
+        return file(to_povray(small_scene(), {.indirect = indirect}), "scene.pov");
+    };
+    EXPECT_EQ(exported(false).find("radiosity"), std::string::npos);
+    const std::string text = exported(true);
+    const std::size_t settings = text.find("global_settings");
+    EXPECT_LT(settings, text.find("radiosity {"));
+    EXPECT_LT(text.find("radiosity {"), text.find("camera {"));
+}
+
 TEST(MeshBytes, AreReadBackAsTheyWere) {
     const support::TemporaryFolder folder;
     TriangleMesh mesh = tessellate_sphere(4);
