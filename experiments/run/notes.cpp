@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -74,37 +73,6 @@ std::optional<std::string> what_crosses(const Scene& scene) {
         pairs.size() == 1   ? ""
         : pairs.size() == 2 ? " (and 1 pair more)"
                             : fmt::format(" (and {} pairs more)", pairs.size() - 1));
-}
-
-std::optional<Vec3> place_of(const Light& light) {
-    return std::visit(
-        [](const auto& kind) -> std::optional<Vec3> {
-            if constexpr (requires { kind.point(); })
-                return kind.point().position;
-            else
-                return {};
-        },
-        light);
-}
-
-/// Whether a short ray through the place meets that very place of a caster.
-bool meets_caster(const Scene& scene, const Vec3& place, const Vec3& along) {
-    const float reach = 1e-3F * scene.bounds().diagonal().norm();
-    const float rounding = std::max(1e-6F * reach, 2e-7F * place.cwiseAbs().maxCoeff());
-    const auto hit = scene.intersect({place - reach * along, along, 2 * reach});
-    return hit && (hit->position - place).norm() <= rounding &&
-           is_caster(scene.shapes()[hit->shape].bsdf);
-}
-
-bool has_light_on_caster(const Scene& scene) {
-    const std::array<Vec3, 4> lines = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(),
-                                       Vec3(0.48F, 0.64F, 0.6F)};
-    return std::ranges::any_of(scene.lights(), [&](const Light& light) {
-        const std::optional<Vec3> place = place_of(light);
-        return place && std::ranges::any_of(lines, [&](const Vec3& along) {
-                   return meets_caster(scene, *place, along);
-               });
-    });
 }
 
 /// Parameters of a method that differ from its defaults.
@@ -217,10 +185,6 @@ std::vector<std::string> notes_on(const Scene& scene) {
                 "surface is lost (face_normals: true shades the triangles flat)",
                 caster.text()));
     if (const auto crossing = what_crosses(scene)) all.push_back(*crossing);
-    if (has_light_on_caster(scene))
-        all.push_back(
-            "a light lies on the surface of a caster: which side it shines from is not known, and "
-            "methods lose its light there; move it off the surface");
     if (eye_medium(scene).ambiguous)
         all.push_back(
             "the dielectrics about the eye disagree on the medium it is in: what it sees directly "

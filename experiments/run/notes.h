@@ -8,7 +8,7 @@
 namespace caustics::experiments {
 
 /// What a user should know of a scene, one line each and mostly none: casters whose smooth normals
-/// differ much from their triangles, a light that lies on a caster, and an eye whose medium is not known.
+/// differ much from their triangles, and an eye whose medium is not known.
 std::vector<std::string> notes_on(const Scene& scene);
 
 /// What a user should know of a picture that could be made, beside that of its scene: a caster so far

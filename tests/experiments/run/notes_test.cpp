@@ -123,20 +123,6 @@ TEST(Notes, NameDielectricsThatCross) {
     EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"left and middle", "1 pair more", "cross"}));
 }
 
-TEST(Notes, SayThatALightLiesOnACaster) {
-    SceneDesc desc = flat_mirror();
-    for (const float below : {0.0F, 1e-5F, 0.5F}) {
-        desc.lights = {support::point_light({0.1F, 0.2F, 1 - below}, 1)};
-        EXPECT_EQ(any_holds(notes_on(Scene(desc)), {"a light lies on", "caster"}), below == 0)
-            << below;
-    }
-    desc.lights = {support::point_light({0.1F, 0.2F, 0}, 1)};
-    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{}) << "on the floor";
-    desc.shapes.push_back(support::sphere("ball", {0, 0, 2}, 0.5, support::glass(1.5F)));
-    desc.lights = {support::point_light({0.3F, 0.4F, 2}, 1)};
-    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"a light lies on", "caster"}));
-}
-
 TEST(Notes, NameTheLightThatBeamsLose) {
     for (const std::string method : {"beamtree", "causticpolygons"}) {
         const std::vector<std::string> coarse = {"mesh_resolution=2", "max_bounces=4"};
