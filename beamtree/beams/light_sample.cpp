@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "beamtree/beams/area_light_sampler.h"
+#include "beamtree/beams/area_light_points.h"
 #include "beamtree/beams/bin_share.h"
 #include "beamtree/beams/solid_angle.h"
 #include "core/math/rng.h"
@@ -11,22 +11,11 @@
 namespace caustics::beamtree {
 namespace {
 
-float fraction(float x) { return std::min(x - std::floor(x), 0x1.fffffep-1F); }
-
 void sample_area_light(const Scene& scene, const AreaLight& light, LightSample sample, int count,
                        Rng rng, std::vector<LightSample>& samples) {
-    const AreaLightSampler lamp(scene, light);
-    const float shift_u = rng.next();
-    const float shift_v = rng.next();
-    constexpr float golden = 0.618033988F;
     sample.kind = LightSample::Kind::area;
-    const Spectrum even =
-        light.radiance * static_cast<float>(light.sampler.area() / static_cast<double>(count));
-    for (int i = 0; i < count; ++i) {
-        const auto at = static_cast<float>(i);
-        const AreaLightSampler::Sample point = lamp.sample(
-            fraction((at + shift_u) / static_cast<float>(count)), fraction(at * golden + shift_v));
-        sample.strength = even * point.weight;
+    for (const AreaLightPoint& point : area_light_points(scene, light, count, rng)) {
+        sample.strength = light.radiance * static_cast<float>(point.area);
         sample.position = point.position;
         sample.normal = point.normal;
         sample.offset = point.offset;

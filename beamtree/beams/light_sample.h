@@ -33,9 +33,8 @@ struct LightSample {
     BinPlaces places = {};   ///< of wavelengths, where it drifts
 };
 
-/// For all lights but constant ones: one sample a point or directional light, `per_area_light` samples an
-/// area light: a rank-1 lattice over the part of it that can shine on casters (AreaLightSampler), shifted
-/// at random by the seed.
+/// For all lights but constant ones: one sample a point or directional light, at most `per_area_light` samples an
+/// area light, drawn by the seed (area_light_points()).
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed);
 /// The same light in parts: each sample once a bin of wavelengths (WavelengthBin), with its share of the
 /// strength.
