@@ -1,8 +1,11 @@
 #include "beamtree/tracing/beam_lights.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/lights_on_casters.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -20,6 +23,18 @@ Ior most_dispersive_glass(const Scene& scene) {
     return most;
 }
 
+// Its rays start on the surface and would not meet it.
+void refuse_light_on_caster(const Scene& scene, const std::string& method) {
+    const std::vector<LightOnCaster> lights = lights_on_casters(scene);
+    if (lights.empty()) return;
+    const Vec3d at = scene.origin() + lights[0].position.cast<double>();
+    throw UnsupportedScene(
+        fmt::format("{}: the light at ({:g}, {:g}, {:g}) lies on {}, and on which of its sides it "
+                    "shines is not "
+                    "known (move it to one side, by a millionth of its coordinates or more)",
+                    method, at.x(), at.y(), at.z(), scene.shapes()[lights[0].caster].name));
+}
+
 }  // namespace
 
 std::vector<LightSample> beam_lights(const Scene& scene, const std::string& method,
@@ -29,6 +44,7 @@ std::vector<LightSample> beam_lights(const Scene& scene, const std::string& meth
             throw UnsupportedScene(
                 method + ": beams start from points or directions, and a " + type_of(light) +
                 " light shines from everywhere (photonmap and the references take it)");
+    refuse_light_on_caster(scene, method);
     std::vector<LightSample> lights = sample_lights(scene, params.light_samples, options.seed);
     if (!disperses(scene)) return lights;
     return params.dispersion == Dispersion::intervals

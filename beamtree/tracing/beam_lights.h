@@ -10,7 +10,7 @@
 namespace caustics::beamtree {
 
 /// What a scene's beams start from, in parts by wavelength where glass disperses light. Throws
-/// UnsupportedScene, in the name of `method`, for a light that is at no place and of no direction.
+/// UnsupportedScene, in the name of `method`, for a light that is at no place and of no direction, or that lies on a caster.
 std::vector<LightSample> beam_lights(const Scene& scene, const std::string& method,
                                      const BeamParams& params, const RunOptions& options);
 

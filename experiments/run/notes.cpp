@@ -12,6 +12,7 @@
 #include "core/mesh/vertex_normals.h"
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
+#include "core/scene/lights_on_casters.h"
 
 namespace caustics::experiments {
 
@@ -73,6 +74,16 @@ std::optional<std::string> what_crosses(const Scene& scene) {
         pairs.size() == 1   ? ""
         : pairs.size() == 2 ? " (and 1 pair more)"
                             : fmt::format(" (and {} pairs more)", pairs.size() - 1));
+}
+
+std::string where_it_lies(const Scene& scene, const LightOnCaster& light) {
+    const Vec3d at = scene.origin() + light.position.cast<double>();
+    return fmt::format(
+        "the light at ({:g}, {:g}, {:g}) lies on {}: on which of its sides it shines is not known, "
+        "and "
+        "the caustic, if there is one, is not to be trusted (move the light to one side, by a "
+        "millionth of its coordinates or more)",
+        at.x(), at.y(), at.z(), scene.shapes()[light.caster].name);
 }
 
 /// Parameters of a method that differ from its defaults.
@@ -185,6 +196,8 @@ std::vector<std::string> notes_on(const Scene& scene) {
                 "surface is lost (face_normals: true shades the triangles flat)",
                 caster.text()));
     if (const auto crossing = what_crosses(scene)) all.push_back(*crossing);
+    for (const LightOnCaster& light : lights_on_casters(scene))
+        all.push_back(where_it_lies(scene, light));
     if (eye_medium(scene).ambiguous)
         all.push_back(
             "the dielectrics about the eye disagree on the medium it is in: what it sees directly "

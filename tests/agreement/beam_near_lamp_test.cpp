@@ -157,5 +157,22 @@ TEST(NearLamp, ShinesFromALargeMirrorToRoundingWhereItIsRefined) {
         }
 }
 
+// No side of a surface is that of a light that lies on it.
+TEST(NearLamp, IsRefusedOnACaster) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 5, true, support::diffuse(0.5F)),
+                   support::horizontal("mirror", 2, 3, false, support::mirror())};
+    desc.lights = {support::point_light({lamp_x, lamp_y, 2}, 10)};
+    try {
+        build(Scene(std::move(desc)), beamtree::BeamTreeParams{}, {});
+        FAIL() << "not refused";
+    } catch (const UnsupportedScene& refusal) {
+        EXPECT_EQ(std::string(refusal.what()),
+                  "beamtree: the light at (0.013, 0.021, 2) lies on mirror, and on which of its "
+                  "sides it shines is not known (move it to one side, by a millionth of its "
+                  "coordinates or more)");
+    }
+}
+
 }  // namespace
 }  // namespace caustics

@@ -38,6 +38,16 @@ std::vector<std::string> notes_of(const SceneDesc& desc, const std::string& name
     return notes(scene, method, build(scene, method, RunOptions{})->build_report());
 }
 
+TEST(Notes, NameALightThatLiesOnACaster) {
+    SceneDesc desc = flat_mirror();
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    desc.lights = {support::point_light({0.1, 0.2, 1}, 1)};
+    const auto all = notes_on(Scene(desc));
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_TRUE(all[0].starts_with("the light at (0.1, 0.2, 1) lies on mirror: on which of its "))
+        << all[0];
+}
+
 TEST(Notes, NameACasterThatIsTooFarAway) {
     SceneDesc desc = flat_mirror();
     desc.shapes.push_back(support::sphere("bead", {500, 0, 0}, 0.0035, support::glass(1.5F)));
