@@ -25,10 +25,13 @@ constexpr int most_halvings = 48;
 // Pieces of a caster's triangles in one light.
 constexpr std::uint64_t most_pieces = 1U << 20U;
 
-// Whether there is no point between the two to speak of.
+// Whether there is no point between the two to speak of. Each coordinate has a rounding of its own: above a level
+// mirror a light may be nearer to it than floats are apart at its height.
 bool touch(const Vec3& a, const Vec3& b) {
-    const float largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
-    return (a - b).cwiseAbs().maxCoeff() <= 4 * std::numeric_limits<float>::epsilon() * largest;
+    constexpr float rounding = std::numeric_limits<float>::epsilon();
+    const Eigen::Array3f largest = a.array().abs().max(b.array().abs());
+    const Eigen::Array3f known = largest.max(rounding * largest.maxCoeff());
+    return ((a - b).array().abs() <= 4 * rounding * known).all();
 }
 
 double angle_between(const Vec3d& u, const Vec3d& v) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "beamtree/beams/behind_polygons.h"
 #include "beamtree/beams/lit_caster.h"
 #include "beamtree/beams/near_light.h"
 #include "beamtree/beams/ray_spread.h"
@@ -289,6 +290,7 @@ TracedBeams trace_beams(const Scene& scene, const SceneBoxes& boxes, const Caste
                         const TraceSettings& settings, BeamBudget& budget,
                         const ProgressPart& part) {
     const LitCaster surface(scene, caster, light);
+    refuse_light_behind_polygons(scene, surface);
     std::optional<BeamDrift> drift;
     if (light.drifts) drift.emplace(scene, caster, light);
     const bool follows = settings.max_bounces > 1 || drift;

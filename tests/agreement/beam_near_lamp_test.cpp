@@ -140,7 +140,7 @@ Ratio ratio_below_mirror(double half, double light, const beamtree::BeamTreePara
 
 TEST(NearLamp, ShinesFromALargeMirrorAsItDoesFromAfar) {
     for (const double half : {1.5, 20.0})
-        for (const double light : {0.01, 1e-3, 1e-4, 1e-5}) {
+        for (const double light : {0.01, 1e-3, 1e-4, 1e-5, 1e-6}) {
             const Ratio found =
                 ratio_below_mirror(half, light, beamtree::BeamTreeParams::chuang1995());
             EXPECT_NEAR(found.mean, 1, 0.04) << half << ' ' << light;
@@ -150,11 +150,42 @@ TEST(NearLamp, ShinesFromALargeMirrorAsItDoesFromAfar) {
 
 TEST(NearLamp, ShinesFromALargeMirrorToRoundingWhereItIsRefined) {
     for (const double half : {1.5, 5.0, 20.0, 100.0})
-        for (const double light : {0.01, 1e-3, 1e-4, 1e-5}) {
+        for (const double light : {0.01, 1e-3, 1e-4, 1e-5, 1e-6}) {
             const Ratio found = ratio_below_mirror(half, light, {});
             EXPECT_NEAR(found.mean, 1, 1e-6) << half << ' ' << light;
             EXPECT_LT(found.worst, 1e-6) << half << ' ' << light;
         }
+}
+
+/// A lamp in a mirror ball, or outside of it, so far from its wall, above a dish in the ball.
+Scene ball_with_lamp(double from_wall) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("dish", -0.3, 0.4, true, support::diffuse(0.5F)),
+                   support::sphere("ball", Vec3d::Zero(), 1, support::mirror())};
+    const Vec3d towards = Vec3d(0.31, 0.42, 0.74).normalized();
+    const Vec3d place = (1 - from_wall) * towards;
+    desc.lights = {support::point_light(place, 1)};
+    return Scene(std::move(desc));
+}
+
+// Polygons of a ball bulge by up to 3e-4 of its radius, or by a sixteenth of that.
+TEST(NearLamp, IsRefusedWhereItIsBehindThePolygonsOfACurvedMirror) {
+    beamtree::BeamTreeParams coarse;
+    coarse.mesh_resolution = 64;
+    coarse.max_bounces = 1;
+    for (const double from_wall : {2e-5, 5e-5}) {
+        const Scene scene = ball_with_lamp(from_wall);
+        try {
+            build(scene, coarse, {});
+            ADD_FAILURE() << "not refused: " << from_wall;
+        } catch (const UnsupportedScene& refusal) {
+            const std::string text = refusal.what();
+            EXPECT_TRUE(text.starts_with("ball: the light at (")) << text;
+            EXPECT_NE(text.find("take a mesh_resolution"), std::string::npos) << text;
+        }
+    }
+    for (const double from_wall : {2e-3, -2e-5, -2e-3})
+        EXPECT_NO_THROW(build(ball_with_lamp(from_wall), coarse, {})) << from_wall;
 }
 
 // No side of a surface is that of a light that lies on it.
