@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <type_traits>
 
 #include "core/base/error.h"
@@ -212,7 +213,10 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
         const auto built = method.configured->build(scene, options, pass);
         answers.has_standard_errors = built->is_statistical();
         if constexpr (std::is_same_v<Estimator, CausticEstimator>)
-            if (pass == 0) answers.notes = notes(scene, method, built->build_report());
+            if (pass == 0) {
+                answers.notes = notes(scene, method, built->build_report());
+                std::ranges::copy(notes_on(scene), std::back_inserter(answers.notes));
+            }
         const Ask ask{*built, asked, method.facts().gathers_over_discs, options.threads};
         ask.add(&PointEstimator::irradiance, answers.irradiance);
         if (list.has_viewer) ask.add(&PointEstimator::radiance, answers.radiance);
