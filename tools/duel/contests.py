@@ -133,7 +133,7 @@ def sweep(scene, settings, seeds, rules):
             "methods": [{"method": each.method, "param": dict(each.param)} if each.param else {"method": each.method} for each in settings],
             "seeds": list(seeds), "spp": first.spp, "threads": rules["threads"]}
     if not scene.quadrature():
-        made["reference"] = {"method": "lighttrace", "param": {"paths": scene.truth["paths"], **scene.text.get("param", {})},
+        made["reference"] = {"method": "lighttrace", "param": {"paths": scene.truth["paths"], "emission": "stratified", **scene.text.get("param", {})},
                              "seed": rules["reference_seed"]}
     return made
 

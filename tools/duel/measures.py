@@ -305,8 +305,8 @@ def folds(results):
 def theory(results):
     flagged, note = [], []
     for name, field in results.fields.items():
-        cells = [cell for cell in field.cells if cell.label == "lighttrace"]
-        points = [(dict(cell.setting.param)["paths"], cell.error()) for cell in cells if not cell.is_at_noise()]
+        paths = [(dict(cell.setting.param), cell) for cell in field.cells if cell.label == "lighttrace" and not cell.is_at_noise()]
+        points = [(param["paths"], cell.error()) for param, cell in paths if "emission" not in param]  # strata may fall faster
         if len(points) > 1:
             steep = slope(points)
             note.append(f"{name} {steep:.3f}")
