@@ -19,16 +19,11 @@ const ShadingKernels& kernels_for([[maybe_unused]] Isa isa) {
     return plain_shading;
 }
 
-SpectrumSum sum_in_runs(ShadingKernel* kernel, const Lobe& lobe, const WeightedPhotons& all) {
+SpectrumSum sum_by(ShadingKernel* kernel, const Lobe& lobe, const WeightedPhotons& all) {
     SpectrumSum sum = SpectrumSum::Zero();
-    for (std::size_t first = 0; first < all.photons.count; first += longest_run) {
-        const ShadedPhotons run{all.photons.energy + first, all.photons.direction + first,
-                                all.weight != nullptr ? all.weight + first : nullptr,
-                                std::min(longest_run, all.photons.count - first),
-                                // Before the run it wraps round to a number beyond it.
-                                all.left_out - first};
-        kernel(direction_tables(), lobe, run, sum.data());
-    }
+    kernel(direction_tables(), lobe,
+           {all.photons.energy, all.photons.direction, all.weight, all.photons.count, all.left_out},
+           sum.data());
     return sum;
 }
 
@@ -92,23 +87,23 @@ void Shading::weigh_on_square(const SquareKernel& square, const SquareKernel::Re
 }
 
 SpectrumSum Shading::arriving(const WeightedPhotons& photons) const {
-    return sum_in_runs(kernels_.arriving, Lobe{}, photons);
+    return sum_by(kernels_.arriving, Lobe{}, photons);
 }
 
 SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons& photons) const {
     const BrdfLobe reflection = reflection_of(point);
-    const auto sum_by = [&](ShadingKernel* kernel) {
-        return sum_in_runs(kernel, reflection.lobe, photons);
+    const auto sum_of = [&](ShadingKernel* kernel) {
+        return sum_by(kernel, reflection.lobe, photons);
     };
     // All photons are in front already where the normals are one.
     ShadingKernel* const facing =
         point.shading_normal == point.geometric_normal ? kernels_.arriving : kernels_.facing;
     switch (reflection.model) {
-        case BrdfLobe::Model::lambert: return sum_by(facing) * reflection.scale;
-        case BrdfLobe::Model::schlick: return sum_by(kernels_.schlick) * reflection.scale;
+        case BrdfLobe::Model::lambert: return sum_of(facing) * reflection.scale;
+        case BrdfLobe::Model::schlick: return sum_of(kernels_.schlick) * reflection.scale;
         case BrdfLobe::Model::phong:
-            return (sum_by(facing) * reflection.diffuse +
-                    sum_by(kernels_.phong) * reflection.specular) *
+            return (sum_of(facing) * reflection.diffuse +
+                    sum_of(kernels_.phong) * reflection.specular) *
                    reflection.scale;
         case BrdfLobe::Model::other: return sum_evaluated(point, photons);
         case BrdfLobe::Model::black: break;

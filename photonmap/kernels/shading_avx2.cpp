@@ -75,67 +75,70 @@ Floats facing(Floats lanes, Floats v_in) {
     return _mm256_and_ps(lanes, _mm256_cmp_ps(v_in, all(0), _CMP_GT_OQ));
 }
 
-/// What photons are multiplied by, and the lanes of those that count.
-struct Factors {
-    Floats lanes, factor;
+/// Of values in double: a lane for every eighth.
+class Sum {
+public:
+    void add(Floats values) {
+        low_ = _mm256_add_pd(low_, _mm256_cvtps_pd(_mm256_castps256_ps128(values)));
+        high_ = _mm256_add_pd(high_, _mm256_cvtps_pd(_mm256_extractf128_ps(values, 1)));
+    }
+    double total() const {
+        const __m256d four = _mm256_add_pd(low_, high_);
+        const __m128d two =
+            _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
+        return _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
+    }
+
+private:
+    __m256d low_ = _mm256_setzero_pd();
+    __m256d high_ = _mm256_setzero_pd();
 };
 
-double total(Floats low, Floats high) {
-    const Floats lanes = sum(low, high);
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(lanes), _mm256_extractf128_ps(lanes, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return static_cast<double>(_mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two))));
-}
-
-/// Sums of energies, a lane for every sixteenth photon.
-struct Sums {
-    Floats red = _mm256_setzero_ps();
-    Floats green = _mm256_setzero_ps();
-    Floats blue = _mm256_setzero_ps();
-
-    void add(const ShadedPhotons& photons, size_t i, const Factors& by) {
+/// Sums of energies.
+class Sums {
+public:
+    void add(const ShadedPhotons& photons, size_t i, Floats lanes, Floats factor) {
         const Words energy =
             _mm256_loadu_si256(reinterpret_cast<const __m256i*>(photons.energy + i));
         const Words byte = _mm256_set1_epi32(255);
         // 2^(exponent - 136) in two factors, because the smallest are no normal floats.
         const Words power = _mm256_slli_epi32(_mm256_srli_epi32(energy, 24), 23);
-        Floats factor = by.factor;
         if (photons.weight != nullptr)
             factor = product(factor, _mm256_loadu_ps(photons.weight + i));
         const Floats scale = product(_mm256_castsi256_ps(power), all(0x1p-9F));
-        const Floats unit = _mm256_and_ps(by.lanes, product(factor, scale));
-        red = sum(red, product(unit, _mm256_cvtepi32_ps(_mm256_and_si256(energy, byte))));
-        const Words second = _mm256_and_si256(_mm256_srli_epi32(energy, 8), byte);
-        green = sum(green, product(unit, _mm256_cvtepi32_ps(second)));
-        const Words third = _mm256_and_si256(_mm256_srli_epi32(energy, 16), byte);
-        blue = sum(blue, product(unit, _mm256_cvtepi32_ps(third)));
+        const Floats unit = _mm256_and_ps(lanes, product(factor, scale));
+        const Words red = _mm256_and_si256(energy, byte);
+        const Words green = _mm256_and_si256(_mm256_srli_epi32(energy, 8), byte);
+        const Words blue = _mm256_and_si256(_mm256_srli_epi32(energy, 16), byte);
+        red_.add(product(unit, _mm256_cvtepi32_ps(red)));
+        green_.add(product(unit, _mm256_cvtepi32_ps(green)));
+        blue_.add(product(unit, _mm256_cvtepi32_ps(blue)));
     }
+    void add_to(double* rgb) const {
+        rgb[0] += red_.total();
+        rgb[1] += green_.total();
+        rgb[2] += blue_.total();
+    }
+
+private:
+    Sum red_, green_, blue_;
 };
 
-/// Adds up sixteen photons at a time; `factors_of` gives those of eight from an index on.
-template <typename FactorsOf>
-void add(const ShadedPhotons& photons, double* rgb, const FactorsOf& factors_of) {
-    Sums low, high;
-    for (size_t i = 0; i < photons.count; i += 16) {
-        low.add(photons, i, factors_of(i));
-        if (i + 8 < photons.count) high.add(photons, i + 8, factors_of(i + 8));
-    }
-    rgb[0] += total(low.red, high.red);
-    rgb[1] += total(low.green, high.green);
-    rgb[2] += total(low.blue, high.blue);
-}
-
 void add_arriving(const DirectionTables&, const Lobe&, const ShadedPhotons& photons, double* rgb) {
-    add(photons, rgb, [&](size_t i) { return Factors{counted(photons, i), all(1)}; });
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 8) sums.add(photons, i, counted(photons, i), all(1));
+    sums.add_to(rgb);
 }
 
 void add_facing(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                 double* rgb) {
     const Vectors n = all_of(lobe.normal);
-    add(photons, rgb, [&](size_t i) {
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 8) {
         const Floats v_in = dot(n, directions(tables, photons.direction + i));
-        return Factors{facing(counted(photons, i), v_in), all(1)};
-    });
+        sums.add(photons, i, facing(counted(photons, i), v_in), all(1));
+    }
+    sums.add_to(rgb);
 }
 
 /// The formula of schlick_factor.
@@ -146,7 +149,8 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     const Floats alpha = all(lobe.alpha), one = all(1);
     const Floats u = all(1 - lobe.cosine);
     const Floats d = all(lobe.cosine + lobe.alpha * (1 - lobe.cosine));
-    add(photons, rgb, [&](size_t i) {
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 8) {
         const Vectors wi = directions(tables, photons.direction + i);
         const Floats v_in = dot(n, wi);
         const Vectors s{sum(wo.x, wi.x), sum(wo.y, wi.y), sum(wo.z, wi.z)};
@@ -161,22 +165,25 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
         const Floats u_in = _mm256_sub_ps(one, v_in);
         const Floats d_in = sum(v_in, product(alpha, u_in));
         const Floats numerator = sum(sum(product(u, v_in), product(u_in, d)), product(peak, peak));
-        return Factors{facing(counted(photons, i), v_in), _mm256_div_ps(numerator, d_in)};
-    });
+        sums.add(photons, i, facing(counted(photons, i), v_in), _mm256_div_ps(numerator, d_in));
+    }
+    sums.add_to(rgb);
 }
 
 /// The formula of phong_factor.
 void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                double* rgb) {
     const Vectors n = all_of(lobe.normal), mirrored = all_of(lobe.mirrored);
-    add(photons, rgb, [&](size_t i) {
+    Sums sums;
+    for (size_t i = 0; i < photons.count; i += 8) {
         const Vectors wi = directions(tables, photons.direction + i);
         const Vectors apart{_mm256_sub_ps(mirrored.x, wi.x), _mm256_sub_ps(mirrored.y, wi.y),
                             _mm256_sub_ps(mirrored.z, wi.z)};
         const Floats t = product(all(0.5F), dot(apart, apart));
-        return Factors{facing(counted(photons, i), dot(n, wi)),
-                       cosine_power<Avx2Lanes>(t, lobe.exponent)};
-    });
+        sums.add(photons, i, facing(counted(photons, i), dot(n, wi)),
+                 cosine_power<Avx2Lanes>(t, lobe.exponent));
+    }
+    sums.add_to(rgb);
 }
 
 }  // namespace

@@ -80,15 +80,26 @@ __mmask16 counted(const ShadedPhotons& photons, size_t i) {
     return static_cast<__mmask16>(lanes);
 }
 
-double total(Floats lanes) {
-    const __m256 eight =
-        _mm256_add_ps(_mm512_castps512_ps256(lanes), _mm512_extractf32x8_ps(lanes, 1));
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return static_cast<double>(_mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two))));
-}
+/// Of values in double: a lane for every eighth.
+class Sum {
+public:
+    void add(Floats values) {
+        eight_ = _mm512_add_pd(eight_, _mm512_cvtps_pd(_mm512_castps512_ps256(values)));
+        eight_ = _mm512_add_pd(eight_, _mm512_cvtps_pd(_mm512_extractf32x8_ps(values, 1)));
+    }
+    double total() const {
+        const __m256d four =
+            _mm256_add_pd(_mm512_castpd512_pd256(eight_), _mm512_extractf64x4_pd(eight_, 1));
+        const __m128d two =
+            _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
+        return _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
+    }
 
-/// Sums of energies, a lane for every sixteenth photon.
+private:
+    __m512d eight_ = _mm512_setzero_pd();
+};
+
+/// Sums of energies.
 class Sums {
 public:
     void add(const ShadedPhotons& photons, size_t i, __mmask16 lanes, Floats factor) {
@@ -103,20 +114,18 @@ public:
         const Words red = _mm512_and_si512(energy, byte);
         const Words green = _mm512_and_si512(_mm512_srli_epi32(energy, 8), byte);
         const Words blue = _mm512_and_si512(_mm512_srli_epi32(energy, 16), byte);
-        red_ = sum(red_, product(unit, _mm512_cvtepi32_ps(red)));
-        green_ = sum(green_, product(unit, _mm512_cvtepi32_ps(green)));
-        blue_ = sum(blue_, product(unit, _mm512_cvtepi32_ps(blue)));
+        red_.add(product(unit, _mm512_cvtepi32_ps(red)));
+        green_.add(product(unit, _mm512_cvtepi32_ps(green)));
+        blue_.add(product(unit, _mm512_cvtepi32_ps(blue)));
     }
     void add_to(double* rgb) const {
-        rgb[0] += total(red_);
-        rgb[1] += total(green_);
-        rgb[2] += total(blue_);
+        rgb[0] += red_.total();
+        rgb[1] += green_.total();
+        rgb[2] += blue_.total();
     }
 
 private:
-    Floats red_ = _mm512_setzero_ps();
-    Floats green_ = _mm512_setzero_ps();
-    Floats blue_ = _mm512_setzero_ps();
+    Sum red_, green_, blue_;
 };
 
 void add_arriving(const DirectionTables&, const Lobe&, const ShadedPhotons& photons, double* rgb) {

@@ -36,13 +36,10 @@ struct ShadedPhotons {
 ///   `phong`: cos^exponent of the angle to the mirrored direction where n.wi > 0, else 0.
 ///
 /// n.wi is rounded step by step as `evaluate(bsdf, ...)` does it, so that all agree on which photons
-/// count. Sixteen sums in float, each of every sixteenth photon, are added up by halves; the same bits on
-/// every instruction set. Runs should be at most `longest_run` photons, so that the sums lose nothing that
-/// matters.
+/// count. Eight sums in double, each of every eighth photon, are added up by halves: the same bits on every
+/// instruction set, and, once rounded to float, but for one case in some 10^8 in any order of the photons.
 using ShadingKernel = void(const DirectionTables& tables, const Lobe& lobe,
                            const ShadedPhotons& photons, double* rgb);
-
-inline constexpr size_t longest_run = 512;
 
 /// A filter's weight as a polynomial of (d/r)^2, or of d/r where `of_distance`.
 struct FilterPolynomial {

@@ -23,17 +23,17 @@ Direction decode(const DirectionTables& tables, uint8_t theta, uint8_t phi) {
 float dot(const float* a, const Direction& b) { return a[0] * b.x + (a[1] * b.y + a[2] * b.z); }
 
 /// Adds up by halves.
-double total(float* lanes) {
-    for (size_t half = 8; half > 0; half /= 2)
+double total(double* lanes) {
+    for (size_t half = 4; half > 0; half /= 2)
         for (size_t i = 0; i < half; ++i) lanes[i] += lanes[i + half];
-    return static_cast<double>(lanes[0]);
+    return lanes[0];
 }
 
 /// A photon's factor by a function of (tables, lobe, theta, phi).
 template <typename Factor>
 void add(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons, double* rgb,
          const Factor& factor_of) {
-    float sums[3][16] = {};
+    double sums[3][8] = {};
     for (size_t i = 0; i < photons.count; ++i) {
         if (i == photons.left_out) continue;
         uint8_t energy[4], direction[2];
@@ -43,7 +43,8 @@ void add(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& p
         const float scale = std::bit_cast<float>(static_cast<uint32_t>(energy[3]) << 23U) * 0x1p-9F;
         const float weight = photons.weight != nullptr ? photons.weight[i] : 1.0F;
         const float factor = factor_of(tables, lobe, direction[0], direction[1]) * weight * scale;
-        for (size_t c = 0; c < 3; ++c) sums[c][i % 16] += factor * static_cast<float>(energy[c]);
+        for (size_t c = 0; c < 3; ++c)
+            sums[c][i % 8] += static_cast<double>(factor * static_cast<float>(energy[c]));
     }
     for (size_t c = 0; c < 3; ++c) rgb[c] += total(sums[c]);
 }

@@ -131,14 +131,12 @@ public:
         const Outcome here = picture(scene_, setting, 1, Isa::plain);
         EXPECT_TRUE(is_finite(here)) << name_;
         const auto [known, is_new] = families_.try_emplace(setting.family, here);
-        if (!is_new) expect_near(known->second, here, 0, "as the first of " + setting.family);
+        if (!is_new) expect_same(known->second, here, "as the first of " + setting.family);
         for (const Isa isa : supported_isas()) {
             const Outcome alone = isa == Isa::plain ? here : picture(scene_, setting, 1, isa);
-            // Photons are shaded in registers of other widths, in float.
-            const bool rounds = setting.method == "photonmap" && isa != Isa::plain;
-            expect_near(here, alone, rounds ? 1e-5 : 0, caustics::name(isa));
+            expect_same(here, alone, caustics::name(isa));
             const int threads = dice_.pick({2, 3, 8});
-            expect_near(alone, picture(scene_, setting, threads, isa), 0,
+            expect_same(alone, picture(scene_, setting, threads, isa),
                         fmt::format("{} by {} threads", caustics::name(isa), threads));
         }
     }
@@ -146,10 +144,9 @@ public:
     std::uint64_t compared() const { return compared_; }
 
 private:
-    void expect_near(const Outcome& a, const Outcome& b, double most, const std::string& what) {
+    void expect_same(const Outcome& a, const Outcome& b, const std::string& what) {
         ++compared_;
-        EXPECT_LE(gap(a, b), most)
-            << name_ << ", " << what << ": " << a.refusal << " | " << b.refusal;
+        EXPECT_EQ(gap(a, b), 0) << name_ << ", " << what << ": " << a.refusal << " | " << b.refusal;
     }
 
     const Scene& scene_;
