@@ -107,7 +107,7 @@ TEST(NearLamp, RefusesPolygonsThatNeedTooManyPieces) {
     desc.shapes = {support::horizontal("floor", -1, 1, true, support::diffuse(0.5F)),
                    support::mesh("curtain", tessellate_heightfield(field, {16, 16}),
                                  Transform::Identity(), support::glass(1.333F))};
-    desc.lights = {support::point_light({0.001F, 0, 3}, 1)};
+    desc.lights = {support::point_light({0.001, 0, 3}, 1)};
     const Scene scene(std::move(desc));
     for (const int threads : {1, 2}) {
         RunOptions options;
