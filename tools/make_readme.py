@@ -94,7 +94,7 @@ def strip_line(folder):
     named = lambda cell: f"`{cell.method}`" + (f" ({cell.settings()})" if cell.settings() != "–" else "")
     told = "; ".join(f"{named(cell)} rmse {with_interval(*cell.error('rmse'))} in {seconds(cell)}" for cell in cells)
     return (f"The picture: {row['width']} × {row['height']} pixels, {row['spp']} samples each; {told}; {len(cells[0].seeds())} seeds; the "
-            f"reference's standard error is {number(reference_error(row))}.")
+            f"reference's standard error is {number(reference_error(row))}; {row['cpu']}, causticbench {row['code_version']}.")
 
 
 def reference_error(row):
