@@ -129,9 +129,8 @@ TEST(Knobs, OfThePhotonMapThatChangeNoAnswer) {
         EXPECT_NE(other.bytes, usual.bytes) << tree;
         EXPECT_LT(other.largest_difference(usual), 1e-5) << tree;
     }
-    const Answer tables = map({"tables=true"}, "schlick");
-    EXPECT_GT(tables.largest_difference(usual), 0);
-    EXPECT_LT(tables.largest_difference(usual), 1e-4);
+    // Another way to the same sum, in one order or another; BrdfLobeTable's tests count what it looks up.
+    EXPECT_LT(map({"tables=true"}, "schlick").largest_difference(usual), 1e-5);
 }
 
 Answer beams(const std::vector<std::string>& more, const std::string& scene = "sine_water") {
