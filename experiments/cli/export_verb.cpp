@@ -88,7 +88,8 @@ Verb add_export(CLI::App& app) {
         "Of a scene with dispersion: so many scenes for Mitsuba, scene_NNN.NNNnm.xml, each in the "
         "light of one; add up their pictures");
     verb->footer(
-        "Units stay: metres, watts, and pixels in W/(m^2 sr). A scene that the other renderer "
+        "Units stay: watts, pixels in W/(m^2 sr), and metres, of which POV-Ray gets many or few "
+        "units (its tolerances are lengths). A scene that the other renderer "
         "cannot express is refused (exit code 3).\n"
         "Without --indirect, Mitsuba still follows some light from one diffuse surface to another: "
         "compare over dark receivers. POV-Ray does not scale radiance by n^2 where the eye looks "

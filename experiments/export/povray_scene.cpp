@@ -26,6 +26,13 @@ const Checkerboard* checkerboard(const PovraySurface& surface) {
     return surface.pigment ? std::get_if<Checkerboard>(&*surface.pigment) : nullptr;
 }
 
+// POV-Ray tells things apart that are 0.001 to 0.0001 of its units apart, and fails where coordinates come to
+// some 10,000: a power of ten of units a metre for which the scene is 300 to 3000 units wide.
+double units_a_metre(const Scene& scene) {
+    const auto wide = static_cast<double>(scene.diameter());
+    return wide > 0 ? std::pow(10.0, std::floor(std::log10(3000 / wide))) : 1;
+}
+
 bool is_glass(const Shape& shape) { return to_povray(shape.bsdf).interior.has_value(); }
 
 // A list of a mesh2 object, one item a line.
@@ -61,11 +68,15 @@ const char* words_of(const Shape& shape) {
 class PovrayWriter {
 public:
     PovrayWriter(const SceneDesc& scene, const ExportSettings& settings)
-        : scene_(scene), settings_(settings), world_(scene) {}
+        : scene_(scene), settings_(settings), world_(scene), unit_(units_a_metre(world_)) {}
 
     ExportedScene write() {
         check_insides();
-        text_ = "#version 3.7;\n";
+        text_ = fmt::format(
+            "#version 3.7;\n"
+            "// Lengths are metres times this: POV-Ray's tolerances are lengths.\n"
+            "#declare Unit = {};\n",
+            unit_);
         write_settings();
         write_camera();
         for (const Light& light : scene_.lights)
@@ -122,7 +133,7 @@ private:
                 "  #ifndef (Photon_Count) #declare Photon_Count = 200000; #end\n"
                 "  #ifndef (Photon_Gather) #declare Photon_Gather = 100; #end\n"
                 "  photons {{\n    count Photon_Count\n"
-                "    #ifdef (Photon_Radius) radius Photon_Radius gather 0, 1000000\n"
+                "    #ifdef (Photon_Radius) radius Photon_Radius * Unit gather 0, 1000000\n"
                 "    #else gather 20, Photon_Gather #end\n"
                 "    autostop 1\n    max_trace_level {}\n    adc_bailout 0\n  }}\n",
                 settings_.max_bounces + 1);
@@ -150,19 +161,21 @@ private:
         const Vec2d extent = 2 * camera.half_extent();
         // +x of the camera is the picture's left.
         text_ += fmt::format(
-            "camera {{\n  perspective\n  location {}\n  right {}\n  up {}\n  direction {}\n}}\n",
+            "camera {{\n  perspective\n  location {} * Unit\n  right {}\n  up {}\n  direction "
+            "{}\n}}\n",
             three(Vec3d(camera.to_world.translation())), three(Vec3d(-extent.x() * axes.col(0))),
             three(Vec3d(extent.y() * axes.col(1))), three(Vec3d(axes.col(2))));
     }
 
     void write_light(const PovrayLight& light) {
         if (!light.refused.empty()) refuse_export(settings_, light.name, light.refused);
-        text_ +=
-            fmt::format("light_source {{\n  {}, rgb {}\n", three(light.from), three(light.colour));
+        text_ += fmt::format("light_source {{\n  {} * Unit, rgb {}\n", three(light.from),
+                             three(light.colour));
         if (light.fade_distance)
-            text_ += fmt::format("  fade_distance {}\n  fade_power 2\n", *light.fade_distance);
+            text_ +=
+                fmt::format("  fade_distance {} * Unit\n  fade_power 2\n", *light.fade_distance);
         if (light.point_at)
-            text_ += fmt::format("  parallel\n  point_at {}\n", three(*light.point_at));
+            text_ += fmt::format("  parallel\n  point_at {} * Unit\n", three(*light.point_at));
         text_ += "  photons { reflection on refraction on }\n}\n";
     }
 
@@ -178,6 +191,8 @@ private:
             refuse(shape, "a blend of phong and a conductor is not exported to POV-Ray");
         text_ += fmt::format("// {}\n", plain_name(shape.name, 0));
         write_geometry(shape, checkerboard(surface));
+        text_ += "  scale Unit\n";
+        note_size(shape);
         if (surface.interior)
             write_glass(shape, *surface.interior);
         else
@@ -202,6 +217,16 @@ private:
         text_ += mesh2(baked_mesh(shape, settings,
                                   shape.primitive == Primitive::rectangle ? unsaid : out_.notes),
                        board);
+    }
+
+    void note_size(const Shape& shape) {
+        constexpr double coarse = 0.1;  // units: 1 % are lost of it
+        const auto wide = static_cast<double>(bounds(shape).diagonal().norm());
+        if (unit_ * wide < coarse)
+            out_.notes.push_back(
+                fmt::format("/{}: POV-Ray's tolerance, {:.2g} m beside so wide a scene, is {:.2g} "
+                            "% of its width of {:.2g} m",
+                            shape.name, 1e-3 / unit_, 0.1 / (unit_ * wide), wide));
     }
 
     std::string pigment(const Shape& shape, const PovraySurface& surface) const {
@@ -269,8 +294,8 @@ private:
         }
         // Fading of power 1000 and above is exp(-(1 - fade_color) d / fade_distance).
         if (const float most = glass.absorption.maxCoeff(); most > 0)
-            text_ += fmt::format(" fade_distance {} fade_power 1001 fade_color rgb {}", 1 / most,
-                                 three(Spectrum(1 - glass.absorption / most)));
+            text_ += fmt::format(" fade_distance {} * Unit fade_power 1001 fade_color rgb {}",
+                                 1 / most, three(Spectrum(1 - glass.absorption / most)));
         text_ += " }\n  photons { target reflection on refraction on collect off }\n";
     }
 
@@ -297,6 +322,7 @@ private:
     const SceneDesc& scene_;
     const ExportSettings& settings_;
     Scene world_;
+    double unit_;  ///< of POV-Ray, a metre
     std::optional<Ior> ext_ior_;
     std::string text_;
     ExportedScene out_;

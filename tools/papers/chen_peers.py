@@ -133,8 +133,8 @@ def peers(study):
         "160 × 120 pixels, a dark room, crystal without dispersion. POV-Ray: some 30,000 photons aimed at the bowl, both ways at every surface, the nearest 20 to 100 gathered; "
         f"Mitsuba: ptracer, {RAYS} light paths a pixel from a spot light in the point light's place; ours: 300,000 photons. Times are for pictures of other noise each: results/bench/peers.md "
         "compares at equal error.")] if rows else [], [Figure(
-            "peers", "The bowls by the photon map, POV-Ray and Mitsuba", "One scene, exported to each program; each row at one exposure. POV-Ray alone has a bright spot "
-            "where the table is seen through the foot; the table of numbers is of what is seen without glass before it. Mitsuba's particles do not reach pixels that see the glass.", *strip(shown))])
+            "peers", "The bowls by the photon map, POV-Ray and Mitsuba", "One scene, exported to each program; each row at one exposure. "
+            "The table of numbers is of what is seen without glass before it. Mitsuba's particles do not reach pixels that see the glass.", *strip(shown))])
 
 
 SECTIONS = {"peers": peers}

@@ -257,6 +257,28 @@ TEST(PovrayScene, HasTheCamerasRays) {
     }
 }
 
+// POV-Ray's tolerances are lengths of its own: a gap of half a millimetre under glass is lost in metres.
+TEST(PovrayScene, HasLengthsThatItCanTellApart) {
+    SceneDesc desc = small_scene();  // 4 m wide
+    const std::string pov = file(to_povray(desc, {}), "scene.pov");
+    EXPECT_EQ(numbers_after(pov, "#declare Unit = ").at(0), 100);
+    const auto count = [&pov](const std::string& words) {
+        std::size_t found = 0;
+        for (std::size_t at = pov.find(words); at != std::string::npos;
+             at = pov.find(words, at + 1))
+            ++found;
+        return found;
+    };
+    EXPECT_EQ(count("\n  scale Unit\n"), desc.shapes.size());
+    // The camera's place, two lights', a point's fading, the sun's target, the radius of photons.
+    EXPECT_EQ(count(" * Unit"), 6U);
+    EXPECT_TRUE(to_povray(desc, {}).notes.empty());
+    desc.shapes[1] = support::sphere("bead", {0.1F, 0.2F, 0.7F}, 1e-4, support::glass(1.5F));
+    const std::vector<std::string> notes = to_povray(desc, {}).notes;
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes[0].find("/bead: POV-Ray's tolerance"), std::string::npos) << notes[0];
+}
+
 // White paint is c 2 / (1 + (d / fade)^2) bright under the light, and in truth I / (pi d^2).
 TEST(PovrayScene, MakesPixelsRadiances) {
     const SceneDesc desc = small_scene();
