@@ -273,7 +273,7 @@ TEST(PovrayScene, HasLengthsThatItCanTellApart) {
     // The camera's place, two lights', a point's fading, the sun's target, the radius of photons.
     EXPECT_EQ(count(" * Unit"), 6U);
     EXPECT_TRUE(to_povray(desc, {}).notes.empty());
-    desc.shapes[1] = support::sphere("bead", {0.1F, 0.2F, 0.7F}, 1e-4, support::glass(1.5F));
+    desc.shapes[1] = support::sphere("bead", {0.1, 0.2, 0.7}, 1e-4, support::glass(1.5F));
     const std::vector<std::string> notes = to_povray(desc, {}).notes;
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_NE(notes[0].find("/bead: POV-Ray's tolerance"), std::string::npos) << notes[0];
