@@ -43,7 +43,7 @@ public:
     void take_line(std::string_view line, std::size_t number) {
         line_ = number;
         if (number % lines_between_looks == 0) throw_if_interrupted();
-        split(line.substr(0, line.find('#')));
+        split(line);
         if (words_.empty()) return;
         const std::string_view keyword = words_[0];
         if (keyword == "v")
@@ -226,6 +226,8 @@ TriangleMesh read_obj(const std::string& bytes, const std::string& name) {
         std::string_view line = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(std::min(line.size() + 1, rest.size()));
         ++number;
+        // A comment ends with its line: a backslash in it, of a path for one, continues nothing.
+        line = line.substr(0, line.find('#'));
         if (line.ends_with('\r')) line.remove_suffix(1);
         const bool continued = line.ends_with('\\');
         if (continued) line.remove_suffix(1);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/mesh/quoted_word.h"
@@ -44,12 +45,14 @@ std::vector<PlyElement> PlyFile::read_header() {
         const std::vector<std::string> words = header_line();
         if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
         if (words[0] == "end_header") break;
-        if (words[0] == "format")
+        if (words[0] == "format" && format)
+            fail("the header has more than one format line");
+        else if (words[0] == "format")
             format = read_format(words);
         else if (words[0] == "element")
             elements.push_back(read_element(words));
         else if (words[0] == "property" && !elements.empty())
-            elements.back().properties.push_back(read_property(words));
+            add_property(elements.back(), read_property(words));
         else
             fail("header line beginning with " + quoted_word(words[0]) + " is not understood");
     }
@@ -117,6 +120,12 @@ PlyProperty PlyFile::read_property(const std::vector<std::string>& words) const 
     if (!type || (list && !count_type))
         fail("property " + quoted_word(words.back()) + " has an unknown type");
     return {words.back(), *type, count_type};
+}
+
+void PlyFile::add_property(PlyElement& to, PlyProperty property) const {
+    if (std::ranges::find(to.properties, property.name, &PlyProperty::name) != to.properties.end())
+        fail("property " + quoted_word(property.name) + " is given twice");
+    to.properties.push_back(std::move(property));
 }
 
 void PlyFile::fail_truncated(const std::string& element, std::size_t index) const {

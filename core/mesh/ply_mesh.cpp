@@ -88,9 +88,12 @@ private:
             return {};
         };
         for (const KeptGroup& group : kept_groups()) {
-            const bool complete = std::all_of(group.given.begin(), group.given.end(),
-                                              [&](const auto& name) { return column(name); });
+            const auto there = std::ranges::count_if(
+                group.given, [&](const auto& name) { return column(name).has_value(); });
+            const bool complete = there == std::ssize(group.given);
             if (!complete && group.kept[0] == "x") file_.fail("vertices have no x, y, z");
+            if (!complete && there > 0 && group.kept[0] == "nx")
+                file_.fail("normals need all of nx, ny, nz");
             if (!complete || (has_uvs_ && group.kept[0] == "u")) continue;
             has_normals_ = has_normals_ || group.kept[0] == "nx";
             has_uvs_ = has_uvs_ || group.kept[0] == "u";
@@ -157,7 +160,8 @@ private:
             const std::vector<double>& corners = read_property(element, property, index);
             const bool indices = property.count_type && (property.name == "vertex_indices" ||
                                                          property.name == "vertex_index");
-            if (!indices || found) continue;
+            if (!indices) continue;
+            if (found) file_.fail("faces have both lists, 'vertex_indices' and 'vertex_index'");
             found = true;
             if (corners.size() < 3)
                 fail(element, index,

@@ -73,6 +73,7 @@ TEST_F(MeshIo, ObjMayCountBackwardsContinueLinesAndColourVertices) {
     expect_same(plain,
                 load("e.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 1\nv 0 1 0 # d\nf 1 2 3 4"));
     expect_same(plain, load("g.obj", "\xEF\xBB\xBF" + corners + "f 1 2 3 4\n"));
+    expect_same(plain, load("k.obj", "# C:\\models\\\n" + corners + "f 1 2 3 4 # c \\"));
     for (const std::string slashes : {"/", "//"}) {
         std::string face = "f";
         for (const char* corner : {" 1", " 2", " 3", " 4"}) face += corner + slashes;

@@ -124,6 +124,15 @@ TEST_F(PlyMesh, EveryTruncationOfAPlyIsRefused) {
     expect_refused("long.ply", ascii_ply(square()) + "3 0 1 2\n", "goes on after");
 }
 
+/// Which of the two is meant cannot be told.
+TEST_F(PlyMesh, FacesHaveOneListOfCorners) {
+    std::string bytes = ascii_ply(square());
+    const std::string first = "vertex_indices\n";
+    bytes.insert(bytes.find(first) + first.size(), "property list uchar int vertex_index\n");
+    bytes.insert(bytes.rfind("4 0 1 2 3") + 9, " 3 2 1 0");
+    expect_refused("a.ply", bytes, "faces have both lists");
+}
+
 TEST_F(PlyMesh, BrokenPlyFilesAreRefusedWithTheReason) {
     const std::string good = ascii_ply(square());
     const auto with = [&](const std::string& from, const std::string& to) {
@@ -155,6 +164,13 @@ TEST_F(PlyMesh, BrokenPlyFilesAreRefusedWithTheReason) {
     expect_refused("a.ply", with("vertex_indices", "corners"), "vertex_indices");
     expect_refused("a.ply", with("format ascii", "format morse"), "binary_big_endian");
     expect_refused("a.ply", with("format ascii 1.0\n", ""), "no format line");
+    expect_refused("a.ply", with("element vertex", "format binary_big_endian 1.0\nelement vertex"),
+                   "more than one format line");
+    expect_refused("a.ply", with("property float y", "property float x\nproperty float y"),
+                   "property 'x' is given twice");
+    expect_refused(
+        "a.ply", with("property float z", "property float z\nproperty float nx\nproperty float ny"),
+        "normals need all of nx, ny, nz");
     expect_refused("a.ply", "solid stl\n", "not a PLY file");
     PlyContent nan = square();
     nan.rows[3][1] = std::nanf("");
