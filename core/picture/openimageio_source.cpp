@@ -47,6 +47,20 @@ OIIO::ImageSpec reading() {
     return config;
 }
 
+/// One channel is grey, whatever its name. Of more, which ones are the colours has to be plain: OpenImageIO brings R,
+/// G, B and A to the front, and leaves the others in the order of their names.
+void require_plain_channels(const OIIO::ImageSpec& spec) {
+    const std::vector<std::string> colours = spec.nchannels == 2
+                                                 ? std::vector<std::string>{"Y", "A"}
+                                                 : std::vector<std::string>{"R", "G", "B"};
+    const std::vector<std::string>& names = spec.channelnames;
+    if (spec.nchannels == 1 || std::equal(colours.begin(), colours.end(), names.begin())) return;
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    throw std::runtime_error("its channels are " + all +
+                             "; write the colours as R, G and B, or grey as Y alone");
+}
+
 /// What an OpenEXR file says of its values is not passed over.
 void require_plain_exr(const OIIO::ImageSpec& spec) {
     const int parts = spec.get_int_attribute("oiio:subimages", 1);
@@ -58,6 +72,10 @@ void require_plain_exr(const OIIO::ImageSpec& spec) {
             throw std::runtime_error("its channel " + std::string(spec.channel_name(channel)) +
                                      " holds whole numbers (UINT), which have no scale; write half "
                                      "or float");
+    require_plain_channels(spec);
+    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+        spec.height != spec.full_height)
+        throw std::runtime_error("its data window is not the whole picture");
     constexpr OIIO::TypeDesc eight(OIIO::TypeDesc::FLOAT, 8);
     Primaries primaries = rec709_primaries;
     if (const OIIO::ParamValue* given = spec.find_attribute("chromaticities", eight))
@@ -74,7 +92,7 @@ public:
         if (std::string(input_->format_name()) == "openexr") require_plain_exr(spec);
         shape_ = {spec.width,
                   spec.height,
-                  spec.nchannels,
+                  std::min(spec.nchannels, 4),  // colours and alpha
                   static_cast<int>(spec.format.size()),
                   spec.format.is_floating_point(),
                   input_->format_name()};
@@ -87,7 +105,7 @@ public:
         const bool done = spec.tile_width > 0 ? read_tiles(first, last, values)
                                               : input_->read_scanlines(
                                                     0, 0, top + first, top + last, 0, 0,
-                                                    spec.nchannels, OIIO::TypeDesc::FLOAT, values);
+                                                    shape_.channels, OIIO::TypeDesc::FLOAT, values);
         if (!done) throw std::runtime_error(input_->geterror());
     }
 

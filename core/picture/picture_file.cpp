@@ -7,6 +7,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/picture/exr_file.h"
+#include "core/picture/exr_header.h"
 #include "core/picture/foreign_picture.h"
 #include "core/picture/png_file.h"
 
@@ -15,6 +17,7 @@ namespace caustics {
 PictureFile::PictureFile(const std::filesystem::path& file)
     : file_(file), bytes_(read_whole_file(file)) {
     try {
+        if (is_exr(bytes_)) require_attributes_within(bytes_);
         source_ = is_png(bytes_) ? open_png(bytes_) : open_foreign_picture(file_, bytes_);
     } catch (const std::runtime_error& error) {
         fail(error.what());

@@ -142,6 +142,79 @@ TEST(PictureFile, WhatAnOpenExrFileSaysOfItsValuesIsNotPassedOver) {
     EXPECT_EQ(read_exr(file).rgb("", 3)[0], 1) << "a film's values are as they are";
 }
 
+/// The bytes with another value of an attribute, of the same length.
+std::string with_attribute(std::string bytes, const std::string& name, const std::string& value) {
+    const std::size_t type = bytes.find(name + '\0') + name.size() + 1;
+    const std::size_t at = bytes.find('\0', type) + 1 + sizeof(std::int32_t);
+    return bytes.replace(at, value.size(), value);
+}
+
+std::string window(std::int32_t side) {
+    const std::array<std::int32_t, 4> corners = {0, 0, side - 1, side - 1};
+    return {reinterpret_cast<const char*>(corners.data()), sizeof corners};
+}
+
+TEST(PictureFile, ATextureHasColoursByNameAndAllItsPixels) {
+    const support::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "a.exr";
+    const auto as_texture = [&](const std::string& bytes) {
+        write_atomic_file(file, bytes);
+        return refusal([&] { load_bitmap(file, true); });
+    };
+    using Channels = std::vector<std::string>;
+    for (const Channels& good : {Channels{"Y"},
+                                 {"Z"},
+                                 {"A", "Y"},
+                                 {"A", "B", "G", "R"},
+                                 {"B", "G", "R", "Z", "caustic.B", "caustic.G", "caustic.R"}})
+        EXPECT_EQ(as_texture(support::exr_of_kind({.channels = good})), "read") << good[0];
+    for (const Channels& bad :
+         {Channels{"U", "V"}, {"G", "R"}, {"A", "X", "Y"}, {"a.B", "a.G", "a.R"}})
+        EXPECT_NE(as_texture(support::exr_of_kind({.channels = bad})).find("(its channels are "),
+                  std::string::npos)
+            << bad[0];
+    EXPECT_NE(as_texture(with_attribute(support::exr_of_kind({}), "displayWindow", window(3)))
+                  .find("a.exr: cannot be read (its data window is not the whole picture)"),
+              std::string::npos);
+}
+
+/// OpenEXR makes room before it reads: 2 GB for a text, as much as the channels ask for.
+TEST(PictureFile, AnOpenExrFileThatAsksForMoreThanItHoldsIsRefused) {
+    const support::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "a.exr";
+    const auto expect_refused = [&](const std::string& bytes, const std::string& film_reason,
+                                    const std::string& texture_reason) {
+        write_atomic_file(file, bytes);
+        const std::string film = refusal([&] { read_exr(file); });
+        EXPECT_NE(film.find("a.exr: cannot be read (" + film_reason), std::string::npos) << film;
+        const std::string texture = refusal([&] { load_bitmap(file, true); });
+        EXPECT_NE(texture.find("a.exr: cannot be read (" + texture_reason), std::string::npos)
+            << texture;
+    };
+    const std::string good = support::exr_of_kind({});
+    const std::string line_order{"lineOrder\0lineOrder\0\1\0\0\0", 24};
+    const auto with_length = [&](unsigned char last, unsigned char first) {
+        std::string bytes = good;
+        const std::size_t at = bytes.find(line_order) + 20;
+        bytes[at] = static_cast<char>(first);
+        bytes[at + 3] = static_cast<char>(last);
+        return bytes;
+    };
+    const std::string inside = "the file ends inside its attribute lineOrder)";
+    for (const int last : {0x7F, 0x80})
+        expect_refused(with_length(static_cast<unsigned char>(last), 0xFF), inside, inside);
+    const std::string wrong = "its attribute lineOrder has 2 bytes";
+    expect_refused(with_length(0, 2), wrong, wrong);
+
+    std::vector<std::string> many(400);
+    for (std::size_t i = 0; i < many.size(); ++i) many[i] = "c" + std::to_string(1000 + i);
+    std::string bytes = support::exr_of_kind({.channels = many});
+    for (const char* name : {"dataWindow", "displayWindow"})
+        bytes = with_attribute(bytes, name, window(10'000));
+    expect_refused(bytes + std::string(80'000, '\0'), "it declares 10000 x 10000 pixels, more than",
+                   "its channels are c1000");
+}
+
 TEST(PictureFile, HasNoMorePixelsThanAFilm) {
     const support::TemporaryFolder folder;
     // The header of a TGA picture of 12,000 x 12,000 pixels: 100 bytes that ask for 1.7 GB.
