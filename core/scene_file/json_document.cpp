@@ -236,6 +236,10 @@ std::string key_list(const json& object) {
 }
 
 json parse_json(const std::string& text, const std::string& origin) {
+    // The library takes a NUL for the end of the text, whatever follows.
+    if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
+        throw InputError(origin + ": byte " + std::to_string(nul + 1) +
+                         " is NUL, which JSON has not (write it as UTF-8 text)");
     try {
         return json::parse(text, DocumentGuard(origin));
     } catch (const json::exception& e) {

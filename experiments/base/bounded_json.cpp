@@ -33,16 +33,20 @@ int nesting(const std::string& text) {
     return most;
 }
 
+/// The library would take a NUL for the end of the text, whatever follows.
+bool holds_nul(const std::string& text) { return text.find('\0') != std::string::npos; }
+
 }  // namespace
 
 json parse_bounded(const std::string& text) {
     if (nesting(text) > most_levels)
         throw InputError(fmt::format("nested more than {} levels deep", most_levels));
+    if (holds_nul(text)) throw InputError("holds a NUL byte, which JSON has not");
     return json::parse(text);
 }
 
 json parse_bounded_or_discard(const std::string& text) {
-    if (nesting(text) > most_levels) return json(json::value_t::discarded);
+    if (nesting(text) > most_levels || holds_nul(text)) return json(json::value_t::discarded);
     return json::parse(text, nullptr, false);
 }
 
