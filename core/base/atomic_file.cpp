@@ -12,6 +12,7 @@
 
 #include "core/base/disk.h"
 #include "core/base/error.h"
+#include "core/base/hash.h"
 
 namespace caustics {
 
@@ -39,12 +40,23 @@ int open_nameless(const std::filesystem::path& folder) {
     return -1;
 }
 
+/// Beside the file, so that renaming stays on its file system.
+std::filesystem::path temporary_name(const std::filesystem::path& file) {
+    constexpr std::size_t longest = 255;
+    const std::string mark = ".tmp-" + std::to_string(getpid());
+    const std::string name = file.filename();
+    const bool fits = name.size() + mark.size() <= longest;
+    return file.parent_path() / ((fits ? name : std::to_string(fnv1a(name))) + mark);
+}
+
+std::string reason_of(int error) { return std::generic_category().message(error); }
+
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(file), temporary_(file) {
+AtomicFile::AtomicFile(const std::filesystem::path& file)
+    : file_(file), temporary_(temporary_name(file)) {
     std::error_code unknown;
     if (std::filesystem::is_other(file, unknown)) fail(EEXIST);
-    temporary_ += ".tmp-" + std::to_string(getpid());
     out_ = open_nameless(folder_above(file));
     is_nameless_ = out_ >= 0;
     if (!is_nameless_) out_ = open_named(temporary_);
@@ -58,8 +70,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::fail(int error) const {
-    throw InputError(file_.string() + ": cannot be written (" +
-                     std::generic_category().message(error) + ")");
+    throw InputError(file_.string() + ": cannot be written (" + reason_of(error) + ")");
 }
 
 void AtomicFile::put(std::string_view bytes) const {
@@ -114,8 +125,12 @@ void require_writable_place(const std::filesystem::path& file) {
     if (fs::is_symlink(fs::symlink_status(file, unknown)))
         fail("is a symbolic link, which a new file would replace; name the file it leads to");
     const fs::file_status status = fs::status(file, unknown);
+    if (unknown == std::errc::filename_too_long)
+        fail("cannot be written (" + unknown.message() + ")");
     if (fs::is_directory(status)) fail("is a folder, not a file");
     if (fs::exists(status) && !fs::is_regular_file(status)) fail("is no regular file");
+    if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+        fail("cannot be written (" + reason_of(errno) + ")");
 }
 
 void write_atomic_file(const std::filesystem::path& file, std::string_view bytes) {
@@ -148,8 +163,7 @@ std::string read_whole_file(const std::filesystem::path& file) {
     } catch (const std::bad_alloc&) {
         throw InputError(file.string() + ": does not fit into memory");
     }
-    throw InputError(file.string() + ": cannot be read (" + std::generic_category().message(errno) +
-                     ")");
+    throw InputError(file.string() + ": cannot be read (" + reason_of(errno) + ")");
 }
 
 }  // namespace caustics

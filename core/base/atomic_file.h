@@ -33,8 +33,8 @@ private:
     bool is_nameless_ = false;
 };
 
-/// Throws InputError where no file can be put: its folder is missing, or a folder, pipe, device or
-/// symbolic link has its name, which renaming would replace. No link is followed: in a folder from
+/// Throws InputError where no file can be put: its folder is missing or not to be written in, its name is too long, or
+/// a folder, pipe, device or symbolic link has its name, which renaming would replace. No link is followed: in a folder from
 /// elsewhere it may lead to anything.
 void require_writable_place(const std::filesystem::path& file);
 

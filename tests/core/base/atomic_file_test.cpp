@@ -46,6 +46,42 @@ TEST(AtomicFile, IsThereOnlyWhenItIsWhole) {
     EXPECT_EQ(files_in(folder.path()), 1) << "nothing temporary is left";
 }
 
+TEST(AtomicFile, MayHaveTheLongestName) {
+    const support::TemporaryFolder folder;
+    const std::string longest(255, 'x');
+    write_atomic_file(folder / longest, "text");
+    EXPECT_EQ(content(folder / longest), "text");
+    EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+/// Before an hour of rendering rather than after it.
+TEST(AtomicFile, WhereItCannotBePutIsFoundBeforeItIsWritten) {
+    const support::TemporaryFolder folder;
+    const auto why = [](const std::filesystem::path& file) -> std::string {
+        try {
+            require_writable_place(file);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "writable";
+    };
+    EXPECT_EQ(why(folder / "a.exr"), "writable");
+    const std::filesystem::path longer = folder / std::string(256, 'x');
+    EXPECT_EQ(why(longer), longer.string() + ": cannot be written (File name too long)");
+    std::filesystem::permissions(folder.path(), std::filesystem::perms(0555));
+    const bool is_root = geteuid() == 0;
+    constexpr uid_t nobody = 65534;
+    if (is_root) {
+        ASSERT_EQ(seteuid(nobody), 0);
+    }
+    const std::string closed = why(folder / "a.exr");
+    if (is_root) {
+        ASSERT_EQ(seteuid(0), 0);
+    }
+    EXPECT_EQ(closed, (folder / "a.exr").string() + ": cannot be written (Permission denied)");
+    std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
+}
+
 TEST(AtomicFile, LeavesNothingOfAKilledProcess) {
     const support::TemporaryFolder folder;
     const pid_t writer = fork();
