@@ -53,6 +53,14 @@ void require_known_words(const CLI::App& app, const std::vector<Verb>& verbs,
     }
 }
 
+/// A shell's variable that is not set leaves an empty word, which would be the folder at work, or no file at all.
+void require_no_empty_values(const std::vector<Verb>& verbs) {
+    for (const Verb& verb : verbs)
+        for (const CLI::Option* option : verb.app->get_options())
+            if (std::ranges::count(option->results(), "") > 0)
+                throw InputError(option->get_name() + ": is empty");
+}
+
 std::function<int()> work_of(const std::vector<Verb>& verbs) {
     for (const Verb& verb : verbs)
         if (verb.app->parsed()) return verb.run;
@@ -93,6 +101,7 @@ std::function<int()> parse_command_line(int argc, const char* const* argv) {
         }
         throw InputError(one_line(error.what()) + " (see --help)");
     }
+    require_no_empty_values(verbs);
     return work_of(verbs);
 }
 

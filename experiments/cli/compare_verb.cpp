@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -35,8 +36,11 @@ PixelMask mask_from(const std::string& file, const Film& reference) {
                                      reference.height()));
     PixelMask counted(mask.pixel_count(), false);
     for (const Plane& plane : mask.planes())
-        for (std::size_t i = 0; i < counted.size(); ++i)
+        for (std::size_t i = 0; i < counted.size(); ++i) {
+            if (!std::isfinite(plane.values[i]))
+                throw InputError(fmt::format("{}: the mask is not finite", file));
             if (plane.values[i] != 0) counted[i] = true;
+        }
     return counted;
 }
 
@@ -113,6 +117,8 @@ int compare(const CompareOptions& options) {
         require_colours(picture, options.picture);
         require_colours(reference, options.reference);
     }
+    require_finite(picture, layer, options.picture);
+    require_finite(reference, layer, options.reference);
     const PixelMask reached = reached_pixels(picture, reference);
     const nlohmann::json whole = to_json(measure(picture, reference, layer, reached));
     const PixelMask mask = options.mask.empty()

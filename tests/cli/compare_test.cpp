@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/render/film.h"
@@ -58,6 +59,23 @@ TEST_F(Compare, JudgesByAnotherProgramsPicture) {
     EXPECT_EQ(json.at("metrics").at("rmse"), 0);
     EXPECT_TRUE(json.at("reference_stderr").is_null());
     EXPECT_EQ(causticbench({"compare", picture, reference}).exit_code, 0);
+}
+
+TEST_F(Compare, NamesThePictureThatIsNotFinite) {
+    const std::string good = render("a.exr");
+    Film film = read_exr(good);
+    film.plane("caustic.G")[17] = std::nanf("");
+    const std::string broken = folder_ / "nan.exr";
+    write_exr(film, broken);
+    const std::string why = "nan.exr: layer \"caustic\" is not finite at pixel (1, 1)";
+    for (const auto& files : {std::pair(good, broken), std::pair(broken, good)}) {
+        const ProgramResult result = causticbench({"compare", files.first, files.second});
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
+    }
+    const ProgramResult mask = causticbench({"compare", good, good, "--mask", broken});
+    EXPECT_EQ(mask.exit_code, 2);
+    EXPECT_NE(mask.err.find("nan.exr: the mask is not finite"), std::string::npos) << mask.err;
 }
 
 TEST_F(Compare, NamesAPictureOfLuminanceAlone) {

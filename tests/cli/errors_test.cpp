@@ -53,6 +53,10 @@ std::vector<std::string> probe_with(const std::string& method) {
 
 const std::vector<Broken> broken_scenes = {
     {"NotJson", render_broken, {"broken.json"}, "{\"type\": "},
+    {"NulBehindTheScene",
+     render_broken,
+     {"broken.json", "is NUL", "UTF-8"},
+     read_whole_file(good_scene) + '\0' + "more"},
     {"UnknownKey", render_broken, {"/ball/bsdf", "iro", "int_ior"}, scene_with("int_ior", "iro")},
     {"UnknownType",
      render_broken,
@@ -93,6 +97,8 @@ const std::vector<Broken> broken_scenes = {
 };
 
 const std::vector<Broken> broken_commands = {
+    {"EmptyFolder", {"merge", "", "-o", "DIR/out"}, {"DIR: is empty"}},
+    {"EmptyPicture", {"compare", "a.exr", "b.exr", "--strip", ""}, {"--strip: is empty"}},
     {"NoVerb", {}, {"no verb", "render, probe, sweep, compare, info"}},
     {"UnknownVerb", {"rendr", "SCENE"}, {"unknown verb \"rendr\"", "render, probe"}},
     {"BeamsWithoutPicture", {"info", "SCENE", "--beams"}, {"--beams and -o"}},
