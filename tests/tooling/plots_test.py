@@ -371,6 +371,8 @@ class Plots(unittest.TestCase):
     def test_bytes_that_are_no_text(self):
         (self.directory / "records.csv").write_bytes(b"trial,\xff\xfe")
         self.refuses("UTF-8")
+        self.table([record(), record(seed=2, trial="a\0b")])
+        self.refuses("line 3 holds a NUL")
 
     def test_numbers_that_are_none(self):
         for column, text in (("rmse", "nan"), ("mean_ratio", "inf"), ("total_s", "fast"), ("leak_energy", "-nan"),

@@ -366,8 +366,9 @@ class Page(unittest.TestCase):
     def test_another_version_is_refused(self):
         (self.sweep / "plan.json").write_text('{"version": 2}')
         self.refuses("plan.json", "version 2", "reads version 1")
-        (self.sweep / "plan.json").write_text("{")
-        self.refuses("plan.json", "not a plan")
+        for text in ("{", "[" * 100_000):
+            (self.sweep / "plan.json").write_text(text)
+            self.refuses("plan.json", "not a plan")
 
 
 if __name__ == "__main__":

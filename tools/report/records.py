@@ -153,6 +153,8 @@ def read_rows(path):
                 if len(fields) != len(header):
                     raise RecordsError(f"{path}: line {reader.line_num} has {len(fields)} fields, "
                                        f"the header has {len(header)}")
+                if any("\0" in field for field in fields):
+                    raise RecordsError(f"{path}: line {reader.line_num} holds a NUL")
                 rows.append((reader.line_num, dict(zip(header, fields))))
     except OSError as error:
         raise RecordsError(f"{path}: {error.strerror}") from error

@@ -54,7 +54,7 @@ def check_plan(folder):
     try:
         with open(path, encoding="utf-8") as file:
             version = json.load(file).get("version")
-    except (OSError, ValueError, AttributeError) as error:
+    except (OSError, ValueError, AttributeError, RecursionError) as error:
         raise RecordsError(f"{path}: not a plan of a sweep ({error})") from error
     if version != PLAN_VERSION:
         raise RecordsError(f"{path}: records of version {version}; this tool reads version {PLAN_VERSION}")
