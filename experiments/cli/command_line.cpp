@@ -53,12 +53,13 @@ void require_known_words(const CLI::App& app, const std::vector<Verb>& verbs,
     }
 }
 
-/// A shell's variable that is not set leaves an empty word, which would be the folder at work, or no file at all.
-void require_no_empty_values(const std::vector<Verb>& verbs) {
+/// An empty word is mostly a variable of the shell that holds nothing; it is no value of any option.
+void require_no_empty_word(const std::vector<Verb>& verbs) {
     for (const Verb& verb : verbs)
         for (const CLI::Option* option : verb.app->get_options())
-            if (std::ranges::count(option->results(), "") > 0)
-                throw InputError(option->get_name() + ": is empty");
+            if (std::ranges::find(option->results(), "") != option->results().end())
+                throw InputError(fmt::format("{} \"\": an empty word (expected {}; see --help)",
+                                             option->get_name(), option->get_type_name()));
 }
 
 std::function<int()> work_of(const std::vector<Verb>& verbs) {
@@ -101,7 +102,7 @@ std::function<int()> parse_command_line(int argc, const char* const* argv) {
         }
         throw InputError(one_line(error.what()) + " (see --help)");
     }
-    require_no_empty_values(verbs);
+    require_no_empty_word(verbs);
     return work_of(verbs);
 }
 

@@ -97,8 +97,7 @@ const std::vector<Broken> broken_scenes = {
 };
 
 const std::vector<Broken> broken_commands = {
-    {"EmptyFolder", {"merge", "", "-o", "DIR/out"}, {"DIR: is empty"}},
-    {"EmptyPicture", {"compare", "a.exr", "b.exr", "--strip", ""}, {"--strip: is empty"}},
+    {"EmptyFolder", {"merge", "", "-o", "DIR/out"}, {"DIR \"\"", "empty word"}},
     {"NoVerb", {}, {"no verb", "render, probe, sweep, compare, info"}},
     {"UnknownVerb", {"rendr", "SCENE"}, {"unknown verb \"rendr\"", "render, probe"}},
     {"BeamsWithoutPicture", {"info", "SCENE", "--beams"}, {"--beams and -o"}},
@@ -194,6 +193,13 @@ const std::vector<Broken> broken_commands = {
     {"NotUtf8", {"info", "\xff.json"}, {"?.json", "UTF-8"}},
     {"ControlCharacters", {"info", "\x1b[2J"}, {"?[2J", "no such file"}},
     {"LongWord", {"info", std::string(5000, 'x')}, {"xxx...xxx"}},
+    {"EmptyTrial", {"explain", "DIR", ""}, {"TRIAL \"\"", "empty word"}},
+    {"EmptyStrip", {"compare", "a.exr", "b.exr", "--strip", ""}, {"--strip \"\"", "FILE"}},
+    {"EmptyLayer", {"compare", "a.exr", "b.exr", "--layer", ""}, {"--layer \"\"", "NAME"}},
+    {"EmptyShard", {"sweep", "BROKEN", "-o", "DIR/out", "--shard", ""}, {"--shard \"\"", "I/N"}},
+    {"EmptyDrawing", {"info", "SCENE", "-o", ""}, {"--output \"\"", "FILE"}},
+    {"EmptySceneOfAMap", {"info", "SCENE", "--scene", ""}, {"--scene \"\"", "SCENE"}},
+    {"EmptyTopic", {"help", ""}, {"TOPIC \"\"", "empty word"}},
     {"SweepOfManyThreads",
      {"sweep", "BROKEN", "-o", "DIR/out"},
      {"/threads", "4096"},
