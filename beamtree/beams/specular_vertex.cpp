@@ -1,6 +1,7 @@
 #include "beamtree/beams/specular_vertex.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/material/optics.h"
 
@@ -46,10 +47,14 @@ MeshPoint LightBender::nearest_to_light(const MeshPiece& piece) const {
     Vec3 weights = Vec3::Constant(1.0F / 3);
     if (light_.kind != LightSample::Kind::directional) {
         const Vec3& a = piece[0].position;
-        const Vec3 b = piece[1].position - a;
-        const Vec3 c = piece[2].position - a;
+        Vec3 b = piece[1].position - a;
+        Vec3 c = piece[2].position - a;
+        Vec3 w = light_.position - a;
+        // By a power of two, which changes no digit: squares of areas of 1e-10 m or 1e10 m are no floats.
+        const float unit =
+            std::exp2(-std::floor(std::log2(b.cwiseAbs().cwiseMax(c.cwiseAbs()).maxCoeff())));
+        for (Vec3* const each : {&b, &c, &w}) *each *= unit;
         const Vec3 normal = b.cross(c);
-        const Vec3 w = light_.position - a;
         const float area2 = normal.squaredNorm();
         if (area2 > 0) {
             weights.y() = w.cross(c).dot(normal) / area2;

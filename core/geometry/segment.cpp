@@ -5,6 +5,8 @@
 
 namespace caustics {
 
+// Along a line that is nearly parallel to a side, and beside it, the plane of the side is met far beyond the
+// bounds, or beyond all floats: a ball round the bounds is the end.
 float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direction) {
     // Outwards by more than the rounding of the bounds, of a flat scene as well.
     const Vec3 low = bounds.min() - Vec3::Constant(0x1p-20F * bounds.min().cwiseAbs().maxCoeff());
@@ -15,7 +17,9 @@ float distance_to_entry(const Box& bounds, const Vec3& point, const Vec3& direct
         const float face = direction[axis] > 0 ? low[axis] : high[axis];
         entry = std::max(entry, (face - point[axis]) / direction[axis]);
     }
-    return entry;
+    const float nearest = ((low + high) / 2 - point).dot(direction);
+    const float radius = 0.5F * (1 + 0x1p-10F) * (high - low).norm();
+    return std::clamp(entry, nearest - radius, nearest + radius);
 }
 
 Vec3 offset_origin(const SegmentEnd& end, const Vec3& direction) {

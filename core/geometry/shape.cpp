@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/geometry/along_normal.h"
 #include "core/geometry/surface_offset.h"
 #include "core/math/sampling.h"
 
@@ -46,7 +47,7 @@ AreaSampler::Sample sample_triangle(const TriangleMesh& mesh, std::size_t index,
     const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
     const Vec3d position = (1 - root) * p.cast<double>() + root * (1 - side) * q.cast<double>() +
                            root * side * r.cast<double>();
-    AreaSampler::Sample sample{position.cast<float>(), (q - p).cross(r - p).normalized(), 0};
+    AreaSampler::Sample sample{position.cast<float>(), along_normal(q - p, r - p).normalized(), 0};
     sample.offset = triangle_offset(sample.position, sample.normal, p, q, r);
     return sample;
 }

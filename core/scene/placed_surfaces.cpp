@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/interrupt.h"
+#include "core/geometry/along_normal.h"
 #include "core/geometry/surface_offset.h"
 
 namespace caustics {
@@ -48,16 +49,16 @@ void PlacedMesh::fill(std::uint32_t triangle, float u, float v, SurfacePoint& po
                       static_cast<double>(u) * b.position.cast<double>() +
                       static_cast<double>(v) * c.position.cast<double>())
                          .cast<float>();
-    const Vec3 across = (b.position - a.position).cross(c.position - a.position);
-    const float twice_area = across.norm();
-    point.geometric_normal = twice_area > 0 ? Vec3(across * (1 / twice_area)) : across;
+    const Vec3 across = along_normal(b.position - a.position, c.position - a.position);
+    const float length = across.norm();
+    point.geometric_normal = length > 0 ? Vec3(across * (1 / length)) : across;
     point.offset =
         triangle_offset(point.position, point.geometric_normal, a.position, b.position, c.position);
     point.shading_normal = point.geometric_normal;
     if (smooth_) {
         const Vec3 n = w * a.normal + u * b.normal + v * c.normal;
-        const float length = n.norm();
-        if (length > 0) point.shading_normal = n * (1 / length);
+        const float mean = n.norm();
+        if (mean > 0) point.shading_normal = n * (1 / mean);
     }
     point.uv =
         mapped_ ? Vec2(w * Vec2(a.u, a.v) + u * Vec2(b.u, b.v) + v * Vec2(c.u, c.v)) : Vec2(u, v);

@@ -46,6 +46,27 @@ Vec3 random_point(Rng& rng, float half) {
     return half * (2 * Vec3(x, y, z) - Vec3::Ones());
 }
 
+// Squares of their areas are no floats.
+TEST(Intersector, HasUnitNormalsOnTrianglesOfAnySize) {
+    for (const double size : {0x1p-33, 0x1p-20, 1.0, 0x1p30, 0x1p38})
+        for (const bool smooth : {false, true}) {
+            Shape shape;
+            shape.primitive = Primitive::mesh;
+            shape.mesh = tessellate_cube(16);
+            if (!smooth) shape.mesh.normals.clear();
+            transform(shape.mesh, Transform(Eigen::Scaling(size)));
+            const AreaSampler lamp(shape);
+            EXPECT_NEAR(lamp.sample(shape, 0.3F, 0.4F).normal.norm(), 1, 1e-6) << size;
+            const Scene scene = scene_of({shape});
+            const auto width = static_cast<float>(size);
+            const auto hit =
+                scene.intersect({width * Vec3(0.3F, 0.1F, 4), Vec3(0.01F, 0, -1).normalized()});
+            ASSERT_TRUE(hit) << size;
+            EXPECT_LT((hit->geometric_normal - Vec3::UnitZ()).norm(), 1e-5F) << size;
+            EXPECT_LT((hit->shading_normal - Vec3::UnitZ()).norm(), 1e-5F) << size;
+        }
+}
+
 // World-frame hits against the local solver, by every transform that scene files can make.
 TEST(Intersector, SeesExactShapesThroughTheirTransforms) {
     Rng rng(1, Stage::test, 0);
