@@ -1,8 +1,11 @@
 #include "core/exact_shapes/cylinder.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/exact_shapes/shape_keys.h"
+#include "core/math/coordinate_limit.h"
 #include "core/mesh/mesh_rows.h"
 
 namespace caustics {
@@ -106,7 +109,9 @@ Transform Cylinder::read_placement(const JsonNode& node) {
     const auto p1 = node.find("p1");
     const Vec3d from = p0 ? read_vector(*p0) : Vec3d::Zero().eval();
     const Vec3d axis = (p1 ? read_vector(*p1) : Vec3d::UnitZ().eval()) - from;
-    if (axis.norm() == 0) node.fail("p0 and p1 of a cylinder must differ");
+    if (!(axis.norm() >= smallest_size))
+        node.fail(
+            fmt::format("p0 and p1 of a cylinder must differ by {:g} m at least", smallest_size));
     const double radius = read_radius(node);
     Transform placement = Transform::Identity();
     placement.linear() = frame_along(axis.normalized()) *

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "core/base/error.h"
 #include "core/math/sampling.h"
 
 namespace caustics {
@@ -29,6 +32,18 @@ std::vector<AimedSource> aimed_sources(std::span<const Light> lights, std::uint3
     return sources;
 }
 
+// A path has a share of all power, 1e-12 of it at least, which is to be a normal float.
+void require_power(const std::vector<AimedSource>& sources, const Spectrum& total,
+                   bool everywhere) {
+    constexpr float least = 1e-26F;
+    constexpr float most = 1e34F;
+    if (sources.empty() || (total.maxCoeff() >= least && (total <= most).all())) return;
+    throw UnsupportedScene(
+        fmt::format("the lights send {:.3g} W towards {}, beyond the {:g} to {:g} W that floats "
+                    "serve (make lights stronger or weaker, or the scene larger or smaller)",
+                    total.maxCoeff(), everywhere ? "the scene" : "the casters", least, most));
+}
+
 EmissionCone plain(const AimedCone& aim) {
     const auto& [s, t, n] = aim.frame;
     return {aim.cone.one_minus_cos,
@@ -51,6 +66,7 @@ AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where, std::span<c
       surroundings_(aimed_at(scene, where)),
       kernels_(emission_kernels(isa)),
       sources_(aimed_sources(lights, first_light, surroundings_)) {
+    require_power(sources_, total_power(), where == Aim::everywhere);
     const auto total = static_cast<double>(total_power().mean());
     double sum = 0;
     for (const AimedSource& source : sources_) {

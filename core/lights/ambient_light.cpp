@@ -1,5 +1,7 @@
 #include "core/lights/ambient_light.h"
 
+#include "core/scene_file/strength.h"
+
 namespace caustics {
 
 using namespace scene_file;
@@ -8,11 +10,9 @@ ObjectText AmbientLight::text() {
     return {"ambient",
             "A light, in the scene: on every receiver, times its albedo, without shadows; no "
             "caustics.",
-            {type_key(), colour("radiance", "From all around.", "W/(m^2 sr)", "1", "0 to 1e+30")}};
+            {type_key(), strength("radiance", "From all around.", "W/(m^2 sr)")}};
 }
 
-Spectrum AmbientLight::read(const JsonNode& node) {
-    return read_colour(node, "radiance", 1, unlimited);
-}
+Spectrum AmbientLight::read(const JsonNode& node) { return read_strength(node, "radiance"); }
 
 }  // namespace caustics

@@ -8,6 +8,7 @@
 
 #include "core/geometry/surface_offset.h"
 #include "core/lights/light_text.h"
+#include "core/scene_file/strength.h"
 
 namespace caustics {
 
@@ -72,12 +73,10 @@ SegmentEnd facing_point(const BoundingSphere& sphere, const Vec3& direction, Rng
 ObjectText AreaLight::text() {
     return {"area",
             "A light, in a shape that shines from its front side.",
-            {type_key(), colour("radiance", "Of the surface.", "W/(m^2 sr)", "1", "0 to 1e+30")}};
+            {type_key(), strength("radiance", "Of the surface.", "W/(m^2 sr)")}};
 }
 
-Spectrum AreaLight::read(const JsonNode& node) {
-    return read_colour(node, "radiance", 1, unlimited);
-}
+Spectrum AreaLight::read(const JsonNode& node) { return read_strength(node, "radiance"); }
 
 std::string AreaLight::line(const Surroundings& scene, const Vec3d&) const {
     return fmt::format("area on {}, {:.6g} m^2, radiance {} W/(m^2 sr)", scene.shapes[shape].name,

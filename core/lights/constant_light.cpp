@@ -3,20 +3,20 @@
 #include <fmt/format.h>
 
 #include "core/lights/light_text.h"
+#include "core/scene_file/strength.h"
 
 namespace caustics {
 
 using namespace scene_file;
 
 ObjectText ConstantLight::text() {
-    return {
-        "constant",
-        "A light, in the scene, once: the same from all around, from infinitely far away.",
-        {type_key(), colour("radiance", "Of every direction.", "W/(m^2 sr)", "1", "0 to 1e+30")}};
+    return {"constant",
+            "A light, in the scene, once: the same from all around, from infinitely far away.",
+            {type_key(), strength("radiance", "Of every direction.", "W/(m^2 sr)")}};
 }
 
 ConstantLight ConstantLight::read(const JsonNode& node, const Vec3d&) {
-    return {read_colour(node, "radiance", 1, unlimited)};
+    return {read_strength(node, "radiance")};
 }
 
 std::string ConstantLight::line(const Surroundings&, const Vec3d&) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/lights/light_text.h"
+#include "core/scene_file/strength.h"
 
 namespace caustics {
 
@@ -17,7 +18,7 @@ ObjectText DirectionalLight::text() {
               .type = "[x, y, z]",
               .usual = "[0, 0, 1]"},
              transform("The light goes along its +z, in place of direction."),
-             colour("irradiance", "On a surface across the light.", "W/m^2", "1", "0 to 1e+30")}};
+             strength("irradiance", "On a surface across the light.", "W/m^2")}};
 }
 
 DirectionalLight DirectionalLight::read(const JsonNode& node, const Vec3d&) {
@@ -30,7 +31,7 @@ DirectionalLight DirectionalLight::read(const JsonNode& node, const Vec3d&) {
         if (towards.norm() == 0) direction->fail("must not be zero");
     }
     if (to_world) towards = read_transform(*to_world).linear().col(2);
-    return {towards.normalized().cast<float>(), read_colour(node, "irradiance", 1, unlimited)};
+    return {towards.normalized().cast<float>(), read_strength(node, "irradiance")};
 }
 
 std::string DirectionalLight::line(const Surroundings&, const Vec3d&) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/lights/light_text.h"
+#include "core/scene_file/strength.h"
 
 namespace caustics {
 
@@ -13,7 +14,7 @@ ObjectText PointLight::text() {
             "A light, in the scene.",
             {type_key(), vector("position", "Where it is.", "[0, 0, 0]"),
              transform("Where it is, in place of position."),
-             colour("intensity", "Power sent into a direction.", "W/sr", "1", "0 to 1e+30")}};
+             strength("intensity", "Power sent into a direction.", "W/sr")}};
 }
 
 PointLight PointLight::read(const JsonNode& node, const Vec3d& origin) {
@@ -24,7 +25,7 @@ PointLight PointLight::read(const JsonNode& node, const Vec3d& origin) {
     if (position) place = read_vector(*position);
     if (to_world) place = read_transform(*to_world).translation();
     require_near(node, {place});
-    return {Vec3d(place - origin).cast<float>(), read_colour(node, "intensity", 1, unlimited)};
+    return {Vec3d(place - origin).cast<float>(), read_strength(node, "intensity")};
 }
 
 std::string PointLight::line(const Surroundings&, const Vec3d& origin) const {

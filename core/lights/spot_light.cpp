@@ -4,6 +4,7 @@
 
 #include "core/lights/light_text.h"
 #include "core/lights/point_light.h"
+#include "core/scene_file/strength.h"
 
 namespace caustics {
 
@@ -34,7 +35,7 @@ ObjectText SpotLight::text() {
     return {"spot",
             "A light, in the scene: from a point, about an axis.",
             {type_key(), transform("Where it is, and its axis: +z."),
-             colour("intensity", "Power sent along the axis.", "W/sr", "1", "0 to 1e+30"),
+             strength("intensity", "Power sent along the axis.", "W/sr"),
              number("cutoff_angle", "From the axis to where no light goes.", "degrees", "20",
                     "0.001 to 179"),
              number("beam_width", "From the axis to where the light begins to fall, linearly.",
@@ -51,7 +52,7 @@ SpotLight SpotLight::read(const JsonNode& node, const Vec3d& origin) {
     const Vec3d place = to_world.translation();
     require_near(node, {place});
     return {Vec3d(place - origin).cast<float>(),
-            read_colour(node, "intensity", 1, unlimited),
+            read_strength(node, "intensity"),
             {.axis = Vec3d(to_world.linear().col(2)).normalized().cast<float>(),
              .beam_width = static_cast<float>(beam * degree),
              .cutoff = static_cast<float>(cutoff * degree)}};

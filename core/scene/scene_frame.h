@@ -12,8 +12,12 @@ namespace caustics::scene_file {
 
 /// The world's origin where that is no farther from each caster than 8 times its size; else the mean
 /// of the casters' centres, each weighted by 1 / size^2 (the smallest needs it most). Without casters
-/// all shapes are asked.
-Vec3d frame_origin(const std::vector<Shape>& shapes);
+/// all shapes are asked. `boxes` are the shapes' bounds in the world.
+Vec3d frame_origin(const std::vector<Shape>& shapes, const std::vector<Eigen::AlignedBox3d>& boxes);
+
+/// Whether floats resolve a shape of these bounds in the frame: it is wider than a millionth of its distance
+/// from the frame's origin.
+bool is_resolved(const Eigen::AlignedBox3d& box, const Vec3d& origin);
 
 /// Puts a shape into the frame: its `to_world` goes there, or is applied to its mesh.
 void place(Shape& shape, const Vec3d& origin);

@@ -61,7 +61,7 @@ Objects sensors() {
           whole("max_sample_count", "Most samples of a pixel.", "samples", "32 times sample_count",
                 "sample_count to 1048576"),
           number("max_error", "Allowed standard error of a pixel over its brightness.", "", "0.05",
-                 "above 0"),
+                 "above 0 to 1e+30"),
           split}}};
 }
 
@@ -82,7 +82,7 @@ Objects transforms() {
             {"rotate",
              "In a transform.",
              {part("axis", "Of any length.", "[x, y, z]"),
-              part("angle", "Right-handed.", "number", "degrees")}},
+              number("angle", "Right-handed.", "degrees", "", "-1e+06 to 1e+06")}},
             {"look_at",
              "In a transform.",
              {part("origin", "Where the view starts.", "[x, y, z]", "m"),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/base/atomic_file.h"
 #include "core/base/hash.h"
 #include "core/lights/ambient_light.h"
@@ -67,7 +69,7 @@ PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
             most->fail("must not be below sample_count (" + std::to_string(sampling.sample_count) +
                        ")");
         if (const auto error = node.find("max_error")) {
-            sampling.max_error = static_cast<float>(error->as_number());
+            sampling.max_error = static_cast<float>(error->as_number_in(0, unlimited));
             if (!(sampling.max_error > 0)) error->fail("must be above 0");
         }
     }
@@ -169,10 +171,18 @@ void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
 
 SceneDesc placed(Draft& draft) {
     SceneDesc& desc = draft.desc;
-    desc.origin = scene_file::frame_origin(desc.shapes);
-    for (std::size_t i = 0; i < desc.shapes.size(); ++i)
+    std::vector<Eigen::AlignedBox3d> boxes;
+    for (const Shape& shape : desc.shapes) boxes.push_back(scene_file::world_bounds(shape));
+    desc.origin = scene_file::frame_origin(desc.shapes, boxes);
+    for (std::size_t i = 0; i < desc.shapes.size(); ++i) {
+        if (!scene_file::is_resolved(boxes[i], desc.origin))
+            draft.shape_nodes[i].fail(
+                fmt::format("is {:.3g} m wide and {:.3g} m from the scene's casters: floats do not "
+                            "resolve what is a million times as far as it is wide",
+                            boxes[i].diagonal().norm(), (boxes[i].center() - desc.origin).norm()));
         scene_file::load_for(draft.shape_nodes[i],
                              [&] { scene_file::place(desc.shapes[i], desc.origin); });
+    }
     bool is_surrounded = false;
     for (const auto& [type, node] : draft.light_nodes) {
         desc.lights.push_back(read_light(type, node, desc.origin));

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 #include "core/base/lower_case.h"
 #include "core/exact_shapes/shape_keys.h"
 #include "core/geometry/tessellate.h"
 #include "core/lights/area_light.h"
 #include "core/material/bsdf_reader.h"
+#include "core/math/coordinate_limit.h"
 #include "core/mesh/mesh_io.h"
 #include "core/shapes/cut_shape.h"
 #include "core/shapes/heightfield_shape.h"
@@ -134,6 +137,33 @@ Primitive exact_of(const std::string& type) {
     return *std::ranges::find_if(exact_primitives, has_type);
 }
 
+Eigen::AlignedBox3d in_world(const Eigen::AlignedBox3d& local, const Transform& to_world) {
+    Eigen::AlignedBox3d box;
+    for (int i = 0; i < 8; ++i)
+        box.extend(to_world * local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+    return box;
+}
+
+// Fails unless floats hold the shape where it is, which may be flat, but no thread.
+void require_size(const JsonNode& node, const Shape& shape) {
+    const Eigen::AlignedBox3d local = local_bounds(shape);
+    const Eigen::AlignedBox3d box = in_world(local, shape.to_world);
+    require_near(node, {box.min(), box.max()});
+    const Vec3d scales = shape.to_world.linear().colwise().norm().transpose();
+    Vec3d extents = local.sizes().cwiseProduct(scales);
+    std::ranges::sort(extents);
+    const bool is_mesh = shape.primitive == Primitive::mesh;
+    const char* const kind = is_mesh ? "a mesh" : "an exact shape";
+    const double least = is_mesh ? smallest_mesh : smallest_size;
+    if (!(extents[1] >= least))
+        node.fail(fmt::format("is {:.3g} m wide, less than {:g} m, the least width of {}",
+                              extents[1], least, kind));
+    const double reach = std::max(box.max().maxCoeff(), -box.min().minCoeff());
+    if (is_mesh && reach > farthest_vertex)
+        node.fail(fmt::format("is a mesh that reaches {:.3g} m from the origin, beyond {:g} m",
+                              reach, farthest_vertex));
+}
+
 // What is nested in a shape under keys of the user's choice: a bsdf and an emitter.
 void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
     bool has_bsdf = false;
@@ -195,11 +225,7 @@ const std::vector<std::string>& later_shape_types() {
 }
 
 Eigen::AlignedBox3d world_bounds(const Shape& shape) {
-    const Eigen::AlignedBox3d local = local_bounds(shape);
-    Eigen::AlignedBox3d box;
-    for (int i = 0; i < 8; ++i)
-        box.extend(shape.to_world * local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
-    return box;
+    return in_world(local_bounds(shape), shape.to_world);
 }
 
 Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) {
@@ -219,8 +245,7 @@ Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) 
         read_heightfield(node, keys, shape, assets);
     else
         read_exact(node, exact_of(type), keys, shape);
-    const Eigen::AlignedBox3d box = world_bounds(shape);
-    require_near(node, {box.min(), box.max()});
+    require_size(node, shape);
     read_nested(node, shape, assets);
     return shape;
 }

@@ -50,7 +50,7 @@ Transform read_look_at(const JsonNode& node) {
 
 Transform read_rotation(const JsonNode& node) {
     const Vec3d axis = read_vector(node.at("axis"));
-    const double degrees = node.at("angle").as_number();
+    const double degrees = node.at("angle").as_number_in(-most_turned, most_turned);
     node.finish();
     if (axis.norm() == 0) node.at("axis").fail("must not be zero");
     return Transform(Eigen::AngleAxisd(degrees * pi_d / 180, axis.normalized()));

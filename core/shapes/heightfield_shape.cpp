@@ -6,6 +6,7 @@
 
 #include "core/exact_shapes/shape_keys.h"
 #include "core/geometry/fractal_field.h"
+#include "core/math/coordinate_limit.h"
 #include "core/picture/picture_file.h"
 
 namespace caustics::scene_file {
@@ -16,7 +17,7 @@ SineWave read_wave(const JsonNode& node) {
     wave.amplitude = node.at("amplitude").as_number_in(-unlimited, unlimited);
     wave.wave_vector = read_pair(node.at("wave_vector"));
     if (const auto phase = node.find("phase"))
-        wave.phase = phase->as_number_in(-unlimited, unlimited);
+        wave.phase = phase->as_number_in(-most_turned, most_turned);
     node.finish();
     return wave;
 }
@@ -149,7 +150,7 @@ Objects heightfield_keys() {
            .meaning = "Direction of the crests' motion; its length is 2 pi over the wavelength.",
            .unit = "rad/m",
            .type = "[x, y]"},
-          number("phase", "At the origin.", "rad", "0", "-1e+30 to 1e+30")}},
+          number("phase", "At the origin.", "rad", "0", "-1e+06 to 1e+06")}},
         {"fractal",
          "In a heightfield: random waves that repeat with the rectangle; finer levels add shorter "
          "ones.",

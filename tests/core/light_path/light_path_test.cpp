@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/geometry/tessellate.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/math/sampling.h"
@@ -65,6 +66,19 @@ TEST(AimedEmission, AimsAtSmallDistantSpheres) {
         EXPECT_EQ(sent, static_cast<int>(paths));
         EXPECT_GT(hits, sent * 0.997) << angle;
     }
+}
+
+TEST(AimedEmission, RefusesPowerThatFloatsDoNotServe) {
+    const auto emission = [](float intensity, double radius) {
+        SceneDesc desc = ball_lit_from_a_point(radius, 4 * radius);
+        desc.lights = {support::point_light(Vec3d(0, 0, 4 * radius), intensity)};
+        const Scene scene(std::move(desc));
+        return AimedEmission(scene).total_power().maxCoeff();
+    };
+    EXPECT_GT(emission(1e-20F, 1), 1e-21F);
+    EXPECT_GT(emission(1e30F, 1), 1e29F);
+    for (const float strength : {1e-44F, 1e-30F, 1e36F, 3e38F})
+        EXPECT_THROW(emission(strength, 1), UnsupportedScene) << strength;
 }
 
 // Overlapping cones: every direction of the union equally often, none twice.
