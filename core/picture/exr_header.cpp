@@ -58,6 +58,17 @@ bool has_its_length(std::string_view type, std::string_view value) {
     return known == lengths.end() || known->bytes == value.size();
 }
 
+/// The library makes room for a whole tile, however small the picture is.
+void require_small_tiles(std::string_view tile_description) {
+    constexpr std::uint64_t most_pixels = 1 << 22;
+    std::array<std::uint32_t, 2> sides{};
+    std::memcpy(sides.data(), tile_description.data(), sizeof sides);
+    if (std::uint64_t{sides[0]} * sides[1] > most_pixels)
+        throw std::runtime_error("its tiles have " + std::to_string(sides[0]) + " x " +
+                                 std::to_string(sides[1]) + " pixels, more than " +
+                                 std::to_string(most_pixels));
+}
+
 /// Up to the empty name that ends a header. Whether it is there.
 bool pass_header(std::string_view& rest) {
     for (;;) {
@@ -75,6 +86,7 @@ bool pass_header(std::string_view& rest) {
             throw std::runtime_error("its attribute " + one_line(*name) + " has " +
                                      std::to_string(bytes) + " bytes, which no " + one_line(*type) +
                                      " has");
+        if (*type == "tiledesc") require_small_tiles(rest);
         rest.remove_prefix(bytes);
     }
 }

@@ -91,13 +91,14 @@ void take_in(Survey& survey, const PlanFile& plan, const fs::path& folder) {
     }
 }
 
-void require_whole(const Survey& survey, const PlanFile& plan) {
+void require_whole(const Survey& survey, const PlanFile& plan, const fs::path& folder) {
     std::vector<std::string> missing;
     for (const PlanFile::Entry& trial : plan.trials)
         if (trial.chosen && !survey.folder_of.contains(trial.id)) missing.push_back(trial.id);
     if (!missing.empty())
-        throw InputError(fmt::format("{} of the plan's trials are in none of the folders: {}",
-                                     missing.size(), some(missing)));
+        throw InputError(fmt::format("{}: {} of the plan's trials are in none of the folders: {}",
+                                     (folder / "plan.json").string(), missing.size(),
+                                     some(missing)));
     if (survey.code.size() > 1) throw InputError("records by different code: " + all(survey.code));
     if (survey.isa.size() > 1)
         throw InputError("records of different instruction sets: " + all(survey.isa));
@@ -214,7 +215,7 @@ std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
     const std::vector<PlanFile> plans = read_plans(folders);
     Survey survey;
     for (const fs::path& folder : folders) take_in(survey, plans[0], folder);
-    require_whole(survey, plans[0]);
+    require_whole(survey, plans[0], folders[0]);
 
     std::vector<std::string> warnings = write_whole(folders, plans[0], survey, target);
     if (survey.cpu.size() > 1)

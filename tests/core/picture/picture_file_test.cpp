@@ -142,6 +142,15 @@ TEST(PictureFile, WhatAnOpenExrFileSaysOfItsValuesIsNotPassedOver) {
     EXPECT_EQ(read_exr(file).rgb("", 3)[0], 1) << "a film's values are as they are";
 }
 
+TEST(PictureFile, WhatHoldsNoPictureIsRefusedWhateverItsName) {
+    const support::TemporaryFolder folder;
+    for (const std::string name : {"a.null", "a.png", "a.exr", "a.hdr", "a"}) {
+        write_atomic_file(folder / name, "no picture");
+        const std::string why = refusal([&] { load_bitmap(folder / name, true); });
+        EXPECT_NE(why.find(name + ": cannot be read ("), std::string::npos) << why;
+    }
+}
+
 /// The bytes with another value of an attribute, of the same length.
 std::string with_attribute(std::string bytes, const std::string& name, const std::string& value) {
     const std::size_t type = bytes.find(name + '\0') + name.size() + 1;
@@ -205,6 +214,11 @@ TEST(PictureFile, AnOpenExrFileThatAsksForMoreThanItHoldsIsRefused) {
         expect_refused(with_length(static_cast<unsigned char>(last), 0xFF), inside, inside);
     const std::string wrong = "its attribute lineOrder has 2 bytes";
     expect_refused(with_length(0, 2), wrong, wrong);
+
+    const std::string tiles{"tiles\0tiledesc\0\t\0\0\0\4\0\0\0\4\0\x7e\0\0", 28};
+    constexpr std::size_t magic_and_version = 8;
+    const std::string large = "its tiles have 4 x 8257540 pixels";
+    expect_refused(std::string(good).insert(magic_and_version, tiles), large, large);
 
     std::vector<std::string> many(400);
     for (std::size_t i = 0; i < many.size(); ++i) many[i] = "c" + std::to_string(1000 + i);

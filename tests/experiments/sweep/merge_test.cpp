@@ -78,7 +78,7 @@ TEST_F(Merges, PutShardsTogether) {
 
 TEST_F(Merges, RefuseGaps) {
     TrialStore(two_).remove("b");
-    EXPECT_NE(error().find("1 of the plan's trials are in none of the folders: b"),
+    EXPECT_NE(error().find("plan.json: 1 of the plan's trials are in none of the folders: b"),
               std::string::npos)
         << error();
 }
