@@ -32,10 +32,10 @@ std::vector<AimedSource> aimed_sources(std::span<const Light> lights, std::uint3
     return sources;
 }
 
-// A path has a share of all power, 1e-12 of it at least, which is to be a normal float.
+// A path has a share of all power: of 1e-8 of 1e-32 W a float still has five digits.
 void require_power(const std::vector<AimedSource>& sources, const Spectrum& total,
                    bool everywhere) {
-    constexpr float least = 1e-26F;
+    constexpr float least = 1e-32F;
     constexpr float most = 1e34F;
     if (sources.empty() || (total.maxCoeff() >= least && (total <= most).all())) return;
     throw UnsupportedScene(

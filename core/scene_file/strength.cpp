@@ -9,7 +9,7 @@ namespace {
 
 // Of a number or of each in an array.
 void require_strong(const JsonNode& node) {
-    constexpr double faintest = 1e-20;
+    constexpr double faintest = 1e-30;
     if (node.is_array())
         for (const JsonNode& channel : node.as_array()) require_strong(channel);
     else if (const double value = node.as_number(); value > 0 && value < faintest)
@@ -27,7 +27,7 @@ Spectrum read_strength(const JsonNode& parent, const std::string& key) {
 }
 
 KeyText strength(const std::string& key, const std::string& meaning, const std::string& unit) {
-    return colour(key, meaning, unit, "1", "0, or 1e-20 to 1e+30");
+    return colour(key, meaning, unit, "1", "0, or 1e-30 to 1e+30");
 }
 
 }  // namespace caustics::scene_file
