@@ -22,10 +22,14 @@ SpecularVertex LightBender::along(const Vec3& normal, const Vec3& to_light, floa
     const SpecularSplit split = split_specular(bsdf_, normal, normal, to_light, light_.bin.nm);
     const Spectrum* const medium = medium_absorption(bsdf_, normal, to_light);
     const Spectrum arriving =
-        strength_along(light_, to_light) * segment_transmittance(nullptr, medium, distance);
+        strength_along(light_, to_light) * segment_transmittance(light_.medium, medium, distance);
     bent.direction = {split.reflected, split.refracted};
     bent.weight = {split.reflected_weight * arriving, split.refracted_weight * arriving};
     return bent;
+}
+
+const Spectrum* LightBender::medium_after(const Vec3& normal, const Vec3& direction) const {
+    return caustics::medium_after(bsdf_, normal, direction, light_.medium);
 }
 
 MeshPoint LightBender::between(const MeshPoint& a, const MeshPoint& b, float t) const {

@@ -184,9 +184,12 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
 }
 
 std::vector<Departure> BeamBounces::first_departures(const TracedSet& first) const {
-    const std::uint32_t shape = surface_.caster().shape;
     std::vector<Departure> departures;
-    for (const RayOrigin& origin : first.origins) departures.push_back({shape, origin.normal, 0});
+    for (std::size_t i = 0; i < first.origins.size(); ++i) {
+        const Vec3& normal = first.origins[i].normal;
+        departures.push_back(
+            {normal, 0, surface_.bender().medium_after(normal, first.set.rays[i].direction)});
+    }
     const std::vector<Beam>& beams = first.set.beams;
     std::vector<float> at_vertices(beams.size());
     parallel_chunks(settings_.threads, beams.size(), beams_together, [&](const Chunk& chunk) {

@@ -45,7 +45,9 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
     PathPoint point;
     const MeshPoint first = surface_.bender().at(position, normal);
     point.origin = {first.position, first.normal, first.bent.weight[first_event_]};
-    point.from = {surface_.caster().shape, facing_.normal, surface_.offset(triangle_)};
+    point.from = {
+        facing_.normal, surface_.offset(triangle_),
+        surface_.bender().medium_after(facing_.normal, first.bent.direction[first_event_])};
     if (!sends_on(first, facing_, first_event_)) return point;
     if (!sees(scene_, {position, facing_.normal, point.from.offset}, surface_.light()))
         return point;
@@ -57,7 +59,7 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
         point.origin.left *= arrival.left;
         if (is_black(point.origin.weight)) return point;
         point.ray = {arrival.position, arrival.direction[step.event]};
-        point.from = {arrival.shape, arrival.geometric_normal, arrival.offset};
+        point.from = arrival.after(step.event);
     }
     point.alive = true;
     point.next = land(scene_, point.ray, point.from, surface_.light().bin.nm);

@@ -240,6 +240,8 @@ BeamSet set_of(const LitCaster& surface, Event event) {
     set.path = {{set.caster, set.refracted}};
     if (const auto* medium = std::get_if<Dielectric>(&surface.bsdf().model))
         set.absorption = {medium->ext_absorption, medium->absorption};
+    else if (surface.light().medium != nullptr)
+        set.absorption.fill(*surface.light().medium);
     return set;
 }
 

@@ -48,7 +48,7 @@ std::uint32_t ray_of(SetChunk& chunk, const BeamCorner& corner, Event event) {
     origin.left *= arrival.left;
     if (!shared) origin.vertex = RayOrigin::no_vertex;
     chunk.traced.origins.push_back(origin);
-    chunk.departures.push_back({arrival.shape, arrival.geometric_normal, arrival.offset});
+    chunk.departures.push_back(arrival.after(event));
     chunk.keys.push_back(corner.parent_ray);
     if (shared) chunk.rays.add(corner.parent_ray, ray);
     return ray;
@@ -66,8 +66,10 @@ Level level_after(const Scene& scene, const Level& parent, std::uint32_t shape, 
     set.refracted = event == refraction;
     set.path = before.path;
     set.path.push_back({shape, event == refraction});
-    if (const auto* medium = std::get_if<Dielectric>(&scene.shapes()[shape].bsdf.model))
-        set.absorption = {medium->ext_absorption, medium->absorption};
+    // A mirror leaves light where it was.
+    const auto* const medium = std::get_if<Dielectric>(&scene.shapes()[shape].bsdf.model);
+    set.absorption = medium != nullptr ? std::array{medium->ext_absorption, medium->absorption}
+                                       : before.absorption;
     return level;
 }
 
@@ -181,7 +183,9 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
     least_.budget.count(clear);
     NextChunk& chunk = chunk_of(first.shape, event);
     beam.triangle = set_.beams[parent].triangle;
-    beam.inside = first.front == (event == refraction);
+    const bool is_interface =
+        std::holds_alternative<Dielectric>(scene_.shapes()[first.shape].bsdf.model);
+    beam.inside = is_interface ? first.front == (event == refraction) : set_.beams[parent].inside;
     for (const BeamCorner& corner : corners)
         beam.offset = std::max(beam.offset, 2 * corner.arrival->offset);
     beam.offset += bulge(corners);

@@ -159,7 +159,8 @@ private:
     void end(std::uint32_t beam, const std::array<std::uint32_t, 3>& rays) {
         stay(beam);
         const Beam& parent = set_.beams[beam];
-        const Departure& from = level_.departures[rays[0]];
+        Departure from = level_.departures[rays[0]];
+        from.offset = parent.offset;
         VertexRay ray{Vec3::Zero(), Vec3::Zero()};
         for (const std::uint32_t i : rays) {
             ray.position += set_.rays[i].position / 3;
@@ -171,9 +172,7 @@ private:
             if (!sees(scene_, middle, surface_.light())) return;
             count_lit(parent);
         }
-        if (land(scene_, ray, {from.shape, from.normal, parent.offset}, set_.light.bin.nm)
-                .goes_on() ||
-            hides_a_caster(piece_of(rays)))
+        if (land(scene_, ray, from, set_.light.bin.nm).goes_on() || hides_a_caster(piece_of(rays)))
             cut_triangle(beam, rays);
     }
 

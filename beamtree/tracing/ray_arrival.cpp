@@ -33,9 +33,11 @@ RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from,
     const SpecularSplit split =
         split_specular(bsdf, hit->geometric_normal, hit->shading_normal, w, nm);
     const Spectrum left = segment_transmittance(
-        medium_absorption(scene.shapes()[from.shape].bsdf, from.normal, ray.direction),
-        medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
+        from.medium, medium_absorption(bsdf, hit->geometric_normal, w), hit->distance);
     arrival.direction = {split.reflected, split.refracted};
+    for (const Event event : events)
+        arrival.medium[event] =
+            medium_after(bsdf, hit->geometric_normal, arrival.direction[event], from.medium);
     arrival.weight = {split.reflected_weight * left, split.refracted_weight * left};
     arrival.left = left.mean();
     return arrival;

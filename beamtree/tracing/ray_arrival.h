@@ -11,9 +11,9 @@ namespace caustics::beamtree {
 
 /// How a ray starts: off the surface it leaves, by that surface's normal.
 struct Departure {
-    std::uint32_t shape = 0;  ///< index into Scene::shapes
-    Vec3 normal;              ///< unit
-    float offset = 0;         ///< [m]
+    Vec3 normal;                       ///< unit
+    float offset = 0;                  ///< [m]
+    const Spectrum* medium = nullptr;  ///< absorption where the ray goes [1/m]; null: none is known
 };
 
 /// Where a ray next meets a surface, and what becomes of its light there if that is a caster.
@@ -30,8 +30,10 @@ struct RayArrival {
     /// After each event, over the weight before: of surface and way there.
     std::array<Spectrum, 2> weight = {black(), black()};
     float left = 1;  ///< by the medium on the way there, mean of the channels
+    std::array<const Spectrum*, 2> medium = {};  ///< after each event, as Departure::medium
 
     bool goes_on() const { return shape != nothing; }
+    Departure after(Event event) const { return {geometric_normal, offset, medium[event]}; }
 };
 
 /// Sends a ray of light of a wavelength [nm], or of all (0), on.

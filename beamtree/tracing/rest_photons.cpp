@@ -74,8 +74,8 @@ double closeness(const LightSample& light, const LeftOut& part, const Vec3& posi
 }
 
 // Through the event at the caster that a path has come to; false where no light is left.
-bool leave_next(const Scene& scene, const PathPoint& point, const std::optional<Event>& event,
-                Rng& rng, Flight& flight) {
+bool leave_next(const PathPoint& point, const std::optional<Event>& event, Rng& rng,
+                Flight& flight) {
     const RayArrival& at = point.next;
     Event next = reflection;
     if (event) {
@@ -90,10 +90,8 @@ bool leave_next(const Scene& scene, const PathPoint& point, const std::optional<
         flight.flux *= at.weight[next] / (next == reflection ? share : 1 - share);
     }
     if (is_black(flight.flux)) return false;
-    const Vec3& direction = at.direction[next];
-    flight.start_medium =
-        medium_absorption(scene.shapes()[at.shape].bsdf, at.geometric_normal, direction);
-    flight.ray = spawn_ray({at.position, at.geometric_normal, at.offset}, direction);
+    flight.start_medium = at.medium[next];
+    flight.ray = spawn_ray({at.position, at.geometric_normal, at.offset}, at.direction[next]);
     return true;
 }
 
@@ -162,7 +160,7 @@ void RestPhotons::trace(const Level& level, const LeftOut& part,
         Flight flight{{}, point.origin.weight * static_cast<float>(measured * share)};
         flight.bounces = static_cast<int>(level.bounces()) + 1;
         flight.wavelength.nm = set.light.bin.nm;
-        if (leave_next(scene_, point, part.event, rng, flight))
+        if (leave_next(point, part.event, rng, flight))
             fly(scene_, flight, max_bounces_, rng, set.light.bin, photons);
     }
 }

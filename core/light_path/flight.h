@@ -40,8 +40,8 @@ inline std::optional<Deposit> deposit_of(const Scene& scene, const SurfacePoint&
 /// Turns a flight to where it leaves a caster.
 inline void leave(const Scene& scene, const SurfacePoint& hit, const Vec3& direction,
                   Flight& flight) {
-    flight.start_medium =
-        medium_absorption(scene.shape_at(hit).bsdf, hit.geometric_normal, direction);
+    flight.start_medium = medium_after(scene.shape_at(hit).bsdf, hit.geometric_normal, direction,
+                                       flight.start_medium);
     flight.ray = spawn_ray({hit.position, hit.geometric_normal, hit.offset}, direction);
     ++flight.bounces;
 }

@@ -126,7 +126,7 @@ bool goes_on_from(const Scene& scene, const SurfacePoint& hit, bool has_deposit,
 void trace_light_path(const Scene& scene, const LightParticle& particle,
                       const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
                       std::vector<Deposit>& deposits) {
-    Flight flight{particle.ray, particle.flux};
+    Flight flight{particle.ray, particle.flux, particle.medium};
     for (;;) {
         record(settings, flight.ray);
         const std::optional<SurfacePoint> hit = scene.intersect(flight.ray);
@@ -177,7 +177,8 @@ void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
     std::vector<OneOfMany> flights;
     flights.reserve(starts.size());
     for (std::size_t i = 0; i < starts.size(); ++i) {
-        flights.push_back({{starts[i].particle.ray, starts[i].particle.flux}, i});
+        const LightParticle& particle = starts[i].particle;
+        flights.push_back({{particle.ray, particle.flux, particle.medium}, i});
         // Neighbours in the order of paths, which are neighbours in the light, have wavelengths far apart.
         if (settings.wavelength_shift)
             flights.back().wavelength.choice =
@@ -266,7 +267,7 @@ void trace_split_path(const Scene& scene, const LightParticle& particle,
                       const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
                       std::vector<Deposit>& deposits) {
     SplitPath(scene, settings, particle.flux, rng, counts, deposits)
-        .follow({particle.ray, particle.flux});
+        .follow({particle.ray, particle.flux, particle.medium});
 }
 
 }  // namespace caustics

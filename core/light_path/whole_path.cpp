@@ -17,7 +17,7 @@ public:
           settings_(settings),
           rng_(rng),
           counts_(counts),
-          flight_{particle.ray, particle.flux} {}
+          flight_{particle.ray, particle.flux, particle.medium} {}
 
     void follow(std::vector<Deposit>& deposits) {
         for (;;) {

@@ -47,6 +47,12 @@ const Spectrum* medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& 
         bsdf.model);
 }
 
+const Spectrum* medium_after(const Bsdf& bsdf, const Vec3& ng, const Vec3& w,
+                             const Spectrum* before) {
+    const Spectrum* const own = medium_absorption(bsdf, ng, w);
+    return own != nullptr ? own : before;
+}
+
 Spectrum segment_transmittance(const Spectrum* start_absorption, const Spectrum* end_absorption,
                                float distance) {
     const Spectrum* const medium = end_absorption != nullptr ? end_absorption : start_absorption;

@@ -39,6 +39,11 @@ bool is_clear(const Spectrum* absorption);
 /// no medium (all but dielectrics).
 const Spectrum* medium_absorption(const Bsdf& bsdf, const Vec3& ng, const Vec3& w);
 
+/// Absorption [1/m] where a path goes on from a surface along `w`, which it has come to through `before`: a mirror
+/// keeps the path in its medium.
+const Spectrum* medium_after(const Bsdf& bsdf, const Vec3& ng, const Vec3& w,
+                             const Spectrum* before);
+
 /// Beer's law along a traced segment: the medium is the one on the side of the surface where the
 /// segment ends, else (it ends on no interface) where it starts, else none.
 Spectrum segment_transmittance(const Spectrum* start_absorption, const Spectrum* end_absorption,

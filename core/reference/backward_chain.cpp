@@ -43,7 +43,7 @@ bool BackwardChain::turn(const SurfacePoint& hit, const Bsdf& bsdf, Rng& rng, fl
     }
     weight *= flux_correction(hit, w, next);
     if (weight.maxCoeff() <= 0) return false;
-    start_absorption = medium_absorption(bsdf, hit.geometric_normal, next);
+    start_absorption = medium_after(bsdf, hit.geometric_normal, next, start_absorption);
     ray = spawn_ray({hit.position, hit.geometric_normal, hit.offset}, next);
     ++bounces;
     return true;

@@ -5,9 +5,12 @@
 namespace caustics {
 namespace {
 
-// Radiance arriving along a chain from L S+; 0 when its first surface is no caster.
-Spectrum chain_radiance(const Scene& scene, BackwardChain chain, int max_bounces, Rng& rng) {
+// Radiance arriving along a chain from L S+; 0 when its first surface is no caster. Up to the first dielectric the
+// chain does not know its medium: that says it, or the light.
+Spectrum chain_radiance(const Scene& scene, const LightMedia& media, BackwardChain chain,
+                        int max_bounces, Rng& rng) {
     Spectrum result = black();
+    float unknown = 0;  // length of the way in a medium that nothing has named yet [m]
     for (;;) {
         const std::optional<SurfacePoint> hit = scene.intersect(chain.ray);
         if (!hit) {
@@ -17,11 +20,19 @@ Spectrum chain_radiance(const Scene& scene, BackwardChain chain, int max_bounces
             return result;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
+        const bool is_named = chain.start_absorption != nullptr;
+        const Spectrum* const side =
+            medium_absorption(bsdf, hit->geometric_normal, -chain.ray.direction);
+        if (!is_named && side != nullptr)
+            chain.weight *= segment_transmittance(nullptr, side, unknown);
+        unknown += hit->distance;
         chain.arrive(*hit, bsdf);
         const AreaLight* light = scene.area_light(hit->shape);
         if (light != nullptr && chain.bounces > 0 &&
             hit->geometric_normal.dot(-chain.ray.direction) > 0)
-            result += chain.weight * light->radiance;
+            result += chain.weight * light->radiance *
+                      segment_transmittance(is_named ? nullptr : media.of_shape(hit->shape),
+                                            nullptr, unknown);
         float chance = 0;
         if (!is_caster(bsdf) || chain.bounces == max_bounces ||
             !chain.turn(*hit, bsdf, rng, chance))
@@ -31,7 +42,7 @@ Spectrum chain_radiance(const Scene& scene, BackwardChain chain, int max_bounces
 
 }  // namespace
 
-Spectrum caustic_sample(const Scene& scene, const ReceiverPoint& point,
+Spectrum caustic_sample(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
                         const DirectionMixture& mixture, bool with_bsdf, int max_bounces,
                         Rng& rng) {
     const std::optional<Vec3> wi = mixture.sample(rng);
@@ -46,7 +57,7 @@ Spectrum caustic_sample(const Scene& scene, const ReceiverPoint& point,
         .ray = spawn_ray({point.position, point.geometric_normal, point.offset}, *wi),
         .wavelength = {.nm = point.nm}};
     const float weight = cosine / mixture.pdf_w(*wi);
-    return scattering * chain_radiance(scene, chain, max_bounces, rng) * weight;
+    return scattering * chain_radiance(scene, media, chain, max_bounces, rng) * weight;
 }
 
 }  // namespace caustics

@@ -22,6 +22,7 @@ constexpr int most_crossings = 256;
 struct StraightWay {
     std::optional<SurfacePoint> end;   ///< on the first other surface
     float distance = 0;                ///< to there [m]
+    bool crosses = false;              ///< a dielectric: that has said what lies on both its sides
     Spectrum left = Spectrum::Ones();  ///< of light along it
 };
 
@@ -51,6 +52,7 @@ StraightWay straight_way(const Scene& scene, Ray ray) {
             way.end = hit;
             return way;
         }
+        way.crosses = true;
         way.left *= passed(*glass, hit->shading_normal.dot(ray.direction));
         medium = medium_absorption(bsdf, hit->geometric_normal, ray.direction);
         const float left = ray.max_distance - hit->distance;
@@ -64,9 +66,10 @@ StraightWay straight_way(const Scene& scene, Ray ray) {
 /// What reaches a receiver point straight from lights.
 class DirectLight {
 public:
-    DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows, Cosine cosine,
-                ShadowRays& rays)
+    DirectLight(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
+                Shadows shadows, Cosine cosine, ShadowRays& rays)
         : scene_(scene),
+          media_(media),
           p_(point),
           opaque_(shadows == Shadows::opaque),
           cosine_(cosine),
@@ -107,7 +110,11 @@ private:
         const StraightWay way = way_along(*wi);
         const MetLight met = met_light(scene_, way.end, *wi, way.distance);
         if (is_black(met.radiance)) return black();
-        return f * way.left * met.radiance / (met.pdf + pdf(*wi));
+        const Spectrum absorbed =
+            way.end && !way.crosses
+                ? segment_transmittance(media_.of_shape(way.end->shape), nullptr, way.distance)
+                : Spectrum(Spectrum::Ones());
+        return f * way.left * absorbed * met.radiance / (met.pdf + pdf(*wi));
     }
 
     SegmentEnd start() const { return {p_.position, p_.geometric_normal, p_.offset}; }
@@ -120,16 +127,20 @@ private:
         const Seen known =
             rays_.known != nullptr ? rays_.known->sees(p_, light, *rays_.context) : Seen::unknown;
         ++(known == Seen::unknown ? rays_.traced : rays_.spared);
-        if (known != Seen::unknown)
-            return known == Seen::yes ? Spectrum(Spectrum::Ones()) : black();
-        return arrival.end ? seen_of(*arrival.end) : seen_along(arrival.wi);
+        if (known == Seen::no) return black();
+        const float distance = arrival.end ? (arrival.end->position - p_.position).norm() : 0;
+        const Spectrum clear = segment_transmittance(media_.of(light), nullptr, distance);
+        if (known == Seen::yes) return clear;
+        return arrival.end ? seen_of(*arrival.end, clear) : seen_along(arrival.wi);
     }
 
-    // Shares of light that come here.
-    Spectrum seen_of(const SegmentEnd& end) const {
-        if (opaque_) return scene_.occluded(start(), end) ? black() : Spectrum(Spectrum::Ones());
+    // Shares of light that come here; `clear` of the lamp's medium, where the way crosses no dielectric.
+    Spectrum seen_of(const SegmentEnd& end, const Spectrum& clear) const {
+        if (opaque_) return scene_.occluded(start(), end) ? black() : clear;
         const Ray ray = segment_between(start(), end);
-        return ray.max_distance > 0 ? left(straight_way(scene_, ray)) : Spectrum(Spectrum::Ones());
+        if (!(ray.max_distance > 0)) return clear;
+        const StraightWay way = straight_way(scene_, ray);
+        return way.crosses ? left(way) : Spectrum(left(way) * clear);
     }
     Spectrum seen_along(const Vec3& wi) const {
         if (opaque_)
@@ -148,6 +159,7 @@ private:
     }
 
     const Scene& scene_;
+    const LightMedia& media_;
     const ReceiverPoint& p_;
     bool opaque_;
     Cosine cosine_;
@@ -166,20 +178,21 @@ MetLight met_light(const Scene& scene, const std::optional<SurfacePoint>& hit,
     return {light->radiance, light->pdf_w(distance * distance, cos_light)};
 }
 
-Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
-                         Shadows shadows) {
+Spectrum direct_radiance(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
+                         Rng& rng, Shadows shadows) {
     ShadowRays rays;
-    return DirectLight(scene, point, shadows, Cosine::shading, rays).from_all(rng);
+    return DirectLight(scene, media, point, shadows, Cosine::shading, rays).from_all(rng);
 }
 
-Spectrum sampled_light(const Scene& scene, const ReceiverPoint& point, Rng& rng, Cosine cosine) {
+Spectrum sampled_light(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
+                       Rng& rng, Cosine cosine) {
     ShadowRays rays;
-    return DirectLight(scene, point, Shadows::opaque, cosine, rays).by_light_samples(rng);
+    return DirectLight(scene, media, point, Shadows::opaque, cosine, rays).by_light_samples(rng);
 }
 
-Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
-                         ShadowRays& rays) {
-    return DirectLight(scene, point, Shadows::opaque, Cosine::shading, rays).from_all(rng);
+Spectrum direct_radiance(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
+                         Rng& rng, ShadowRays& rays) {
+    return DirectLight(scene, media, point, Shadows::opaque, Cosine::shading, rays).from_all(rng);
 }
 
 }  // namespace caustics

@@ -31,8 +31,8 @@ struct BranchStack {
 Branch continued(const SurfacePoint& hit, const Bsdf& bsdf, const Vec3& direction,
                  const Spectrum& weight, const Branch& before) {
     return {spawn_ray({hit.position, hit.geometric_normal, hit.offset}, direction), weight,
-            medium_absorption(bsdf, hit.geometric_normal, direction), before.bounces + 1,
-            before.wavelength};
+            medium_after(bsdf, hit.geometric_normal, direction, before.start_absorption),
+            before.bounces + 1, before.wavelength};
 }
 
 void scatter(const SurfacePoint& hit, const Bsdf& bsdf, int split_depth, Branch& branch, Rng& rng,

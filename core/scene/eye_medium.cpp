@@ -19,7 +19,7 @@ Vec3 direction(int i, int count) {
         .normalized();
 }
 
-bool absorbs_somewhere(const Shape& shape) {
+bool absorbs(const Shape& shape) {
     const auto* const dielectric = std::get_if<Dielectric>(&shape.bsdf.model);
     return dielectric != nullptr &&
            !(is_black(dielectric->absorption) && is_black(dielectric->ext_absorption));
@@ -34,24 +34,28 @@ const Spectrum* medium_along(const Scene& scene, const Ray& ray) {
 
 }  // namespace
 
-EyeMedium eye_medium(const Scene& scene) {
-    EyeMedium medium;
-    if (std::ranges::none_of(scene.shapes(), absorbs_somewhere)) return medium;
-    const Vec3 eye = scene.camera().position();
-    const Spectrum* found = nullptr;
+bool absorbs_somewhere(const Scene& scene) { return std::ranges::any_of(scene.shapes(), absorbs); }
+
+PlaceMedium medium_around(const Scene& scene, const Vec3& place) {
+    PlaceMedium medium;
+    if (!absorbs_somewhere(scene)) return medium;
     constexpr int rays = 4096;
     for (int i = 0; i < rays; ++i) {
-        const Spectrum* const here = medium_along(scene, {eye, direction(i, rays)});
+        const Spectrum* const here = medium_along(scene, {place, direction(i, rays)});
         if (here == nullptr) continue;
-        if (found == nullptr) found = here;
-        if ((*here != *found).any()) return {black(), true};
+        if (medium.absorption == nullptr) medium.absorption = here;
+        if ((*here != *medium.absorption).any()) return {nullptr, true};
     }
-    if (found != nullptr) medium.absorption = *found;
     return medium;
 }
 
+EyeMedium eye_medium(const Scene& scene) {
+    const PlaceMedium medium = medium_around(scene, scene.camera().position());
+    return {medium.absorption != nullptr ? *medium.absorption : black(), medium.ambiguous};
+}
+
 const Spectrum* medium_at(const Scene& scene, const SegmentEnd& point) {
-    if (std::ranges::none_of(scene.shapes(), absorbs_somewhere)) return nullptr;
+    if (!absorbs_somewhere(scene)) return nullptr;
     constexpr int rays = 256;
     const Frame frame(point.geometric_normal);
     for (int i = 0; i < rays; ++i) {

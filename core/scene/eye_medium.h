@@ -17,6 +17,15 @@ struct EyeMedium {
 
 EyeMedium eye_medium(const Scene& scene);
 
+/// The same of any place in a scene.
+struct PlaceMedium {
+    const Spectrum* absorption = nullptr;  ///< [1/m]; null: no dielectric is seen, or they disagree
+    bool ambiguous = false;
+};
+PlaceMedium medium_around(const Scene& scene, const Vec3& place);
+/// Whether some dielectric of the scene absorbs.
+bool absorbs_somewhere(const Scene& scene);
+
 /// Absorption [1/m] on the side of a surface's normal at one of its points, as a dielectric that is seen from
 /// there says; null where none of 256 rays over the hemisphere meets one first.
 const Spectrum* medium_at(const Scene& scene, const SegmentEnd& point);

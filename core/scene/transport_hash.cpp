@@ -1,6 +1,7 @@
 #include "core/scene/transport_hash.h"
 
 #include "core/math/value_hash.h"
+#include "core/scene/light_media.h"
 
 namespace caustics {
 
@@ -55,6 +56,8 @@ std::uint64_t transport_hash(const Scene& scene) {
         hash.add(static_cast<std::size_t>(family_of(light)));
         add_to(hash, light);
     }
+    // Maps of before forget the medium behind a mirror and before a lamp.
+    if (absorbs_at_mirrors_or_lamps(scene)) hash.add(std::size_t{1});
     return hash.value();
 }
 

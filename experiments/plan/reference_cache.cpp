@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/scene/eye_medium.h"
+#include "core/scene/light_media.h"
 #include "experiments/base/csv.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/plan/reference_extension.h"
@@ -53,7 +54,10 @@ constexpr int indirect_version = 4;
 
 }  // namespace
 
-int reference_version(const Scene& scene) { return is_black(eye_medium(scene).absorption) ? 1 : 2; }
+int reference_version(const Scene& scene) {
+    if (absorbs_at_mirrors_or_lamps(scene)) return 3;
+    return is_black(eye_medium(scene).absorption) ? 1 : 2;
+}
 
 std::string reference_key(const RunRequest& request, const SceneFile& scene, int version) {
     nlohmann::json configuration = {
