@@ -4,7 +4,8 @@ import json
 import sys
 
 READERS = """
-" core/picture/picture_file.cpp core/picture/exr_file.cpp core/picture/png_file.cpp core/base/printable.cpp
+core/picture/picture_file.cpp core/picture/exr_file.cpp core/picture/exr_header.cpp core/picture/png_file.cpp
+core/base/printable.cpp
 core/scene_file/json_document.cpp core/scene_file/json_reader.cpp core/scene_file/values.cpp
 core/scene/scene_reader.cpp core/scene/shape_reader.cpp core/scene/scene_frame.cpp core/material/bsdf_reader.cpp
 core/material/ior_reader.cpp core/material/texture_reader.cpp core/material/texture.cpp core/shapes/cut_shape.cpp
