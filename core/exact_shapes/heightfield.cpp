@@ -42,6 +42,7 @@ double SineHeightfield::max_curvature() const {
 TriangleMesh tessellate_heightfield(const SineHeightfield& field, Cells n) {
     check_resolution(n);
     TriangleMesh mesh;
+    expect_grid(mesh, n.x, n.y);
     for (int j = 0; j <= n.y; ++j)
         for (int i = 0; i <= n.x; ++i) {
             const Vec2d xy(symmetric(i, n.x) * field.half_size.x(),

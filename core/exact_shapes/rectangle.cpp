@@ -12,6 +12,7 @@ using namespace scene_file;
 TriangleMesh tessellate_rectangle(Cells n) {
     check_resolution(n);
     TriangleMesh mesh;
+    expect_grid(mesh, n.x, n.y);
     for (int j = 0; j <= n.y; ++j)
         for (int i = 0; i <= n.x; ++i)
             add_vertex(mesh, {symmetric(i, n.x), symmetric(j, n.y), 0}, Vec3d::UnitZ(),

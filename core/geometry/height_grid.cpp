@@ -27,6 +27,7 @@ Vec2d difference(const HeightGrid& grid, int i, int j) {
 
 TriangleMesh tessellate_grid(const HeightGrid& grid) {
     TriangleMesh mesh;
+    expect_grid(mesh, grid.columns, grid.rows);
     for (int j = 0; j <= grid.rows; ++j)
         for (int i = 0; i <= grid.columns; ++i) {
             const std::size_t at = grid.index(i, j);

@@ -18,6 +18,12 @@ Vec3 world_normal(const Shape& shape, const Vec3d& local_normal) {
     return (shape.flip_normals ? Vec3d(-n) : n).cast<float>();
 }
 
+Box box_of(const std::vector<Vec3>& points) {
+    Box box;
+    for (const Vec3& p : points) box.extend(p);
+    return box;
+}
+
 // 0 of what cannot emit.
 double exact_area(const Shape& shape) {
     if (shape.primitive == Primitive::mesh) return 0;
@@ -74,27 +80,26 @@ std::vector<Vec3> hull_points(const Shape& shape) {
 }
 
 Box bounds(const Shape& shape) {
-    Box box;
     if (shape.primitive == Primitive::sphere) {
         const BoundingSphere sphere = bounding_sphere(shape);
         const Vec3 half = Vec3::Constant(sphere.radius);
         return {sphere.centre - half, sphere.centre + half};
     }
-    for (const Vec3& p : hull_points(shape)) box.extend(p);
-    return box;
+    if (shape.primitive == Primitive::mesh) return box_of(shape.mesh.positions);
+    return box_of(hull_points(shape));
 }
 
 BoundingSphere bounding_sphere(const Shape& shape) {
     if (shape.primitive == Primitive::sphere)
         return {Vec3d(shape.to_world.translation()).cast<float>(),
                 static_cast<float>(shape.to_world.linear().col(0).norm())};
+    // Not by hull_points, which copies a mesh.
+    if (shape.primitive == Primitive::mesh) return bounding_sphere(shape.mesh.positions);
     return bounding_sphere(hull_points(shape));
 }
 
 BoundingSphere bounding_sphere(const std::vector<Vec3>& points) {
-    Box box;
-    for (const Vec3& p : points) box.extend(p);
-    BoundingSphere sphere{box.center(), 0};
+    BoundingSphere sphere{box_of(points).center(), 0};
     for (const Vec3& p : points)
         sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm());
     return sphere;

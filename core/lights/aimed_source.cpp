@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "core/base/interrupt.h"
 
 namespace caustics {
 
@@ -16,24 +19,17 @@ namespace {
 // A part of a caster that is aimed at by itself: a sphere, or the convex hull of some points.
 struct Target {
     BoundingSphere bound;
-    std::vector<Vec3> hull;  // empty: the sphere itself
+    std::span<const Vec3> hull;  // empty: the sphere itself
 };
 
-Target whole(const Shape& shape) {
-    if (shape.primitive == Primitive::sphere) return {bounding_sphere(shape), {}};
-    return {bounding_sphere(shape), hull_points(shape)};
-}
-
 // Hulls of the parts that it is better aimed at one by one; none where it has none.
-std::vector<Target> parts_of(const Shape& shape) {
-    std::vector<Target> parts;
+std::vector<std::vector<Vec3>> parts_of(const Shape& shape) {
+    std::vector<std::vector<Vec3>> parts;
     if (shape.primitive == Primitive::mesh) return parts;
     ask_exact(shape, [&](const auto& kind) {
         if constexpr (requires { kind.hulls(); })
-            for (const std::vector<Vec3d>& local : kind.hulls()) {
-                const auto hull = to_world(shape, local);
-                parts.push_back({bounding_sphere(hull), hull});
-            }
+            for (const std::vector<Vec3d>& local : kind.hulls())
+                parts.push_back(to_world(shape, local));
     });
     return parts;
 }
@@ -41,7 +37,7 @@ std::vector<Target> parts_of(const Shape& shape) {
 // A cone that holds all directions from the points of a sphere to a target. Round the target's
 // middle: a direction to one of its corners turns by at most asin(radius / distance) as its start
 // moves about the sphere, and a cone narrower than a right angle is convex, so it holds what the
-// corners span.
+// corners span. Throws Interrupted when somebody asked.
 DirectionCone cone_towards(const BoundingSphere& from, const Target& target) {
     const Vec3d start = from.centre.cast<double>();
     const Vec3d towards = target.bound.centre.cast<double>() - start;
@@ -53,8 +49,10 @@ DirectionCone cone_towards(const BoundingSphere& from, const Target& target) {
     double half_angle = sine < 1 ? std::asin(sine) : pi_d;
     double by_corners = target.hull.empty() ? pi_d : 0;
     double widest_cosine = 2, widest_reach = 0;
-    for (const Vec3& corner : target.hull) {
-        const Vec3d to_corner = corner.cast<double>() - start;
+    constexpr std::size_t corners_between_looks = 1 << 16;
+    for (std::size_t i = 0; i < target.hull.size(); ++i) {
+        if (i % corners_between_looks == 0) throw_if_interrupted();
+        const Vec3d to_corner = target.hull[i].cast<double>() - start;
         const double reach = to_corner.norm();
         if (reach <= radius) by_corners = pi_d;
         if (by_corners >= pi_d) break;
@@ -81,9 +79,14 @@ double measure_of(const std::vector<DirectionCone>& cones) {
 
 // The cones from a sphere towards one caster, or towards its parts where that is less to fill.
 std::vector<DirectionCone> cones_towards(const BoundingSphere& from, const Shape& caster) {
-    const std::vector<DirectionCone> one = {cone_towards(from, whole(caster))};
+    std::vector<Vec3> corners;
+    std::span<const Vec3> hull = caster.mesh.positions;
+    if (caster.primitive != Primitive::mesh && caster.primitive != Primitive::sphere)
+        hull = corners = hull_points(caster);
+    const std::vector<DirectionCone> one = {cone_towards(from, {bounding_sphere(caster), hull})};
     std::vector<DirectionCone> cones;
-    for (const Target& part : parts_of(caster)) cones.push_back(cone_towards(from, part));
+    for (const std::vector<Vec3>& part : parts_of(caster))
+        cones.push_back(cone_towards(from, {bounding_sphere(part), part}));
     return !cones.empty() && measure_of(cones) < measure_of(one) ? cones : one;
 }
 

@@ -17,6 +17,15 @@ Vec2d on_circle(int step, int steps) {
     return {std::cos(angle), std::sin(angle)};
 }
 
+void expect_grid(TriangleMesh& mesh, int columns, int rows) {
+    const auto width = static_cast<std::size_t>(columns);
+    const auto height = static_cast<std::size_t>(rows);
+    mesh.positions.reserve((width + 1) * (height + 1));
+    mesh.normals.reserve((width + 1) * (height + 1));
+    mesh.uvs.reserve((width + 1) * (height + 1));
+    mesh.triangles.reserve(2 * width * height);
+}
+
 std::uint32_t add_vertex(TriangleMesh& mesh, const Vec3d& position, const Vec3d& normal,
                          const Vec2d& uv) {
     constexpr std::size_t vertices_between_looks = 1 << 12;

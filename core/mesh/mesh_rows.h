@@ -19,6 +19,10 @@ inline double symmetric(int part, int whole) {
     return static_cast<double>(2 * part - whole) / whole;
 }
 
+/// Takes the memory for a grid of so many cells at once: as it grows, a mesh of millions would be copied, and take up
+/// to twice the memory.
+void expect_grid(TriangleMesh& mesh, int columns, int rows);
+
 /// The number of the new vertex.
 std::uint32_t add_vertex(TriangleMesh& mesh, const Vec3d& position, const Vec3d& normal,
                          const Vec2d& uv);

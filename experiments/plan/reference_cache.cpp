@@ -88,8 +88,8 @@ bool ReferenceCache::must_render(const ReferenceRequest& request) const {
 }
 
 void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& options) const {
-    const SceneFile file = load_scene(request.request.scene_file, request.request.overrides);
-    const Scene scene(file.desc);
+    SceneFile file = load_scene(request.request.scene_file, request.request.overrides);
+    const Scene scene(take_shapes(file));
     const int version = reference_version(scene);
     if (reference_key(request.request, file, version) != request.key)
         throw InputError(

@@ -78,7 +78,7 @@ SceneFile load(const SweepFile& sweep, const SceneVariant& variant) {
 /// What loading the variant gives: {"hash", "reference_key"}. Loads it as trials will, so that
 /// whatever is wrong shows before anything runs.
 json examine(const SweepFile& sweep, const SceneVariant& variant) {
-    const SceneFile file = load(sweep, variant);
+    SceneFile file = load(sweep, variant);
     samples_per_pixel(file.desc.sampling, sweep.spp);
     json facts = {{"hash", file.hash}};
     if (!variant.reference) return facts;
@@ -86,7 +86,7 @@ json examine(const SweepFile& sweep, const SceneVariant& variant) {
     PixelSampling fixed_rate = file.desc.sampling;
     fixed_rate.max_sample_count = 0;
     samples_per_pixel(fixed_rate, request.samples_per_pixel);
-    const Scene scene(file.desc);
+    const Scene scene(take_shapes(file));
     const auto require = [&](const std::optional<std::string>& reason) {
         if (reason)
             throw UnsupportedScene(fmt::format("{}: /reference: for {}: {}", sweep.file.string(),

@@ -114,13 +114,13 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     record["memory"]["rss_start_bytes"] = resident_bytes();
     log("parse");
     stopwatch.begin("parse");
-    const SceneFile file = load_scene(trial.request.scene_file, trial.request.overrides);
+    SceneFile file = load_scene(trial.request.scene_file, trial.request.overrides);
     if (file.hash != trial.scene_hash)
         throw InputError(
             fmt::format("{}: changed while the sweep runs", trial.request.scene_file.string()));
     if (files_read(trial.request.method, trial.request.indirect) != trial.method_files)
         throw InputError("a file that a parameter names changed while the sweep runs");
-    const Scene scene(file.desc);
+    const Scene scene(take_shapes(file));
     record_scene(record, file, scene);
     log("precompute and render");
     RunResult result = run(scene, trial.request, options, stopwatch);

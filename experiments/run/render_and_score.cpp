@@ -59,6 +59,14 @@ std::string command(const std::string& verb, const RunRequest& request) {
     return line + fmt::format(" --seed {}", request.seed);
 }
 
+SceneDesc take_shapes(SceneFile& file) {
+    std::vector<Shape> shapes = std::move(file.desc.shapes);
+    file.desc.shapes.clear();
+    SceneDesc desc = file.desc;
+    desc.shapes = std::move(shapes);
+    return desc;
+}
+
 std::map<std::string, std::string> picture_metadata(const RunRequest& request,
                                                     const SceneFile& scene,
                                                     const BuildReport& report) {

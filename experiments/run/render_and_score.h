@@ -27,6 +27,9 @@ struct RunRequest {
 /// The command line of a verb that makes it, with every parameter in force.
 std::string command(const std::string& verb, const RunRequest& request);
 
+/// The whole scene, its shapes taken away from the file: a copy of large meshes takes seconds, and as much memory again. The file keeps the rest.
+SceneDesc take_shapes(SceneFile& file);
+
 /// The resolved configuration as attributes of a picture: scene, method with every parameter in
 /// force and what it chose by itself, seed, samples, code version, and the command that makes it.
 /// The same request gives the same text, whatever the number of threads.

@@ -74,9 +74,9 @@ bool same_bits(const Film& a, const Film& b) {
 
 class SceneVerifier {
 public:
-    SceneVerifier(const SceneFile& file, const std::vector<std::string>& methods,
+    SceneVerifier(SceneDesc desc, const std::vector<std::string>& methods,
                   const RunOptions& options)
-        : desc_(made_small(file.desc)), scene_(desc_), options_(options) {
+        : desc_(made_small(std::move(desc))), scene_(desc_), options_(options) {
         for (const MethodDescription* each : all_methods())
             if (each->facts().has_caustic &&
                 (methods.empty() || std::ranges::count(methods, each->facts().name) > 0))
@@ -282,9 +282,9 @@ std::string SceneReport::text() const {
     return text + (holds() ? "verify: all holds\n" : "verify: something does not hold\n");
 }
 
-SceneReport verify_scene(const SceneFile& file, const std::vector<std::string>& methods,
+SceneReport verify_scene(SceneFile file, const std::vector<std::string>& methods,
                          const RunOptions& options) {
-    return SceneVerifier(file, methods, options).run();
+    return SceneVerifier(std::move(file.desc), methods, options).run();
 }
 
 }  // namespace caustics::experiments

@@ -10,6 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/exact_shapes/sphere.h"
+#include "core/light_path/aimed_emission.h"
 #include "core/reference/light_trace.h"
 #include "core/reference/path_trace.h"
 #include "core/render/renderer.h"
@@ -66,6 +68,16 @@ TEST_F(Interrupt, EndsLoopsOverThreads) {
 
 TEST_F(Interrupt, EndsTheBuildOfAScene) {
     EXPECT_EXIT(interrupt([] { const Scene scene(one_pixel()); }, false),
+                testing::ExitedWithCode(was_interrupted), "");
+}
+
+// Each piece of a large lamp looks at each corner of a caster.
+TEST_F(Interrupt, EndsTheAimingAtAMesh) {
+    SceneDesc desc = one_pixel();
+    desc.shapes[1].primitive = Primitive::mesh;
+    desc.shapes[1].mesh = tessellate_sphere(4);
+    const Scene scene(desc);
+    EXPECT_EXIT(interrupt([&] { const AimedEmission emission(scene); }, false),
                 testing::ExitedWithCode(was_interrupted), "");
 }
 

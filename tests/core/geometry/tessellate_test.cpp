@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/geometry/height_grid.h"
 #include "tests/core/mesh/mesh_measures.h"
 
 namespace caustics {
@@ -23,6 +24,21 @@ SineHeightfield waves() {
     field.waves = {{0.1, {3, 1}, 0.2}, {0.05, {-2, 4}, 1.1}};
     field.half_size = {2, 1};
     return field;
+}
+
+// As a vector grows it takes up to twice the memory, and copies all once more.
+TEST(Tessellate, TakesTheMemoryOfAGridAtOnce) {
+    const auto expect_no_more = [](const TriangleMesh& mesh) {
+        EXPECT_EQ(mesh.positions.capacity(), mesh.positions.size());
+        EXPECT_EQ(mesh.normals.capacity(), mesh.positions.size());
+        EXPECT_EQ(mesh.uvs.capacity(), mesh.positions.size());
+        EXPECT_EQ(mesh.triangles.capacity(), mesh.triangles.size());
+    };
+    HeightGrid grid{.columns = 40, .rows = 25};
+    grid.heights.resize(std::size_t{41} * 26);
+    expect_no_more(tessellate_grid(grid));
+    expect_no_more(tessellate_rectangle({40, 25}));
+    expect_no_more(tessellate_heightfield(waves(), {40, 25}));
 }
 
 struct Case {
