@@ -25,7 +25,7 @@ void add_beam(SetChunk& chunk, std::uint32_t number, Rng& rng) {
                              0);
             chunk.traced.set.rays.push_back({place, Vec3::UnitX()});
             chunk.traced.origins.push_back({place, Vec3::UnitZ()});
-            chunk.departures.push_back({number, Vec3::UnitZ(), 0});
+            chunk.departures.push_back({Vec3::UnitZ(), static_cast<float>(number)});
             chunk.keys.push_back(key);
             if (key != Beam::none) chunk.rays.add(key, ray);
         }
@@ -64,7 +64,7 @@ TEST(SetChunk, JoinsAsOneWouldHaveMadeAll) {
             for (std::size_t i = 0; i < whole.traced.set.rays.size(); ++i) {
                 EXPECT_EQ(parts.traced.set.rays[i].position, whole.traced.set.rays[i].position);
                 EXPECT_EQ(parts.traced.origins[i].position, whole.traced.origins[i].position);
-                EXPECT_EQ(parts.departures[i].shape, whole.departures[i].shape);
+                EXPECT_EQ(parts.departures[i].offset, whole.departures[i].offset);
             }
             for (std::size_t i = 0; i < beams; ++i) {
                 EXPECT_EQ(parts.traced.set.beams[i].corners, whole.traced.set.beams[i].corners);
