@@ -240,8 +240,8 @@ TEST(Render, FollowsLightToTheFarthestCoordinates) {
         "sensor": {"type": "perspective",
             "to_world": [{"look_at": {"origin": [0, -4e17, 4e17], "target": [0, 0, 0], "up": [0, 0, 1]}}],
             "film": {"type": "hdrfilm", "width": 4, "height": 3}},
-        "sun": {"type": "directional", "direction": [-1, -1, -1], "irradiance": 1},
-        "box": {"type": "cube", "to_world": [{"scale": 5e17}], "bsdf": {"type": "dielectric"}},
+        "sun": {"type": "directional", "direction": [-1, -1, -1], "irradiance": 1e-3},
+        "ball": {"type": "sphere", "to_world": [{"scale": 5e17}], "bsdf": {"type": "dielectric"}},
         "floor": {"type": "rectangle", "to_world": [{"scale": 5e17}]}})");
     for (const std::string emission : {"random", "stratified"}) {
         const ProgramResult result =
