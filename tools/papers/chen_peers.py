@@ -22,7 +22,7 @@ SETTING = ("/room/radiance=0", "/sensor/film/width=160", "/sensor/film/height=12
 INDEX = {"bowl": (), "crystal_bowl": ("/bowl/bsdf/int_ior=1.7",)}
 SEEDS = (1, 2, 3)
 PHOTONS = {1: 30000, 2: 30390, 3: 29610}  # POV-Ray's: it has no seed
-RAYS = 128  # a pixel, of Mitsuba's light paths
+RAYS = 256  # a pixel, of Mitsuba's light paths; its sampler wants a square
 CUTOFF = 20  # degrees: a spot light in the point light's place, which lights all that the picture shows
 
 
