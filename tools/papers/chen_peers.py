@@ -2,7 +2,6 @@
 import json
 import os
 import pathlib
-import re
 import shutil
 import statistics
 import subprocess
@@ -15,6 +14,7 @@ from papers.part import Figure, Part, Table
 from papers.study import ROOT
 from papers.verdict import Measured, unmeasured
 from papers.words import spread
+from peers.aimed_lamp import DARK, aimed
 from report import exr
 
 BOWLS = {"bowl": "glass, n = 1.5", "crystal_bowl": "cut crystal, n = 1.7"}
@@ -23,8 +23,7 @@ INDEX = {"bowl": (), "crystal_bowl": ("/bowl/bsdf/int_ior=1.7",)}
 SEEDS = (1, 2, 3)
 PHOTONS = {1: 30000, 2: 30390, 3: 29610}  # POV-Ray's: it has no seed
 RAYS = 256  # a pixel, of Mitsuba's light paths; its sampler wants a square
-DARK = 0.001  # of the table's reflectance, for Mitsuba, whose light paths go on from the table into the bowl and back
-CUTOFF = 20  # degrees: a spot light in the point light's place, which lights all that the picture shows
+CUTOFF = 20  # degrees: the spot light in the point light's place lights all that the picture shows
 
 
 def words(scene):
@@ -48,18 +47,9 @@ def exported(study, scene, target):
 
 
 def aim(file, position):
-    """Mitsuba's point lights send nearly all their particles past the scene; a spot light of the same intensity does not. A dark table."""
-    spot = (f'<emitter type="spot"><transform name="to_world"><lookat origin="{", ".join(map(str, position))}" target="0, 0, 0" up="0, 0, 1"/></transform>\n'
-            f'    <float name="cutoff_angle" value="{CUTOFF}"/><float name="beam_width" value="{0.999 * CUTOFF}"/>')
-    text, count = re.subn(r'<emitter type="point">\s*<point name="position"[^>]*/>', spot, file.read_text(encoding="utf-8"))
-    text, tables = re.subn(r'(<rgb name="reflectance" value=")([^"]*)"', darker, text)
-    if (count, tables) != (1, 1):
-        raise ChildProcessError(f"{file}: the export to Mitsuba is not as this tool knows it")
-    file.write_text(text, encoding="utf-8")
-
-
-def darker(found):
-    return f'{found[1]}{" ".join(repr(DARK * float(each)) for each in found[2].split())}"'
+    """Mitsuba's point lights send nearly all their particles past the scene."""
+    text = file.read_text(encoding="utf-8")
+    file.write_text(aimed(text, file, position, (0, 0, 0), (0, 0, 1), CUTOFF, 0.999 * CUTOFF), encoding="utf-8")
 
 
 def timed(command, folder):

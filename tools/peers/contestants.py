@@ -14,6 +14,7 @@ import subprocess
 import numpy as np
 
 from peers import contest
+from peers.aimed_lamp import DARK, aimed
 from report import exr
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -21,7 +22,6 @@ OUR_METHODS = ("photonmap", "beamtree", "lighttrace")
 FIXED = {"photonmap": {"emission": "stratified", "filter": "epanechnikov"}, "lighttrace": {"emission": "stratified"}}
 REPEATS = {1: 1.0, 2: 1.013, 3: 0.987}  # of POV-Ray's photons, which have no seed
 DEPTH = 18  # of Mitsuba's paths: our 16 events, floor and eye
-DARK = 0.001  # times the floor's reflectance, for Mitsuba, whose pictures are divided by it
 INDEPENDENT = '<sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>'
 JITTER = 0.4  # of POV-Ray's photons, in spacings
 
@@ -157,20 +157,12 @@ def povray_options(text, scene):
 
 
 def aimed_lamp(text, scene):
-    """A spot light of the point light's intensity, as wide as the caster, in its place; a floor so dark that no light comes back to it."""
+    """A spot light as wide as the caster in the point light's place; roulette and a sampler that serve light paths."""
     position, _ = contest.lamp(scene.resolved())
     axis, angle = contest.cone(scene.around, position)
-    origin, target = (", ".join(repr(float(each)) for each in point) for point in (position, np.array(position) + axis))
-    up = "1, 0, 0" if abs(axis[0]) < 0.9 else "0, 1, 0"
-    spot = (f'<emitter type="spot">\n    <transform name="to_world"><lookat origin="{origin}" target="{target}" up="{up}"/></transform>\n'
-            f'    <float name="cutoff_angle" value="{angle!r}"/>\n    <float name="beam_width" value="{0.9999 * angle!r}"/>')
-    darker = lambda found: f'{found[1]}{" ".join(repr(DARK * float(each)) for each in found[2].split())}"'
-    text, floors = re.subn(r'(<rgb name="reflectance" value=")([^"]*)"', darker, text)
+    up = (1, 0, 0) if abs(axis[0]) < 0.9 else (0, 1, 0)
+    text = aimed(text, scene.name, position, np.array(position) + axis, up, angle, 0.9999 * angle)
     text = text.replace('name="rr_depth" value="$max_depth"', 'name="rr_depth" value="$roulette"')
     text = text.replace('<default name="spp"', '<default name="roulette" value="18"/>\n  <default name="spp"')
     # Its stratified sampler without jitter gives each pixel's light paths the same numbers.
-    text = re.sub(r'<sampler type="stratified">.*?</sampler>', INDEPENDENT, text, flags=re.DOTALL)
-    text, count = re.subn(r'<emitter type="point">\s*<point name="position"[^>]*/>', spot, text)
-    if count != 1 or floors != 1:
-        raise ChildProcessError(f"{scene.name}: the export to Mitsuba is not as this tool knows it")
-    return text
+    return re.sub(r'<sampler type="stratified">.*?</sampler>', INDEPENDENT, text, flags=re.DOTALL)
