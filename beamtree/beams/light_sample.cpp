@@ -7,7 +7,6 @@
 #include "beamtree/beams/bin_share.h"
 #include "beamtree/beams/solid_angle.h"
 #include "core/math/rng.h"
-#include "core/scene/light_media.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -41,12 +40,11 @@ LightSample sample_of(const LightPoint& point, const Scene& scene, LightSample s
 
 std::vector<LightSample> sample_lights(const Scene& scene, int per_area_light, std::uint64_t seed) {
     std::vector<LightSample> samples;
-    const LightMedia media(scene);
     for (std::uint32_t i = 0; i < scene.lights().size(); ++i) {
         const Light& light = scene.lights()[i];
         LightSample sample;
         sample.light = i;
-        sample.medium = media.of(i);
+        sample.medium = scene.light_media()[i].absorption;
         if (const auto point = point_of(light)) {
             samples.push_back(sample_of(*point, scene, sample));
         } else if (const auto* area = std::get_if<AreaLight>(&light)) {

@@ -28,7 +28,7 @@ struct LightSample {
                                    ///< directional [W/m^2] across the direction
     std::optional<SpotCone> spot;  ///< of a point light that is one
     std::uint32_t light = 0;       ///< index into Scene::lights
-    const Spectrum* medium = nullptr;  ///< absorption [1/m] where it shines (LightMedia)
+    const Spectrum* medium = nullptr;  ///< absorption [1/m] where it shines (Scene::light_media)
     WavelengthBin bin = {};  ///< its part of all wavelengths where glass disperses it; nm 0: all
     bool drifts = false;     ///< its beams tell each wavelength of the bin apart (BeamSet::ends)
     BinPlaces places = {};   ///< of wavelengths, where it drifts

@@ -63,7 +63,6 @@ AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where, std::uint32
 AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where, std::span<const Light> lights,
                              std::uint32_t first_light)
     : scene_(scene),
-      media_(scene),
       surroundings_(aimed_at(scene, where)),
       kernels_(emission_kernels(isa)),
       sources_(aimed_sources(lights, first_light, surroundings_)) {
@@ -135,7 +134,7 @@ std::optional<LightParticle> AimedEmission::send(std::uint32_t source, std::uint
     sample.region = cone - first_cone_[source];
     const auto ray = caustics::send(scene_.lights()[from.light], surroundings_, from, sample, rng);
     if (!ray) return {};
-    return LightParticle{*ray, flux_[source], media_.of(from.light)};
+    return LightParticle{*ray, flux_[source], scene_.light_media()[from.light].absorption};
 }
 
 }  // namespace caustics

@@ -6,7 +6,6 @@
 #include "core/light_path/emission_samples.h"
 #include "core/light_path/light_path.h"
 #include "core/math/rng.h"
-#include "core/scene/light_media.h"
 #include "core/scene/scene.h"
 
 namespace caustics {
@@ -53,7 +52,6 @@ private:
                                       Rng& rng) const;
 
     const Scene& scene_;
-    LightMedia media_;
     Surroundings surroundings_;
     const EmissionKernels& kernels_;
     std::vector<AimedSource> sources_;       ///< those that send any power towards the casters

@@ -17,7 +17,8 @@ namespace caustics {
 struct LightParticle {
     Ray ray;
     Spectrum flux = black();
-    const Spectrum* medium = nullptr;  ///< absorption [1/m] where the light shines (LightMedia)
+    const Spectrum* medium =
+        nullptr;  ///< absorption [1/m] where the light shines (Scene::light_media)
 };
 
 /// What became of emitted particles. Each branch of a split path has its own end: the ends (missed

@@ -7,8 +7,7 @@ namespace {
 
 // Radiance arriving along a chain from L S+; 0 when its first surface is no caster. Up to the first dielectric the
 // chain does not know its medium: that says it, or the light.
-Spectrum chain_radiance(const Scene& scene, const LightMedia& media, BackwardChain chain,
-                        int max_bounces, Rng& rng) {
+Spectrum chain_radiance(const Scene& scene, BackwardChain chain, int max_bounces, Rng& rng) {
     Spectrum result = black();
     float unknown = 0;  // length of the way in a medium that nothing has named yet [m]
     for (;;) {
@@ -30,9 +29,10 @@ Spectrum chain_radiance(const Scene& scene, const LightMedia& media, BackwardCha
         const AreaLight* light = scene.area_light(hit->shape);
         if (light != nullptr && chain.bounces > 0 &&
             hit->geometric_normal.dot(-chain.ray.direction) > 0)
-            result += chain.weight * light->radiance *
-                      segment_transmittance(is_named ? nullptr : media.of_shape(hit->shape),
-                                            nullptr, unknown);
+            result +=
+                chain.weight * light->radiance *
+                segment_transmittance(is_named ? nullptr : scene.area_light_medium(hit->shape),
+                                      nullptr, unknown);
         float chance = 0;
         if (!is_caster(bsdf) || chain.bounces == max_bounces ||
             !chain.turn(*hit, bsdf, rng, chance))
@@ -42,7 +42,7 @@ Spectrum chain_radiance(const Scene& scene, const LightMedia& media, BackwardCha
 
 }  // namespace
 
-Spectrum caustic_sample(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
+Spectrum caustic_sample(const Scene& scene, const ReceiverPoint& point,
                         const DirectionMixture& mixture, bool with_bsdf, int max_bounces,
                         Rng& rng) {
     const std::optional<Vec3> wi = mixture.sample(rng);
@@ -57,7 +57,7 @@ Spectrum caustic_sample(const Scene& scene, const LightMedia& media, const Recei
         .ray = spawn_ray({point.position, point.geometric_normal, point.offset}, *wi),
         .wavelength = {.nm = point.nm}};
     const float weight = cosine / mixture.pdf_w(*wi);
-    return scattering * chain_radiance(scene, media, chain, max_bounces, rng) * weight;
+    return scattering * chain_radiance(scene, chain, max_bounces, rng) * weight;
 }
 
 }  // namespace caustics

@@ -20,7 +20,6 @@ public:
     IndirectPathTrace(const Scene& scene, const IndirectPathTraceParams& params,
                       const RunOptions& options)
         : scene_(scene),
-          media_(scene),
           params_(params),
           seed_(options.seed),
           paths_per_point_(paths_per_point(params.spp, options)),
@@ -103,22 +102,21 @@ private:
     Spectrum met(const std::optional<SurfacePoint>& hit, const Path& path) const {
         const MetLight found =
             met_light(scene_, hit, path.chain.ray.direction, hit ? hit->distance : 0);
-        const Spectrum clear =
-            hit ? segment_transmittance(media_.of_shape(hit->shape), nullptr, hit->distance)
-                : Spectrum(Spectrum::Ones());
+        const Spectrum clear = hit ? segment_transmittance(scene_.area_light_medium(hit->shape),
+                                                           nullptr, hit->distance)
+                                   : Spectrum(Spectrum::Ones());
         return found.radiance * clear * (path.pdf / (found.pdf + path.pdf));
     }
 
     // Of direct light by samples of lights, and of caustics, leaving a point of the path.
     Spectrum arriving(const ReceiverPoint& at, Rng& rng) const {
-        Spectrum light = sampled_light(scene_, media_, at, rng, Cosine::geometric);
+        Spectrum light = sampled_light(scene_, at, rng, Cosine::geometric);
         if (caster_bounds_.empty()) return light;
         const DirectionMixture mixture(caster_bounds_, at);
-        return light + caustic_sample(scene_, media_, at, mixture, true, params_.max_bounces, rng);
+        return light + caustic_sample(scene_, at, mixture, true, params_.max_bounces, rng);
     }
 
     const Scene& scene_;
-    LightMedia media_;
     IndirectPathTraceParams params_;
     std::uint64_t seed_;
     int paths_per_point_;

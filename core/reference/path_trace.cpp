@@ -12,7 +12,6 @@ class PathTrace : public CausticEstimator {
 public:
     PathTrace(const Scene& scene, const PathTraceParams& params, const RunOptions& options)
         : scene_(scene),
-          media_(scene),
           seed_(options.seed),
           max_bounces_(params.max_bounces),
           paths_per_point_(paths_per_point(params.spp, options)),
@@ -35,12 +34,11 @@ private:
         const DirectionMixture mixture(caster_bounds_, receiver);
         Rng rng(seed_, Stage::path_trace, point.id);
         return mean_of(paths_per_point_, [&] {
-            return caustic_sample(scene_, media_, receiver, mixture, with_bsdf, max_bounces_, rng);
+            return caustic_sample(scene_, receiver, mixture, with_bsdf, max_bounces_, rng);
         });
     }
 
     const Scene& scene_;
-    LightMedia media_;
     std::uint64_t seed_;
     int max_bounces_;
     int paths_per_point_;

@@ -66,10 +66,9 @@ StraightWay straight_way(const Scene& scene, Ray ray) {
 /// What reaches a receiver point straight from lights.
 class DirectLight {
 public:
-    DirectLight(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
-                Shadows shadows, Cosine cosine, ShadowRays& rays)
+    DirectLight(const Scene& scene, const ReceiverPoint& point, Shadows shadows, Cosine cosine,
+                ShadowRays& rays)
         : scene_(scene),
-          media_(media),
           p_(point),
           opaque_(shadows == Shadows::opaque),
           cosine_(cosine),
@@ -112,7 +111,8 @@ private:
         if (is_black(met.radiance)) return black();
         const Spectrum absorbed =
             way.end && !way.crosses
-                ? segment_transmittance(media_.of_shape(way.end->shape), nullptr, way.distance)
+                ? segment_transmittance(scene_.area_light_medium(way.end->shape), nullptr,
+                                        way.distance)
                 : Spectrum(Spectrum::Ones());
         return f * way.left * absorbed * met.radiance / (met.pdf + pdf(*wi));
     }
@@ -129,7 +129,8 @@ private:
         ++(known == Seen::unknown ? rays_.traced : rays_.spared);
         if (known == Seen::no) return black();
         const float distance = arrival.end ? (arrival.end->position - p_.position).norm() : 0;
-        const Spectrum clear = segment_transmittance(media_.of(light), nullptr, distance);
+        const Spectrum clear =
+            segment_transmittance(scene_.light_media()[light].absorption, nullptr, distance);
         if (known == Seen::yes) return clear;
         return arrival.end ? seen_of(*arrival.end, clear) : seen_along(arrival.wi);
     }
@@ -159,7 +160,6 @@ private:
     }
 
     const Scene& scene_;
-    const LightMedia& media_;
     const ReceiverPoint& p_;
     bool opaque_;
     Cosine cosine_;
@@ -178,21 +178,20 @@ MetLight met_light(const Scene& scene, const std::optional<SurfacePoint>& hit,
     return {light->radiance, light->pdf_w(distance * distance, cos_light)};
 }
 
-Spectrum direct_radiance(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
-                         Rng& rng, Shadows shadows) {
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         Shadows shadows) {
     ShadowRays rays;
-    return DirectLight(scene, media, point, shadows, Cosine::shading, rays).from_all(rng);
+    return DirectLight(scene, point, shadows, Cosine::shading, rays).from_all(rng);
 }
 
-Spectrum sampled_light(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
-                       Rng& rng, Cosine cosine) {
+Spectrum sampled_light(const Scene& scene, const ReceiverPoint& point, Rng& rng, Cosine cosine) {
     ShadowRays rays;
-    return DirectLight(scene, media, point, Shadows::opaque, cosine, rays).by_light_samples(rng);
+    return DirectLight(scene, point, Shadows::opaque, cosine, rays).by_light_samples(rng);
 }
 
-Spectrum direct_radiance(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
-                         Rng& rng, ShadowRays& rays) {
-    return DirectLight(scene, media, point, Shadows::opaque, Cosine::shading, rays).from_all(rng);
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         ShadowRays& rays) {
+    return DirectLight(scene, point, Shadows::opaque, Cosine::shading, rays).from_all(rng);
 }
 
 }  // namespace caustics

@@ -3,7 +3,6 @@
 #include "core/caustic_estimator.h"
 #include "core/known_shadows.h"
 #include "core/math/rng.h"
-#include "core/scene/light_media.h"
 #include "core/scene/scene.h"
 
 namespace caustics {
@@ -20,17 +19,16 @@ enum class Cosine {
 /// transparent ones light goes straight through dielectrics, times what Fresnel's formulas let pass at
 /// each (the angle taken on its thinner side) and Beer's law between. Light that meets none of them is absorbed by the
 /// medium that its lamp shines into.
-Spectrum direct_radiance(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
-                         Rng& rng, Shadows shadows = Shadows::opaque);
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         Shadows shadows = Shadows::opaque);
 
 /// The same with opaque shadows, whose rays are spared where they are known. Counts them.
-Spectrum direct_radiance(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
-                         Rng& rng, ShadowRays& rays);
+Spectrum direct_radiance(const Scene& scene, const ReceiverPoint& point, Rng& rng,
+                         ShadowRays& rays);
 
 /// The part of it that samples of lights bring, with opaque shadows. The rest is what rays along samples of the
 /// BSDF meet of lights, times pdf / (met.pdf + pdf) of the direction.
-Spectrum sampled_light(const Scene& scene, const LightMedia& media, const ReceiverPoint& point,
-                       Rng& rng, Cosine cosine);
+Spectrum sampled_light(const Scene& scene, const ReceiverPoint& point, Rng& rng, Cosine cosine);
 
 /// What a ray meets of lights, and the density with which sampled_light() chooses its direction [1/sr].
 struct MetLight {

@@ -27,8 +27,7 @@ TileSampler::TileSampler(const Scene& scene, const CameraSamples& samples,
     : scene_(scene),
       samples_(samples),
       seed_(options.seed),
-      eye_absorption_(eye_medium(scene).absorption),
-      light_media_(scene) {}
+      eye_absorption_(eye_medium(scene).absorption) {}
 
 void TileSampler::sample(const Tile& tile, int first, int count, std::vector<PixelSums>& sums,
                          TileWorker& worker) const {
@@ -97,8 +96,8 @@ SpectrumSum TileSampler::add_eye_path(const EyePath& path, Rng& rng, PixelSums& 
 
 Spectrum TileSampler::direct(const ReceiverPoint& point, Rng& rng, TileWorker& worker) const {
     if (worker.shadow_rays.known != nullptr)
-        return direct_radiance(scene_, light_media_, point, rng, worker.shadow_rays);
-    return direct_radiance(scene_, light_media_, point, rng, estimator_->shadows());
+        return direct_radiance(scene_, point, rng, worker.shadow_rays);
+    return direct_radiance(scene_, point, rng, estimator_->shadows());
 }
 
 void TileSampler::add_caustic(TileWorker& worker, std::vector<PixelSums>& sums) const {

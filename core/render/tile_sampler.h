@@ -8,7 +8,6 @@
 #include "core/render/camera_samples.h"
 #include "core/render/eye_path.h"
 #include "core/render/film_layers.h"
-#include "core/scene/light_media.h"
 
 namespace caustics {
 
@@ -89,7 +88,6 @@ private:
     const CameraSamples& samples_;
     std::uint64_t seed_;
     Spectrum eye_absorption_;  ///< of the medium that camera rays start in
-    LightMedia light_media_;
     const CausticEstimator* estimator_ = nullptr;
     const IndirectEstimator* indirect_ = nullptr;
     Parts parts_;

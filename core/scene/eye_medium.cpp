@@ -40,12 +40,8 @@ PlaceMedium medium_around(const Scene& scene, const Vec3& place) {
     PlaceMedium medium;
     if (!absorbs_somewhere(scene)) return medium;
     constexpr int rays = 4096;
-    for (int i = 0; i < rays; ++i) {
-        const Spectrum* const here = medium_along(scene, {place, direction(i, rays)});
-        if (here == nullptr) continue;
-        if (medium.absorption == nullptr) medium.absorption = here;
-        if ((*here != *medium.absorption).any()) return {nullptr, true};
-    }
+    for (int i = 0; i < rays; ++i)
+        if (!medium.agrees_with(medium_along(scene, {place, direction(i, rays)}))) break;
     return medium;
 }
 

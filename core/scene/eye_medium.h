@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/scene/place_medium.h"
 #include "core/scene/scene.h"
 
 namespace caustics {
@@ -18,10 +19,6 @@ struct EyeMedium {
 EyeMedium eye_medium(const Scene& scene);
 
 /// The same of any place in a scene.
-struct PlaceMedium {
-    const Spectrum* absorption = nullptr;  ///< [1/m]; null: no dielectric is seen, or they disagree
-    bool ambiguous = false;
-};
 PlaceMedium medium_around(const Scene& scene, const Vec3& place);
 /// Whether some dielectric of the scene absorbs.
 bool absorbs_somewhere(const Scene& scene);

@@ -8,8 +8,6 @@
 namespace caustics {
 namespace {
 
-constexpr std::size_t no_light = ~std::size_t{0};
-
 // On the side of a surface's normal. Where no dielectric is seen from there (a lamp that faces down in a pool), the
 // surfaces that are seen are asked for those that they see.
 PlaceMedium medium_before(const Scene& scene, const SegmentEnd& point) {
@@ -25,10 +23,7 @@ PlaceMedium medium_before(const Scene& scene, const SegmentEnd& point) {
         if (!hit) continue;
         const bool front = hit->geometric_normal.dot(ray.direction) < 0;
         const Vec3 normal = front ? hit->geometric_normal : Vec3(-hit->geometric_normal);
-        const Spectrum* const there = medium_at(scene, {hit->position, normal, hit->offset});
-        if (there == nullptr) continue;
-        if (medium.absorption == nullptr) medium.absorption = there;
-        if ((*there != *medium.absorption).any()) return {nullptr, true};
+        if (!medium.agrees_with(medium_at(scene, {hit->position, normal, hit->offset}))) break;
     }
     return medium;
 }
@@ -43,9 +38,7 @@ PlaceMedium medium_over(const Scene& scene, const AreaLight& light) {
             scene.shapes()[light.shape], along, static_cast<float>(radical_inverse<2>(i, 0.25)));
         const PlaceMedium here = medium_before(scene, {at.position, at.normal, at.offset});
         if (here.ambiguous) return here;
-        if (here.absorption == nullptr) continue;
-        if (medium.absorption == nullptr) medium = here;
-        if ((*here.absorption != *medium.absorption).any()) return {nullptr, true};
+        if (!medium.agrees_with(here.absorption)) break;
     }
     return medium;
 }
@@ -58,15 +51,12 @@ PlaceMedium medium_of(const Scene& scene, const Light& light) {
 
 }  // namespace
 
-LightMedia::LightMedia(const Scene& scene) : media_(scene.lights().size()) {
-    if (!absorbs_somewhere(scene)) return;
-    light_of_shape_.assign(scene.shapes().size(), no_light);
-    for (std::size_t i = 0; i < media_.size(); ++i) {
-        const Light& light = scene.lights()[i];
-        media_[i] = medium_of(scene, light);
-        if (const auto* const area = std::get_if<AreaLight>(&light))
-            light_of_shape_[area->shape] = i;
-    }
+std::vector<PlaceMedium> light_media(const Scene& scene) {
+    std::vector<PlaceMedium> media(scene.lights().size());
+    if (absorbs_somewhere(scene))
+        std::ranges::transform(scene.lights(), media.begin(),
+                               [&](const Light& light) { return medium_of(scene, light); });
+    return media;
 }
 
 bool absorbs_at_mirrors_or_lamps(const Scene& scene) {
@@ -74,16 +64,10 @@ bool absorbs_at_mirrors_or_lamps(const Scene& scene) {
     const auto is_mirror = [&](std::uint32_t caster) {
         return !std::holds_alternative<Dielectric>(scene.shapes()[caster].bsdf.model);
     };
-    if (std::ranges::any_of(scene.casters(), is_mirror)) return true;
-    const LightMedia media(scene);
-    for (std::size_t light = 0; light < scene.lights().size(); ++light)
-        if (!is_clear(media.of(light))) return true;
-    return false;
-}
-
-const Spectrum* LightMedia::of_shape(std::uint32_t shape) const {
-    if (light_of_shape_.empty() || light_of_shape_[shape] == no_light) return nullptr;
-    return media_[light_of_shape_[shape]].absorption;
+    return std::ranges::any_of(scene.casters(), is_mirror) ||
+           std::ranges::any_of(scene.light_media(), [](const PlaceMedium& medium) {
+               return !is_clear(medium.absorption);
+           });
 }
 
 }  // namespace caustics

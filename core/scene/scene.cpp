@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/scene/intersector.h"
+#include "core/scene/light_media.h"
 
 namespace caustics {
 
@@ -27,6 +28,7 @@ Scene::Scene(SceneDesc desc)
         lights_.emplace_back(AreaLight{i, *shape.radiance, AreaSampler(shape)});
     }
     intersector_ = std::make_unique<const Intersector>(shapes_);
+    light_media_ = caustics::light_media(*this);
 }
 
 Scene::~Scene() = default;
@@ -52,6 +54,11 @@ bool Scene::occluded_along(const SegmentEnd& from, const Vec3& direction) const 
 const AreaLight* Scene::area_light(std::uint32_t shape) const {
     const std::int32_t index = light_of_shape_[shape];
     return index < 0 ? nullptr : &std::get<AreaLight>(lights_[static_cast<std::size_t>(index)]);
+}
+
+const Spectrum* Scene::area_light_medium(std::uint32_t shape) const {
+    const std::int32_t index = light_of_shape_[shape];
+    return index < 0 ? nullptr : light_media_[static_cast<std::size_t>(index)].absorption;
 }
 
 float Scene::diameter() const { return bounds_.diagonal().norm(); }

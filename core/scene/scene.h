@@ -10,6 +10,7 @@
 #include "core/geometry/shape.h"
 #include "core/lights/light.h"
 #include "core/scene/camera.h"
+#include "core/scene/place_medium.h"
 
 namespace caustics {
 
@@ -71,6 +72,10 @@ public:
     Surroundings surroundings() const { return {shapes_, casters_, bounds_}; }
     /// The area light on a shape, or nullptr.
     const AreaLight* area_light(std::uint32_t shape) const;
+    /// The medium that each of the lights shines into.
+    const std::vector<PlaceMedium>& light_media() const { return light_media_; }
+    /// Absorption [1/m] before the area light on a shape; null: none is known, or there is no light.
+    const Spectrum* area_light_medium(std::uint32_t shape) const;
     /// What a ray finds that meets nothing [W m^-2 sr^-1].
     const Spectrum& background() const { return background_; }
     /// Radiance that receivers are lit by from all sides without shadows, times their albedo; it is no
@@ -96,6 +101,7 @@ private:
     Vec3d origin_;
     Box bounds_;
     std::unique_ptr<const Intersector> intersector_;
+    std::vector<PlaceMedium> light_media_;
 };
 
 /// Whether light of different wavelengths goes different ways at some surface.

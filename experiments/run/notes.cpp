@@ -12,7 +12,6 @@
 #include "core/mesh/vertex_normals.h"
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
-#include "core/scene/light_media.h"
 #include "core/scene/lights_on_casters.h"
 
 namespace caustics::experiments {
@@ -85,13 +84,6 @@ std::string where_it_lies(const Scene& scene, const LightOnCaster& light) {
         "the caustic, if there is one, is not to be trusted (move the light to one side, by a "
         "millionth of its coordinates or more)",
         at.x(), at.y(), at.z(), scene.shapes()[light.caster].name);
-}
-
-bool any_light_is_ambiguous(const Scene& scene) {
-    const LightMedia media(scene);
-    for (std::size_t i = 0; i < scene.lights().size(); ++i)
-        if (media.is_ambiguous(i)) return true;
-    return false;
 }
 
 /// Parameters of a method that differ from its defaults.
@@ -210,7 +202,7 @@ std::vector<std::string> notes_on(const Scene& scene) {
         all.push_back(
             "the dielectrics about the eye disagree on the medium it is in: what it sees directly "
             "is not attenuated (ext_absorption says what is round a dielectric)");
-    if (any_light_is_ambiguous(scene))
+    if (std::ranges::any_of(scene.light_media(), &PlaceMedium::ambiguous))
         all.push_back(
             "the dielectrics about a light disagree on the medium it shines into: its light is not "
             "attenuated before it meets one (ext_absorption says what is round a dielectric)");

@@ -46,8 +46,7 @@ support::Moments direct_irradiance(const Scene& scene, const ReceiverPoint& poin
     support::Moments direct;
     for (int i = 0; i < samples; ++i) {
         Rng rng(point.id + 1, Stage::test, static_cast<std::uint64_t>(i));
-        direct.add(static_cast<double>(direct_radiance(scene, LightMedia(scene), point, rng)[0] *
-                                       pi / reflectance));
+        direct.add(static_cast<double>(direct_radiance(scene, point, rng)[0] * pi / reflectance));
     }
     return direct;
 }

@@ -213,14 +213,12 @@ TEST(Medium, OfALampAbsorbsItsDirectLight) {
     const ReceiverPoint p = support::probe(points, 0, {0.1, -0.4, 0}, Vec3d::UnitZ(), 0);
     for (const Shadows shadows : {Shadows::opaque, Shadows::transparent}) {
         Rng rng(1, Stage::test, 0);
-        const Spectrum point =
-            direct_radiance(points, LightMedia(points), p, rng, shadows) * (pi / 0.5F);
+        const Spectrum point = direct_radiance(points, p, rng, shadows) * (pi / 0.5F);
         SpectrumSum square = SpectrumSum::Zero();
-        const LightMedia media(squares);
         const ReceiverPoint q = support::probe(squares, 0, {0.1, -0.4, 0}, Vec3d::UnitZ(), 0);
         constexpr int samples = 40'000;
         for (int i = 0; i < samples; ++i)
-            square += direct_radiance(squares, media, q, rng, shadows).cast<double>();
+            square += direct_radiance(squares, q, rng, shadows).cast<double>();
         const Spectrum of_point = from_point({0.1, -0.4, 0}, lamp);
         const Spectrum of_square = from_square({0.1, -0.4, 0}, u, v, false);
         for (Eigen::Index i = 0; i < 3; ++i) {
@@ -307,16 +305,16 @@ TEST(LightMedia, AreThoseOfTheDielectricsAbout) {
     desc.lights = {support::point_light(lamp, 1), support::point_light({0, 0, 4}, 1),
                    support::directional_light({0, 0, -1}, 1)};
     const Scene scene(desc);
-    const LightMedia media(scene);
-    ASSERT_NE(media.of(0), nullptr);
-    EXPECT_TRUE((*media.of(0) == ink).all());
-    ASSERT_NE(media.of(1), nullptr);
-    EXPECT_TRUE(is_black(*media.of(1)));
-    EXPECT_EQ(media.of(2), nullptr);
+    const std::vector<PlaceMedium>& media = scene.light_media();
+    ASSERT_NE(media[0].absorption, nullptr);
+    EXPECT_TRUE((*media[0].absorption == ink).all());
+    ASSERT_NE(media[1].absorption, nullptr);
+    EXPECT_TRUE(is_black(*media[1].absorption));
+    EXPECT_EQ(media[2].absorption, nullptr);
     desc.shapes.push_back(support::sphere("ball", {1, -1, 1}, 0.3, support::glass(1.5F)));
-    const LightMedia others{Scene(desc)};
-    EXPECT_TRUE(others.is_ambiguous(0));
-    EXPECT_FALSE(others.is_ambiguous(1));
+    const Scene others(desc);
+    EXPECT_TRUE(others.light_media()[0].ambiguous);
+    EXPECT_FALSE(others.light_media()[1].ambiguous);
 }
 
 }  // namespace

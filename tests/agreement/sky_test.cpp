@@ -51,7 +51,7 @@ TEST(Sky, LightsAnOpenFloorByPiTimesItsRadiance) {
     const Scene scene(std::move(desc));
     Rng rng(1, Stage::test, 0);
     const ReceiverPoint point = support::probe(scene, 0, {1, 0, 0}, Vec3d::UnitZ(), 0);
-    const Spectrum leaving = direct_radiance(scene, LightMedia(scene), point, rng);
+    const Spectrum leaving = direct_radiance(scene, point, rng);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(leaving[c], 0.5F * static_cast<float>(c + 1), 1e-5F);
 }
 
@@ -60,9 +60,7 @@ TEST(Sky, IsHiddenByABallInDirectLight) {
     support::Moments direct;
     for (std::uint64_t i = 0; i < 20'000; ++i) {
         Rng rng(1, Stage::test, i);
-        direct.add(
-            static_cast<double>(direct_radiance(scene, LightMedia(scene), below(scene), rng)[0]) /
-            0.5);
+        direct.add(static_cast<double>(direct_radiance(scene, below(scene), rng)[0]) / 0.5);
     }
     EXPECT_NEAR(direct.mean(), radiance * (1 - share), 4 * direct.standard_error());
 }

@@ -113,9 +113,8 @@ TEST(Spot, LightsAFloorDirectly) {
     Rng rng(1, Stage::test, 0);
     for (const double r : distances) {
         const ReceiverPoint point = support::probe(floor, 0, {r, 0, 0}, Vec3d::UnitZ(), 0);
-        EXPECT_NEAR(
-            static_cast<double>(direct_radiance(floor, LightMedia(floor), point, rng).mean()),
-            0.5 / pi_d * truth(r), 1e-5)
+        EXPECT_NEAR(static_cast<double>(direct_radiance(floor, point, rng).mean()),
+                    0.5 / pi_d * truth(r), 1e-5)
             << r;
     }
 }

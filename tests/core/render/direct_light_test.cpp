@@ -25,7 +25,7 @@ support::Moments direct(const Scene& scene, const Vec3d& at, const Vec3& wo = Ve
     support::Moments moments;
     for (std::uint64_t i = 0; i < 20'000; ++i) {
         Rng rng(1, Stage::test, i);
-        const Spectrum value = direct_radiance(scene, LightMedia(scene), point, rng);
+        const Spectrum value = direct_radiance(scene, point, rng);
         EXPECT_TRUE(is_finite(value));
         moments.add(static_cast<double>(value[1]));
     }
@@ -75,7 +75,7 @@ TEST(DirectLight, IsSamplesOfLightsAndWhatRaysMeet) {
         support::Moments value;
         for (std::uint64_t i = 0; i < 20'000; ++i) {
             Rng rng(1, Stage::test, i);
-            Spectrum light = sampled_light(scene, LightMedia(scene), p, rng, Cosine::geometric);
+            Spectrum light = sampled_light(scene, p, rng, Cosine::geometric);
             const float u0 = rng.next(), u1 = rng.next();
             const Vec3 wi = *sample_direction(*p.bsdf, p.shading_normal, p.wo, u0, u1, 0);
             const auto hit = scene.intersect(spawn_ray({p.position, wi, p.offset}, wi));
@@ -97,12 +97,9 @@ TEST(DirectLight, IsFluxOfTheTrueAreaByTheGeometricCosine) {
     p.shading_normal = Vec3(-1, 0, 1).normalized();
     Rng rng(1, Stage::test, 0);
     const double along = 3 * 0.5 / pi_d;
-    EXPECT_NEAR(
-        static_cast<double>(sampled_light(scene, LightMedia(scene), p, rng, Cosine::shading)[0]),
-        along, 1e-5);
-    EXPECT_NEAR(
-        static_cast<double>(sampled_light(scene, LightMedia(scene), p, rng, Cosine::geometric)[0]),
-        along * std::sqrt(0.5), 1e-5);
+    EXPECT_NEAR(static_cast<double>(sampled_light(scene, p, rng, Cosine::shading)[0]), along, 1e-5);
+    EXPECT_NEAR(static_cast<double>(sampled_light(scene, p, rng, Cosine::geometric)[0]),
+                along * std::sqrt(0.5), 1e-5);
 }
 
 // E = pi L (R/d)^2 cos of a whole sphere above the horizon.
@@ -142,8 +139,7 @@ SceneDesc under_a_pane(const Spectrum& absorption = black()) {
 
 Spectrum transparent(const Scene& scene, const Vec3d& at) {
     Rng rng(1, Stage::test, 0);
-    return direct_radiance(scene, LightMedia(scene),
-                           support::probe(scene, 0, at, Vec3d::UnitZ(), 0), rng,
+    return direct_radiance(scene, support::probe(scene, 0, at, Vec3d::UnitZ(), 0), rng,
                            Shadows::transparent);
 }
 
@@ -187,8 +183,7 @@ TEST(DirectLight, OfALampBehindGlassIsItsLightTimesWhatPasses) {
     const ReceiverPoint point = support::probe(scene, 0, {0, 0, 0}, Vec3d::UnitZ(), 0);
     for (std::uint64_t i = 0; i < 2'000; ++i) {
         Rng rng(1, Stage::test, i);
-        value.add(static_cast<double>(
-            direct_radiance(scene, LightMedia(scene), point, rng, Shadows::transparent)[1]));
+        value.add(static_cast<double>(direct_radiance(scene, point, rng, Shadows::transparent)[1]));
     }
     const double expected =
         1e4 * 0.04 * 0.04 / 4 * 0.5 / pi_d * std::pow(1 - support::fresnel(1, 1.5), 2);
