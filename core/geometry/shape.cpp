@@ -18,7 +18,7 @@ Vec3 world_normal(const Shape& shape, const Vec3d& local_normal) {
     return (shape.flip_normals ? Vec3d(-n) : n).cast<float>();
 }
 
-Box box_of(const std::vector<Vec3>& points) {
+Box box_of(std::span<const Vec3> points) {
     Box box;
     for (const Vec3& p : points) box.extend(p);
     return box;
@@ -68,10 +68,10 @@ Eigen::AlignedBox3d local_bounds(const Shape& shape) {
     return box;
 }
 
-std::vector<Vec3> hull_points(const Shape& shape) {
+std::span<const Vec3> hull_points(const Shape& shape, std::vector<Vec3>& corners) {
     if (shape.primitive == Primitive::mesh) return shape.mesh.positions;
     const Eigen::AlignedBox3d box = local_bounds(shape);
-    std::vector<Vec3> corners;
+    corners.clear();
     for (int i = 0; i < 8; ++i)
         corners.push_back(
             Vec3d(shape.to_world * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)))
@@ -85,20 +85,19 @@ Box bounds(const Shape& shape) {
         const Vec3 half = Vec3::Constant(sphere.radius);
         return {sphere.centre - half, sphere.centre + half};
     }
-    if (shape.primitive == Primitive::mesh) return box_of(shape.mesh.positions);
-    return box_of(hull_points(shape));
+    std::vector<Vec3> corners;
+    return box_of(hull_points(shape, corners));
 }
 
 BoundingSphere bounding_sphere(const Shape& shape) {
     if (shape.primitive == Primitive::sphere)
         return {Vec3d(shape.to_world.translation()).cast<float>(),
                 static_cast<float>(shape.to_world.linear().col(0).norm())};
-    // Not by hull_points, which copies a mesh.
-    if (shape.primitive == Primitive::mesh) return bounding_sphere(shape.mesh.positions);
-    return bounding_sphere(hull_points(shape));
+    std::vector<Vec3> corners;
+    return bounding_sphere(hull_points(shape, corners));
 }
 
-BoundingSphere bounding_sphere(const std::vector<Vec3>& points) {
+BoundingSphere bounding_sphere(std::span<const Vec3> points) {
     BoundingSphere sphere{box_of(points).center(), 0};
     for (const Vec3& p : points)
         sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/exact_shapes/exact_kinds.h"
@@ -39,10 +40,10 @@ struct BoundingSphere {
     float radius = 0;
 };
 BoundingSphere bounding_sphere(const Shape& shape);
-BoundingSphere bounding_sphere(const std::vector<Vec3>& points);
+BoundingSphere bounding_sphere(std::span<const Vec3> points);
 /// Points whose convex hull contains the shape: a mesh's vertices, the corners of an exact shape's
-/// local bounds.
-std::vector<Vec3> hull_points(const Shape& shape);
+/// local bounds, which are put into `corners`.
+std::span<const Vec3> hull_points(const Shape& shape, std::vector<Vec3>& corners);
 /// Number of triangles; 0 for an exact shape.
 std::size_t triangle_count(const Shape& shape);
 

@@ -80,9 +80,8 @@ double measure_of(const std::vector<DirectionCone>& cones) {
 // The cones from a sphere towards one caster, or towards its parts where that is less to fill.
 std::vector<DirectionCone> cones_towards(const BoundingSphere& from, const Shape& caster) {
     std::vector<Vec3> corners;
-    std::span<const Vec3> hull = caster.mesh.positions;
-    if (caster.primitive != Primitive::mesh && caster.primitive != Primitive::sphere)
-        hull = corners = hull_points(caster);
+    std::span<const Vec3> hull;
+    if (caster.primitive != Primitive::sphere) hull = hull_points(caster, corners);
     const std::vector<DirectionCone> one = {cone_towards(from, {bounding_sphere(caster), hull})};
     std::vector<DirectionCone> cones;
     for (const std::vector<Vec3>& part : parts_of(caster))
