@@ -37,8 +37,9 @@ std::vector<Parameter<Params>> beam_param_table() {
         parameter::whole_number<Params>(
             &BeamParams::max_beams, 1, 1'000'000'000,
             {.key = "max_beams",
-             .meaning = "Most beams of several events, those with the most light; each takes about "
-                        "half a kilobyte while they are traced.",
+             .meaning =
+                 "Most beams of several events, those with the most light (a division of a polygon "
+                 "counts as one); each takes about half a kilobyte while they are traced.",
              .unit = "beams"})
             .only_if(
                 [](const Params& params) { return params.max_beams != BeamParams{}.max_beams; }),

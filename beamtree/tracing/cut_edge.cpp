@@ -5,13 +5,6 @@
 #include "beamtree/tracing/cut_piece.h"
 
 namespace caustics::beamtree {
-namespace {
-
-// How often an edge is halved.
-constexpr int bisections = 14;
-
-}  // namespace
-
 bool goes_on(const PathPoint& p) { return p.alive && p.next.goes_on(); }
 bool alike(const PathPoint& a, const PathPoint& b) {
     if (!goes_on(a) || !goes_on(b)) return goes_on(a) == goes_on(b);
@@ -20,12 +13,12 @@ bool alike(const PathPoint& a, const PathPoint& b) {
     return same_piece(a.next, b.next);
 }
 
-CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b) {
+CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b, int halvings) {
     CutEdge edge;
     if (alike(a, b)) return edge;
-    const auto search = [&path](const PathPoint& from, const PathPoint& to) {
+    const auto search = [&](const PathPoint& from, const PathPoint& to) {
         return last_and_next(
-            from, to, bisections, [&](const PathPoint& p) { return alike(p, from); },
+            from, to, halvings, [&](const PathPoint& p) { return alike(p, from); },
             [&](const PathPoint& p, const PathPoint& q, float t) { return path.between(p, q, t); });
     };
     const Vec3& p = a.origin.position;

@@ -18,8 +18,10 @@ struct CutEdge {
     PathPoint first;             ///< that does as the second one
 };
 
-/// Finds by bisection where along an edge light does another thing. Neighbours find the same points, because
-/// both begin at the same end.
-CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b);
+/// Most halvings of an edge that cut_edge() is asked for: where it is cut is then known to a 16,000th.
+constexpr int most_halvings = 14;
+/// Finds by so many bisections where along an edge light does another thing. Neighbours find the same points,
+/// because both begin at the same end.
+CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b, int halvings);
 
 }  // namespace caustics::beamtree

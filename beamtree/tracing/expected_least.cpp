@@ -129,7 +129,9 @@ double expected_least(const Scene& scene, const SceneBoxes& boxes,
     const std::size_t count = draw_count(draws.polygons(), settings.max_beams);
     Rng rng(options.seed, Stage::beams, lights.size());
     draws.draw(casters, count, rng);
-    const TraceSettings alone{.max_bounces = settings.max_bounces, .prune = settings.prune};
+    const TraceSettings alone{.max_bounces = settings.max_bounces,
+                              .prune = settings.prune,
+                              .least_divided = settings.least_divided};
     const auto most = static_cast<std::uint64_t>(a_polygon * static_cast<double>(count)) + 1;
     const double mean = draws.mean_light();
     for (double share = first_try; share > last_try; share *= step) {

@@ -1,6 +1,7 @@
 #include "beamtree/tracing/next_beams.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "beamtree/tracing/cut_edge.h"
 
@@ -125,18 +126,30 @@ double NextBeams::flux(const Piece& piece) const {
 }
 
 // Its corners' light is a bound to a few times: between them a surface may reflect less.
-bool NextBeams::is_too_weak(const Piece& piece) const {
+double NextBeams::most_light(const Piece& piece) const {
     constexpr double slack = 4;
-    if (least_.budget.least() == 0) return false;
     double strength = 0;
     for (const PathPoint& corner : piece)
         strength = std::max(strength, static_cast<double>(corner.origin.weight.mean()) /
                                           static_cast<double>(corner.origin.left));
     const auto& [a, b, c] = piece;
     return slack * strength *
-               measure(set_.light, a.origin.position, b.origin.position, c.origin.position) <
-           least_.budget.least();
+           measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
 }
+
+bool NextBeams::is_too_weak(const Piece& piece) const {
+    return least_.budget.least() > 0 && most_light(piece) < least_.budget.least();
+}
+
+int NextBeams::halvings(const Piece& piece) const {
+    constexpr int fewest = 4;
+    if (least_.to_divide == 0) return most_halvings;
+    const double times = most_light(piece) / least_.to_divide;
+    return std::clamp(6 + static_cast<int>(std::log2(std::max(times, 1e-3))), fewest,
+                      most_halvings);
+}
+
+void NextBeams::count_search(const Piece& piece) { least_.budget.count(most_light(piece)); }
 
 // As LightBender::flux: by the corners' weights where they are alike; near total reflection the way is
 // gone from places inside as well.

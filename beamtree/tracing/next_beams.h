@@ -22,6 +22,7 @@ using BeamCorners = std::array<BeamCorner, 3>;
 /// What a beam must have of light to be followed, were media clear.
 struct LeastLight {
     double of_polygon;   ///< over its share of its polygon [W]
+    double to_divide;    ///< to be divided to see what it meets [W]
     BeamBudget& budget;  ///< counts beams
 };
 
@@ -55,12 +56,20 @@ public:
     double flux(const Piece& piece) const;
     /// Whether a part of a polygon has too little light for the budget, whatever it meets.
     bool is_too_weak(const Piece& piece) const;
+    /// Whether it has enough to be divided to see what it meets.
+    bool may_divide(const Piece& piece) const { return most_light(piece) >= least_.to_divide; }
+    /// How exactly the edges of a part of a polygon are cut (cut_edge.h): the better the more light it has.
+    int halvings(const Piece& piece) const;
+    /// A part of a polygon is divided to see what it meets, which costs as much as a beam and counts as one.
+    void count_search(const Piece& piece);
     /// Completes light that no beam carries on, and counts it, `flux` [W], by its cause.
     void leave_out(const LeftOut& part, double flux, double& cause);
     std::vector<RestPhoton> take_rest() { return std::move(photons_); }
     std::vector<NextChunk> take() { return std::move(chunks_); }
 
 private:
+    /// Of a part of a polygon, were media clear, whatever it meets [W].
+    double most_light(const Piece& piece) const;
     Spectrum flux(std::uint32_t parent, const BeamCorners& corners, Event event) const;
     NextChunk& chunk_of(std::uint32_t shape, Event event);
 

@@ -55,7 +55,7 @@ void land_all(const Scene& scene, const LitCaster& surface, Level& level, int th
 class NextBounce {
 public:
     NextBounce(const Scene& scene, const SceneBoxes& boxes, const LitCaster& surface,
-               const Level& level, double least_of_polygon, const RestPhotons& rest,
+               const Level& level, const LeastLight& least, const RestPhotons& rest,
                BeamBudget budget)
         : scene_(scene),
           boxes_(boxes),
@@ -63,7 +63,8 @@ public:
           level_(level),
           set_(level.traced.set),
           budget_(std::move(budget)),
-          next_(scene, surface, level, {least_of_polygon, budget_}, rest, balance_) {}
+          next_(scene, surface, level, {least.of_polygon, least.to_divide, budget_}, rest,
+                balance_) {}
 
     // `goes_on` is asked after each beam.
     template <typename GoesOn>
@@ -204,6 +205,15 @@ private:
         for (const Piece& part : quarters(piece, between)) cut(beam, path, part, share, splits);
     }
 
+    bool may_search(const Piece& piece, float share) const {
+        return share > least_share && next_.may_divide(piece);
+    }
+    // Quarters a piece that is too large for what it meets.
+    void search(std::uint32_t beam, const Path& path, const Piece& piece, float share, int splits) {
+        next_.count_search(piece);
+        quarter(beam, path, piece, share / 4, splits);
+    }
+
     void cut_triangle(std::uint32_t beam, const std::array<std::uint32_t, 3>& rays) {
         cut(beam, Path(scene_, surface_, level_, beam), piece_of(rays), share_of(beam),
             most_splits);
@@ -222,24 +232,27 @@ private:
         }
         const bool one = alike(a, b) && alike(b, c) && alike(c, a);
         bool more = !alike(a, b) && !alike(b, c) && !alike(c, a);
+        if (!next_.may_divide(piece)) splits = 0;
         if (splits > 0 && (more || (one && part_widely(a.next, b.next, c.next)))) {
             quarter(beam, path, piece, share, splits - 1);
             return;
         }
         bool coarse = one && (is_coarse(a, b) || is_coarse(b, c) || is_coarse(c, a));
-        if (coarse && share > least_share) {
-            quarter(beam, path, piece, share / 4, splits);
+        if (coarse && may_search(piece, share)) {
+            search(beam, path, piece, share, splits);
             return;
         }
-        const std::array<CutEdge, 3> edges = {cut_edge(path, a, b), cut_edge(path, b, c),
-                                              cut_edge(path, c, a)};
+        const int halvings = next_.halvings(piece);
+        const std::array<CutEdge, 3> edges = {cut_edge(path, a, b, halvings),
+                                              cut_edge(path, b, c, halvings),
+                                              cut_edge(path, c, a, halvings)};
         for (std::size_t i = 0; i < 3; ++i) {
             more = more || edges[i].hides_another;
             coarse = coarse || (edges[i].is_cut && (is_coarse(piece[i], edges[i].last) ||
                                                     is_coarse(edges[i].first, piece[(i + 1) % 3])));
         }
-        if (coarse && share > least_share) {
-            quarter(beam, path, piece, share / 4, splits);
+        if (coarse && may_search(piece, share)) {
+            search(beam, path, piece, share, splits);
             return;
         }
         if (splits > 0 && more) {
@@ -262,12 +275,12 @@ private:
     // A piece none of whose corners goes on.
     void cut_dark(std::uint32_t beam, const Path& path, const Piece& piece, float share,
                   int splits) {
-        if (share > least_share && hides_a_caster(piece)) {
-            quarter(beam, path, piece, share / 4, splits);
+        if (may_search(piece, share) && hides_a_caster(piece)) {
+            search(beam, path, piece, share, splits);
             return;
         }
         if (!goes_on(path.middle(piece))) return;
-        if (splits > 0)
+        if (splits > 0 && next_.may_divide(piece))
             quarter(beam, path, piece, share, splits - 1);
         else
             balance_.lost += next_.flux(piece);
@@ -357,7 +370,7 @@ private:
     std::size_t beams() const { return level_.traced.set.beams.size(); }
 
     NextBounce bounce(BeamBudget budget) const {
-        return {scene_, boxes_, surface_, level_, least_.of_polygon, rest_, std::move(budget)};
+        return {scene_, boxes_, surface_, level_, least_, rest_, std::move(budget)};
     }
 
     // Nothing where the budget has no room.

@@ -19,6 +19,8 @@ struct TraceSettings {
     int max_bounces = 1;
     /// Of the light of the first events' beams on average: beams with less, were media clear, are not followed.
     double prune = 1e-3;
+    /// Of the same light: parts of polygons with less, were media clear, are not divided to see what they meet.
+    double least_divided = 0;
     /// Beams of several events, of all lights and casters: those with the most light.
     std::uint64_t max_beams = BeamBudget::no_limit;
     /// Beams that pass all receivers' bounds by more than this [m] are left out; none: no beams are.

@@ -10,6 +10,15 @@ namespace {
 
 // How far a point may lie off a receiver's bounds, of the scene's diameter.
 constexpr float near_receiver = 1e-3F;
+// What parts of polygons that are divided have of all light: of a pane of two triangles a millionth.
+constexpr double divided_share = 0x1p-20 / 2;
+
+double least_divided(const std::vector<CasterMesh>& casters, std::size_t lights) {
+    double polygons = 0;
+    for (const CasterMesh& caster : casters)
+        polygons += static_cast<double>(caster.mesh.triangles.size());
+    return divided_share * polygons * static_cast<double>(lights);
+}
 
 }  // namespace
 
@@ -78,6 +87,7 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     const TraceSettings settings{.intensity = intensity,
                                  .max_bounces = params.max_bounces,
                                  .prune = params.prune,
+                                 .least_divided = least_divided(traced.casters, lights.size()),
                                  .max_beams = static_cast<std::uint64_t>(params.max_beams),
                                  .receiver_margin = near_receiver * scene.diameter() + footprint,
                                  .rest_photons = rest_photons};

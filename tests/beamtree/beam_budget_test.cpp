@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "beamtree/tracing/beam_tracing.h"
 #include "beamtree/tracing/expected_least.h"
 #include "beamtree/tracing/traced_scene.h"
 #include "tests/beamtree/beam_scenes.h"
@@ -138,6 +139,31 @@ TEST(BeamBudget, IsSharedByLightsTheSameWithAnyThreads) {
         for (std::size_t k = 0; k < one.sets[i].beams.size(); ++k)
             EXPECT_TRUE((one.sets[i].beams[k].flux == other.sets[i].beams[k].flux).all());
     }
+}
+
+// Parts of polygons with little light are not divided: fewer beams, and what they would have carried is told as lost.
+TEST(BeamBudget, DividesOnlyWhatHasLight) {
+    const Scene scene(glass_ball());
+    const std::vector<CasterMesh> casters = caster_meshes(scene, 16);
+    const std::vector<LightSample> lights = sample_lights(scene, 1, 1);
+    const auto traced = [&](double least) {
+        return trace_all_beams(scene, casters, lights,
+                               {.max_bounces = 6, .prune = 0, .least_divided = least}, {});
+    };
+    const auto count = [](const TracedBeams& beams) {
+        std::size_t sum = 0;
+        for (const BeamSet& set : beams.sets) sum += set.beams.size();
+        return sum;
+    };
+    const TracedBeams all = traced(0), most = traced(1e-3), some = traced(0.1), none = traced(1e9);
+    EXPECT_LT(count(most), count(all));
+    EXPECT_LT(count(some), count(most));
+    EXPECT_LT(count(none), count(some));
+    EXPECT_NEAR(all.balance.lost, 0, 1e-12 * all.balance.lit);
+    EXPECT_LT(most.balance.lost, 1e-6 * most.balance.lit);
+    EXPECT_GT(some.balance.lost, 1e-6 * some.balance.lit);
+    EXPECT_GT(none.balance.lost, some.balance.lost);
+    EXPECT_LT(none.balance.lost, 1e-3 * none.balance.lit);
 }
 
 // What is left out is told: prune and budget each by its share.
