@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/scene/intersector.h"
-#include "core/scene/light_media.h"
+#include "core/scene/medium_finder.h"
 
 namespace caustics {
 
@@ -28,7 +28,8 @@ Scene::Scene(SceneDesc desc)
         lights_.emplace_back(AreaLight{i, *shape.radiance, AreaSampler(shape)});
     }
     intersector_ = std::make_unique<const Intersector>(shapes_);
-    light_media_ = caustics::light_media(*this);
+    const MediumFinder media(shapes_, *intersector_);
+    for (const Light& light : lights_) light_media_.push_back(media.of(light));
 }
 
 Scene::~Scene() = default;
@@ -49,6 +50,14 @@ bool Scene::occluded(const SegmentEnd& from, const SegmentEnd& to) const {
 
 bool Scene::occluded_along(const SegmentEnd& from, const Vec3& direction) const {
     return intersector_->occluded(spawn_ray(from, direction));
+}
+
+PlaceMedium Scene::medium_around(const Vec3& place) const {
+    return MediumFinder(shapes_, *intersector_).around(place);
+}
+
+const Spectrum* Scene::medium_before(const SegmentEnd& point) const {
+    return MediumFinder(shapes_, *intersector_).before(point);
 }
 
 const AreaLight* Scene::area_light(std::uint32_t shape) const {

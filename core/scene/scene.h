@@ -72,6 +72,10 @@ public:
     Surroundings surroundings() const { return {shapes_, casters_, bounds_}; }
     /// The area light on a shape, or nullptr.
     const AreaLight* area_light(std::uint32_t shape) const;
+    /// The medium about a place, and the absorption [1/m] before a point of a surface, as the dielectrics say that are
+    /// seen from there (medium_finder.h).
+    PlaceMedium medium_around(const Vec3& place) const;
+    const Spectrum* medium_before(const SegmentEnd& point) const;
     /// The medium that each of the lights shines into.
     const std::vector<PlaceMedium>& light_media() const { return light_media_; }
     /// Absorption [1/m] before the area light on a shape; null: none is known, or there is no light.

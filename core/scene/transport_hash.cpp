@@ -1,7 +1,7 @@
 #include "core/scene/transport_hash.h"
 
 #include "core/math/value_hash.h"
-#include "core/scene/light_media.h"
+#include "core/scene/eye_medium.h"
 
 namespace caustics {
 

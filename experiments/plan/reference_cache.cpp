@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/scene/eye_medium.h"
-#include "core/scene/light_media.h"
 #include "experiments/base/csv.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/plan/reference_extension.h"

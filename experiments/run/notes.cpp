@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/light_path/light_path.h"
+#include "core/material/optics.h"
 #include "core/mesh/vertex_normals.h"
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
@@ -184,6 +185,18 @@ std::string lost_light(const Method& method, const BuildReport& report, double l
         method.name, 100 * lost, 100 * pruned, beyond);
 }
 
+// Whether light comes from infinitely far away through a medium that absorbs.
+bool comes_through_a_medium(const Scene& scene) {
+    return std::ranges::any_of(scene.lights(), [&](const Light& light) {
+        const auto point = point_of(light);
+        const bool parallel = point && !point->position;
+        if (!parallel && !surrounds(light)) return false;
+        const Vec3 way = parallel ? point->travel : Vec3(-Vec3::UnitZ());
+        const Vec3 outside = scene.bounds().center() - 2 * scene.diameter() * way;
+        return !is_clear(scene.medium_around(outside).absorption);
+    });
+}
+
 }  // namespace
 
 std::vector<std::string> notes_on(const Scene& scene) {
@@ -206,6 +219,12 @@ std::vector<std::string> notes_on(const Scene& scene) {
         all.push_back(
             "the dielectrics about a light disagree on the medium it shines into: its light is not "
             "attenuated before it meets one (ext_absorption says what is round a dielectric)");
+    if (comes_through_a_medium(scene))
+        all.push_back(
+            "light from infinitely far away comes through a medium that absorbs and has no "
+            "surface: "
+            "it starts at the scene's bounds, and what meets no dielectric is not attenuated (give "
+            "the medium a surface, or the light a place)");
     return all;
 }
 

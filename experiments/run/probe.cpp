@@ -11,7 +11,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/coordinate_limit.h"
-#include "core/scene/eye_medium.h"
 #include "experiments/run/notes.h"
 
 namespace caustics::experiments {
@@ -111,7 +110,7 @@ Questions questions(const Scene& scene, const MethodOf<Estimator>& method, const
         receiver->id = row;
         receiver->radius = point.radius;
         receiver->medium =
-            medium_at(scene, {receiver->position, receiver->geometric_normal, receiver->offset});
+            scene.medium_before({receiver->position, receiver->geometric_normal, receiver->offset});
         asked.points.push_back(*receiver);
         asked.rows.push_back(row);
     }

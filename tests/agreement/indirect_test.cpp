@@ -9,7 +9,6 @@
 #include "core/reference/light_trace.h"
 #include "core/render/direct_light.h"
 #include "core/render/renderer.h"
-#include "core/scene/eye_medium.h"
 #include "photonmap/global_photon_map.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
@@ -226,7 +225,7 @@ TEST(IndirectLight, IsTheSameByAllMethodsInAPool) {
     for (const Vec3d& at : {Vec3d(-0.6, -0.5, 0), Vec3d(0.8, 0.2, 0)}) {
         points.push_back(support::probe(scene, 0, at, Vec3d::UnitZ(), points.size(), 0.08F));
         ReceiverPoint& point = points.back();
-        point.medium = medium_at(scene, {point.position, point.geometric_normal, point.offset});
+        point.medium = scene.medium_before({point.position, point.geometric_normal, point.offset});
     }
     expect_same_by_all_methods(scene, points);
 }

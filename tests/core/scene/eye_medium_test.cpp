@@ -63,8 +63,8 @@ TEST(EyeMedium, IsNotGuessedWhereDielectricsDisagree) {
 TEST(SurfaceMedium, IsOnTheSideOfTheNormal) {
     const Scene scene(pool(1, ink));
     const auto at = [&](double z, double up) {
-        return medium_at(scene,
-                         {Vec3d(0.3, -0.2, z).cast<float>(), Vec3d(0, 0, up).cast<float>(), 1e-5F});
+        return scene.medium_before(
+            {Vec3d(0.3, -0.2, z).cast<float>(), Vec3d(0, 0, up).cast<float>(), 1e-5F});
     };
     ASSERT_NE(at(-2, 1), nullptr);
     EXPECT_TRUE((*at(-2, 1) == ink).all());
@@ -72,7 +72,7 @@ TEST(SurfaceMedium, IsOnTheSideOfTheNormal) {
     ASSERT_NE(at(0.5, -1), nullptr);
     EXPECT_TRUE(is_black(*at(0.5, -1)));
     const Scene clear(pool(1, black()));
-    EXPECT_EQ(medium_at(clear, {Vec3(0, 0, -2), Vec3::UnitZ(), 1e-5F}), nullptr);
+    EXPECT_EQ(clear.medium_before({Vec3(0, 0, -2), Vec3::UnitZ(), 1e-5F}), nullptr);
 }
 
 // Gives every point the radiance 1.

@@ -124,6 +124,24 @@ TEST(Notes, SayWhereTheEyesMediumCannotBeTold) {
     EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"eye", "ext_absorption"}));
 }
 
+TEST(Notes, SayThatLightFromAfarStartsAtTheBounds) {
+    SceneDesc desc = flat_mirror();
+    const Spectrum ink = Spectrum::Constant(0.5F);
+    desc.camera = support::camera({0, 0, 0.5}, {0, 0.1, 0}, {0, 0, 1}, 60, 4, 4);
+    desc.shapes[0] = support::horizontal("water", 1, 1, true, support::glass(1.33F, 1, ink));
+    const auto lit_by = [&](const Light& light) {
+        desc.lights = {light};
+        return any_holds(notes_on(Scene(desc)), {"infinitely far", "bounds"});
+    };
+    const Light sun = support::directional_light({0.1, 0, -1}, 1);
+    EXPECT_FALSE(lit_by(sun)) << "the water lies below";
+    desc.shapes[0] =
+        support::horizontal("water", 1, 1, true, support::glass(1.33F, 1, black(), ink));
+    EXPECT_TRUE(lit_by(sun));
+    EXPECT_TRUE(lit_by(ConstantLight{Spectrum::Ones()}));
+    EXPECT_FALSE(lit_by(support::point_light({0, 0, 3}, 1)));
+}
+
 TEST(Notes, NameDielectricsThatCross) {
     SceneDesc desc = flat_mirror();
     desc.shapes.push_back(support::sphere("left", {0, 0, 3}, 0.2, support::glass(1.5F)));
