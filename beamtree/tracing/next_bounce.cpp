@@ -218,6 +218,20 @@ private:
         cut(beam, Path(scene_, surface_, level_, beam), piece_of(rays), share_of(beam),
             most_splits);
     }
+    std::array<CutEdge, 3> cut_edges(const Path& path, const Piece& piece) const {
+        const auto& [a, b, c] = piece;
+        const int halvings = next_.halvings(piece);
+        return {cut_edge(path, a, b, halvings), cut_edge(path, b, c, halvings),
+                cut_edge(path, c, a, halvings)};
+    }
+    // Whether an edge is too long for what it meets up to where it is cut.
+    static bool cuts_coarsely(const Piece& piece, const std::array<CutEdge, 3>& edges) {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (edges[i].is_cut && (is_coarse(piece[i], edges[i].last) ||
+                                    is_coarse(edges[i].first, piece[(i + 1) % 3])))
+                return true;
+        return false;
+    }
     // What becomes of a piece whose corners do different things. It has `share` of its polygon.
     void cut(std::uint32_t beam, const Path& path, const Piece& piece, float share, int splits) {
         throw_if_interrupted();
@@ -242,15 +256,9 @@ private:
             search(beam, path, piece, share, splits);
             return;
         }
-        const int halvings = next_.halvings(piece);
-        const std::array<CutEdge, 3> edges = {cut_edge(path, a, b, halvings),
-                                              cut_edge(path, b, c, halvings),
-                                              cut_edge(path, c, a, halvings)};
-        for (std::size_t i = 0; i < 3; ++i) {
-            more = more || edges[i].hides_another;
-            coarse = coarse || (edges[i].is_cut && (is_coarse(piece[i], edges[i].last) ||
-                                                    is_coarse(edges[i].first, piece[(i + 1) % 3])));
-        }
+        const std::array<CutEdge, 3> edges = cut_edges(path, piece);
+        more = more || std::ranges::any_of(edges, &CutEdge::hides_another);
+        coarse = coarse || cuts_coarsely(piece, edges);
         if (coarse && may_search(piece, share)) {
             search(beam, path, piece, share, splits);
             return;
