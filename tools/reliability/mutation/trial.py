@@ -1,0 +1,69 @@
+"""One mutant against the tests that reach it, until one of them notices or the budget is spent."""
+import re
+import time
+from collections import Counter, defaultdict
+
+FIRST_SLICE = 0.2  # seconds of tests; the next slices are twice as long each
+START = 0.1  # seconds to start a program
+
+
+class Trials:
+    """Remembers which tests notice mutants of which file: they are asked first."""
+
+    def __init__(self, tests, sandbox, budget):
+        self.tests, self.sandbox, self.budget = tests, sandbox, budget
+        self.kills = defaultdict(Counter)
+
+    def judge(self, site):
+        """The result as a dict: status (killed, survived, unreached), by which test, how many tests, seconds."""
+        reaching = [test for test in self.tests if site.number in test.reached]
+        known = self.kills[site.file]
+        reaching.sort(key=lambda test: (test.seconds + 0.01) * len(test.reached) ** 0.5 / (1 + 4 * known[test.name]))
+        begin, asked, status, killer = time.monotonic(), 0, "survived" if reaching else "unreached", ""
+        for tests in slices(reaching, self.budget):
+            asked += len(tests)
+            killer = self.run(site, tests)
+            if killer:
+                status = "killed"
+                known[killer] += 1
+                break
+        return {"number": site.number, "status": status, "by": killer, "reaching": len(reaching), "asked": asked,
+                "seconds": round(time.monotonic() - begin, 2)}
+
+    def run(self, site, tests):
+        """The test that notices, "" where none does; all tests are of one program."""
+        names = ":".join(test.filter for test in tests)
+        most = 5 + 10 * (START + sum(test.seconds for test in tests))
+        code, output = self.sandbox.run([tests[0].program, f"--gtest_filter={names}", "--gtest_fail_fast"], most,
+                                        CAUSTICS_MUTANT=str(site.number))
+        if code == 0:
+            return ""
+        if code == 99:
+            raise ValueError("the sandbox cannot be made: " + output)
+        prefix = tests[0].name[:-len(tests[0].filter)]
+        failed = re.search(r"^\[  FAILED  \] (\w\S*\.[^\s,]+)", output, re.MULTILINE)
+        if failed:
+            return prefix + failed[1]
+        begun = re.findall(r"^\[ RUN      \] (\S+)", output, re.MULTILINE)
+        return prefix + (begun[-1] if begun else tests[0].filter)
+
+
+def slices(tests, budget):
+    """Lists of tests of one program each, longer and longer, in the given order, within so many seconds in all."""
+    spent, length, current = 0, FIRST_SLICE, []
+    for test in tests:
+        if spent + test.seconds > budget:
+            continue
+        spent += test.seconds
+        current.append(test)
+        if sum(t.seconds for t in current) >= length:
+            yield from by_program(current)
+            length, current = 2 * length, []
+    yield from by_program(current)
+
+
+def by_program(tests):
+    programs = {}
+    for test in tests:
+        programs.setdefault(test.program, []).append(test)
+    return programs.values()
