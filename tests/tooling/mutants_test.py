@@ -27,7 +27,8 @@ enum Kind { kind = 4 };
 constexpr int twice(int x) { return 2 * x; }
 int shifted(int x, int by = 3) { return x + by; }
 double least(double x, double y) { return std::min(x, y); }
-bool inside(double x) { return x < 8 && x > -x; }
+bool inside(double x) { return x < 8 &&
+    x > -x; }
 bool above(double x, double y) { return x < y; }
 int main() {
     int sum = 0;  // not 0
@@ -53,12 +54,12 @@ class Mutants(unittest.TestCase):
         lines = {site.line for site in self.sites}
         self.assertFalse(lines & {1, 2, 3, 4, 5})
         self.assertEqual([site.after for site in self.sites if site.line == 6], ["x - by"])
-        self.assertNotIn("10", [site.after for site in self.sites if site.line == 14])  # the label of a case
+        self.assertNotIn("10", [site.after for site in self.sites if site.line == 15])  # the label of a case
 
     def test_each_operator_finds_its_places(self):
         self.assertEqual({site.operator for site in self.sites},
                          {"relation", "arithmetic", "logic", "condition", "constant", "deletion", "sign", "min-max"})
-        of_reals = [site.after for site in self.sites if site.line == 9]
+        of_reals = [site.after for site in self.sites if site.line == 10]
         self.assertEqual(of_reals, ["x >= y"])  # a tie of two computed reals tells nothing
         self.assertIn("x <= 8", [site.after for site in self.sites if site.line == 8])
 
@@ -76,6 +77,11 @@ class Mutants(unittest.TestCase):
             self.assertEqual(site.number, i)
             self.assertFalse(any(site.meets(other) for other in draws[0][:i]))
 
+    def test_lines_keep_their_numbers(self):
+        for site in self.sites:
+            text = drawing.rewritten(self.file.read_bytes(), [site]).decode().split("#line 1\n")[1]
+            self.assertEqual(text.count("\n"), SOURCE.count("\n"), site)
+
     def test_one_program_is_every_mutant(self):
         wanted = [("arithmetic", "x - by"), ("min-max", "std::max(x, y)"), ("relation", "x >= y"), ("deletion", "")]
         sites = [next(site for site in self.sites if (site.operator, site.after) == what) for what in wanted]
@@ -83,14 +89,14 @@ class Mutants(unittest.TestCase):
             site.number = number
         program = self.build(sites)
         self.assertEqual(self.said(program), "8 2 1")
-        self.assertEqual([self.said(program, CAUSTICS_MUTANT=str(n)) for n in range(4)], ["-1 2 0", "8 3 1", "8 2 0", "0 2 0"])
+        said = [self.said(program, CAUSTICS_MUTANT=str(number)) for number in range(4)]
+        self.assertEqual(said, ["-1 2 0", "8 3 1", "8 2 0", "0 2 0"])
         note = self.folder / "reached"
         self.said(program, CAUSTICS_MUTANTS_REACHED=str(note))
         self.assertEqual(note.read_text(encoding="utf-8").split(), ["0", "1", "2", "3"])
 
     def build(self, sites):
         text = drawing.rewritten(self.file.read_bytes(), sites)
-        self.assertEqual(text.decode().split("#line 1\n")[1].count("\n"), SOURCE.count("\n"))
         (self.folder / "mutant.h").write_text(schemata.HEADER, encoding="utf-8")
         (self.folder / "mutant.cpp").write_text(schemata.SOURCE.replace("@COUNT@", str(len(sites))), encoding="utf-8")
         (self.folder / "all.cpp").write_bytes(text)

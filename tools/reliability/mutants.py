@@ -56,6 +56,7 @@ def sites_of(options, tree, kept):
     tree.configure()
     sites, places = draw(Parser(ROOT, tree.path, tree.build), options.files, options.seed, options.count, options.jobs)
     print(f"{len(sites)} sites of {places} places drawn", flush=True)
+    # A copy that was never built does not know its tests: everything is built then.
     programs = sorted({pathlib.Path(test.program).name for test in suite.listed(tree.build, labels(options))})
     sites = tree.compile(sites, options.files, programs)
     kept.write_text(json.dumps({"asked": asked, "places": places,
@@ -90,27 +91,30 @@ def tests_of(options, tree, kept):
 
 
 def judge_all(options, tree, sites, tests):
-    """Judges what has no line in the results yet; all lines."""
+    """Judges what has no line in the results yet, and again what survived a smaller budget; a line a mutant."""
     results = tree.build.parent / "mutants.jsonl"
-    done = [json.loads(line) for line in results.read_text(encoding="utf-8").splitlines()] if results.exists() else []
+    lines = results.read_text(encoding="utf-8").splitlines() if results.exists() else []
+    rows = {row["number"]: row for row in map(json.loads, lines)}
     trials = Trials(tests, Sandbox(options.memory / "trial", tree.path), options.budget)
-    file_of = {site.number: site.file for site in sites}
-    for row in done:
-        trials.kills[file_of[row["number"]]][row["by"]] += 1 if row["by"] else 0
-    known = {row["number"] for row in done}
     with results.open("a", encoding="utf-8") as file:
+        for site in sites:
+            if site.number in rows:
+                trials.remember(site, rows[site.number]["by"])
         for site in sites[:options.first]:
-            if site.number not in known:
-                row = trials.judge(site)
-                done.append(row)
-                file.write(json.dumps(row) + "\n")
+            if site.number not in rows or is_open(rows[site.number], options.budget):
+                rows[site.number] = trials.judge(site)
+                file.write(json.dumps(rows[site.number]) + "\n")
                 file.flush()
-    return done
+    return list(rows.values())
+
+
+def is_open(row, budget):
+    return row["status"] == "survived" and row["asked"] < row["reaching"] and row["budget"] < budget
 
 
 def table(sites, rows):
     """A line a file, and what survived."""
-    site_of = {site.number: site for site in sites}
+    site_of = {site.number: site for site in sites}  # the compiler may have dropped some numbers
     counts = {}
     for row in rows:
         counts.setdefault(site_of[row["number"]].file, Counter())[row["status"]] += 1

@@ -123,7 +123,8 @@ class Finder:
 
     def replace_operator(self, cursor, left, right):
         start, end = extent_of(left)[1], extent_of(right)[0]
-        operator = self.text[start:end].decode().strip()
+        between = self.text[start:end].decode()  # with its line ends, for the numbers of lines
+        operator = between.strip()
         eigen = "Eigen::" in cursor.type.get_canonical().spelling
         a, b = self.source(left), self.source(right)
         for kind, other in schemata.replacements(operator):
@@ -131,7 +132,7 @@ class Finder:
                 continue
             mutated = f"{a} {other} {b}"
             self.add(cursor, kind, mutated,
-                     schemata.either(f"({a}) {other} ({b})", f"({a}) {operator} ({b})", eigen and kind == "arithmetic"))
+                     schemata.either(f"({a}) {other} ({b})", f"({a}){between}({b})", eigen and kind == "arithmetic"))
 
     def drop_sign(self, cursor, operand):
         text, inner = self.source(cursor), self.source(operand)

@@ -37,7 +37,9 @@ class Tree:
             write(self.path / name, rewritten(text, own) if own else text)
 
     def configure(self):
-        subprocess.run(["cmake", "--preset", "ci"], cwd=self.path, check=True, stdout=subprocess.DEVNULL)
+        """What a parser of the sources needs: the compiler's commands and the generated header."""
+        for command in (["cmake", "--preset", "ci"], ["ninja", "-C", self.build, "caustics_build_info_header"]):
+            subprocess.run(command, cwd=self.path, check=True, stdout=subprocess.DEVNULL)
 
     def compile(self, sites, names, targets):
         """Builds until nothing fails; the sites that are left when those in lines with errors are gone."""

@@ -25,10 +25,14 @@ class Trials:
             killer = self.run(site, tests)
             if killer:
                 status = "killed"
-                known[killer] += 1
+                self.remember(site, killer)
                 break
         return {"number": site.number, "status": status, "by": killer, "reaching": len(reaching), "asked": asked,
-                "seconds": round(time.monotonic() - begin, 2)}
+                "budget": self.budget, "seconds": round(time.monotonic() - begin, 2)}
+
+    def remember(self, site, killer):
+        if killer:
+            self.kills[site.file][killer] += 1
 
     def run(self, site, tests):
         """The test that notices, "" where none does; all tests are of one program."""
