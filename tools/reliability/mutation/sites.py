@@ -158,8 +158,9 @@ class Finder:
         for child in children:
             if not child.kind.is_expression() or self.after(extent_of(child)[1]) != ";":
                 continue
-            last_throw = (child.kind == K.CXX_THROW_EXPR and cursor.kind == K.COMPOUND_STMT
-                          and child == children[-1] and (parent is None or parent.kind in FUNCTIONS))
+            # A function that only throws at its end has nothing to go on with.
+            last_throw = (self.source(child).startswith("throw") and child == children[-1]
+                          and (parent is None or parent.kind in FUNCTIONS))
             if not last_throw:
                 self.add(child, "deletion", "", schemata.optional(self.source(child)))
 
