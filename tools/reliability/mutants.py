@@ -69,29 +69,28 @@ def labels(options):
 
 
 def tests_of(options, tree, kept):
-    """The tests that pass without a mutant, with their times and reach."""
-    if kept.exists():
-        rows = json.loads(kept.read_text(encoding="utf-8"))
-        return [suite.Test(row["name"], row["program"], row["filter"], row["seconds"], frozenset(row["reached"]))
-                for row in rows]
+    """The tests of the labels that pass without a mutant, with their times and reach; those not tried before are tried."""
+    known = {row["name"]: row for row in json.loads(kept.read_text(encoding="utf-8"))} if kept.exists() else {}
     tests = suite.listed(tree.build, labels(options))
+    new = [test for test in tests if test.name not in known]
     boxes = [Sandbox(options.memory / f"first{i}", tree.path) for i in range(options.jobs)]
+
+    def try_part(i):
+        return [(test, suite.try_out(test, boxes[i], options.slowest)) for test in new[i::options.jobs]]
+
     with ThreadPoolExecutor(options.jobs) as pool:
-        parts = pool.map(lambda i: [(test, suite.try_out(test, boxes[i], options.slowest))
-                                    for test in tests[i::options.jobs]], range(options.jobs))
-    good = []
-    for test, trouble in (pair for part in parts for pair in part):
-        if trouble:
-            print(f"left out: {test.name} {trouble}", flush=True)
-        else:
-            good.append(test)
-    kept.write_text(json.dumps([{**dataclasses.asdict(test), "reached": sorted(test.reached)} for test in good]),
-                    encoding="utf-8")
-    return good
+        for test, trouble in (pair for part in pool.map(try_part, range(options.jobs)) for pair in part):
+            if trouble:
+                print(f"left out: {test.name} {trouble}", flush=True)
+            else:
+                known[test.name] = {**dataclasses.asdict(test), "reached": sorted(test.reached)}
+    kept.write_text(json.dumps(list(known.values())), encoding="utf-8")
+    rows = [known[test.name] for test in tests if test.name in known]
+    return [suite.Test(**{**row, "reached": frozenset(row["reached"])}) for row in rows]
 
 
 def judge_all(options, tree, sites, tests):
-    """Judges what has no line in the results yet, and again what survived a smaller budget; a line a mutant."""
+    """Judges what has no line in the results yet, and again what survived less; a line a mutant."""
     results = tree.build.parent / "mutants.jsonl"
     lines = results.read_text(encoding="utf-8").splitlines() if results.exists() else []
     rows = {row["number"]: row for row in map(json.loads, lines)}
@@ -101,15 +100,19 @@ def judge_all(options, tree, sites, tests):
             if site.number in rows:
                 trials.remember(site, rows[site.number]["by"])
         for site in sites[:options.first]:
-            if site.number not in rows or is_open(rows[site.number], options.budget):
-                rows[site.number] = trials.judge(site)
+            if is_open(rows.get(site.number), options):
+                rows[site.number] = {**trials.judge(site), "labels": sorted(labels(options))}
                 file.write(json.dumps(rows[site.number]) + "\n")
                 file.flush()
     return list(rows.values())
 
 
-def is_open(row, budget):
-    return row["status"] == "survived" and row["asked"] < row["reaching"] and row["budget"] < budget
+def is_open(row, options):
+    """Whether a mutant may still be noticed: by other tests than before, or by those that the budget had no room for."""
+    if row is None:
+        return True
+    more = row["asked"] < row["reaching"] and row["budget"] < options.budget
+    return row["status"] != "killed" and (more or not labels(options) <= set(row["labels"]))
 
 
 def table(sites, rows):

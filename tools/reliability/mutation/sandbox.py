@@ -7,7 +7,9 @@ import signal
 import subprocess
 
 MEMORY = 6 << 30  # bytes; more than any test takes
-INNER = 'for place in $0; do mount -o remount,bind,ro "$place" || exit 99; done; exec "$@"'
+# GoogleTest captures output in /tmp whatever TMPDIR says.
+INNER = ('for place in $0; do mount -o remount,bind,ro "$place" || exit 99; done; '
+         'mount --bind "$TMPDIR" /tmp || exit 99; exec "$@"')
 
 
 class Sandbox:
