@@ -215,6 +215,49 @@ TEST(BeamPoint, TakesFourCorners) {
     EXPECT_EQ(hits[0].flux_share, 0.5);
 }
 
+/// Whether a ray of the triangle's inside that goes down from above z = 0 lands near a point there.
+bool lands_near(const std::array<VertexRay, 3>& rays, const Vec2& point) {
+    constexpr int steps = 400;
+    for (int i = 0; i <= steps; ++i)
+        for (int j = 0; i + j <= steps; ++j) {
+            const Vec3 w = Vec3(static_cast<float>(i), static_cast<float>(j),
+                                static_cast<float>(steps - i - j)) /
+                           steps;
+            Vec3 origin = Vec3::Zero();
+            Vec3 direction = Vec3::Zero();
+            for (int k = 0; k < 3; ++k) {
+                origin += w[k] * rays[static_cast<std::size_t>(k)].position;
+                direction += w[k] * rays[static_cast<std::size_t>(k)].direction;
+            }
+            if (origin.z() <= 0 || direction.z() >= 0) continue;
+            const Vec3 landing = origin - origin.z() / direction.z() * direction;
+            if ((landing.head<2>() - point).norm() < 0.02F) return true;
+        }
+    return false;
+}
+
+// One ray of three goes up and one begins below the plane: what is left of the triangle ends where
+// rays along the plane begin on it, a corner of neither edge. (Points keep away from the way out along
+// the first edge, which is curved and taken as straight.)
+TEST(BeamPoint, TwoLimitsMeetInACornerOfTheirOwn) {
+    const float half = std::sqrt(0.5F);
+    const std::array<VertexRay, 3> rays = {VertexRay{Vec3(0, 0, 1), Vec3(0, 0, -1)},
+                                           VertexRay{Vec3(1, 4, 1), Vec3(half, 0, half)},
+                                           VertexRay{Vec3(0, 3, -2), Vec3(0, 0, -1)}};
+    for (const auto& order : {std::array{0, 1, 2}, std::array{1, 2, 0}, std::array{0, 2, 1}}) {
+        std::array<VertexRay, 3> turned;
+        for (std::size_t i = 0; i < 3; ++i) turned[i] = rays[static_cast<std::size_t>(order[i])];
+        const BeamSet set = three_rays(turned);
+        std::array<BeamHit, 2> hits;
+        for (const Vec2& at : {Vec2(0.5F, 2), Vec2(2, 2.5F), Vec2(0.2F, 1.2F), Vec2(0.15F, 2),
+                               Vec2(0.5F, 3.5F), Vec2(1, -0.1F), Vec2(-0.1F, 0.5F)}) {
+            const TestPlane plane({at.x(), at.y(), 0}, Vec3::UnitZ());
+            EXPECT_EQ(test_beam(set, set.beams[0], plane, hits), lands_near(rays, at) ? 1 : 0)
+                << at.transpose();
+        }
+    }
+}
+
 // At water's edge corners lie on the wall's plane, above or below it by rounding: one caustic polygon nonetheless.
 TEST(BeamPoint, TakesFourCornersWhereSomeLieOnThePlane) {
     for (const float height : {1e-9F, 0.0F, -1e-9F}) {

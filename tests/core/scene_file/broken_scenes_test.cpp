@@ -73,6 +73,10 @@ std::vector<Broken> broken_scenes() {
         {"phong_gains",
          with_bsdf(R"({"type": "phong", "diffuse_reflectance": 0.7, "specular_reflectance": 0.4})"),
          {"/it/b", "together are above 1", "classic"}},
+        {"phong_gains_on_some_squares",
+         with_bsdf(R"({"type": "phong", "specular_reflectance": 0.4, "diffuse_reflectance":
+                       {"type": "checkerboard", "color0": 0.1, "color1": 0.7}})"),
+         {"/it/b", "together are above 1", "classic"}},
         {"phong_model",
          with_bsdf(R"({"type": "phong", "model": "blinn"})"),
          {"/it/b/model", "blinn", "normalised, classic"}},

@@ -285,6 +285,10 @@ TEST(Scene, BsdfDefaultsAndValues) {
     EXPECT_TRUE(equal(constant(phong.diffuse_reflectance), Spectrum::Constant(0.6F)));
     EXPECT_TRUE(equal(constant(phong.specular_reflectance), Spectrum::Constant(0.2F)));
     EXPECT_FLOAT_EQ(phong.lobe_share, 0.25F);
+    const auto coloured = load_bsdf<Phong>(
+        R"({"type": "phong", "diffuse_reflectance": [0.1, 0.6, 0.3],
+            "specular_reflectance": [0.2, 0.1, 0.1]})");
+    EXPECT_FLOAT_EQ(coloured.lobe_share, 0.25F) << "by the brightest channels";
     const Shape both = load_shape(R"({"type": "disk", "b": {"type": "twosided",
         "inner": {"type": "diffuse", "reflectance": [0.1, 0.2, 0.3]}}})");
     EXPECT_TRUE(both.bsdf.twosided);

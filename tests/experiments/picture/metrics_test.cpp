@@ -96,6 +96,11 @@ TEST(Masks, KeepPixelsAtLeastAsBrightAsTheMean) {
               PixelMask(4, false));
 }
 
+TEST(Masks, IntersectPixelByPixel) {
+    EXPECT_EQ(intersection({true, true, false, false}, {true, false, true, false}),
+              (PixelMask{true, false, false, false}));
+}
+
 TEST(StandardError, IsEmptyWhereThereIsNoCaustic) {
     Film film(1, 1);
     film.set_rgb("", 0, Spectrum::Constant(1));

@@ -25,6 +25,11 @@ TEST(RecordsCsv, BeginsWithTheColumnsOfTheContract) {
     EXPECT_EQ(header.substr(header.size() - 9), ",photons\n") << "swept keys come last, once";
 }
 
+TEST(RecordsCsv, FillsTwoOfItsColumnsFromSweptKeys) {
+    for (const std::string& name : record_columns({}))
+        EXPECT_EQ(is_swept_column(name), name == "alpha" || name == "mesh_resolution") << name;
+}
+
 TEST(RecordsCsv, HasTheColumnsThatTheManualTells) {
     std::ifstream manual(CAUSTICS_SOURCE_DIR "/results/records.md");
     std::vector<std::string> told;

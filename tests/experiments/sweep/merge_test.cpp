@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "experiments/base/child_process.h"
@@ -65,8 +66,11 @@ protected:
 TEST_F(Merges, PutShardsTogether) {
     fs::create_directories(one_ / "references");
     write_atomic_file(one_ / "references/key.exr", "picture");
+    write_atomic_file(two_ / "environment.json", R"({"cpu": "fast"})");
     EXPECT_TRUE(merge().empty());
     EXPECT_EQ(read_plan_of(whole_).trials, plan_.trials);
+    EXPECT_EQ(nlohmann::json::parse(read_whole_file(whole_ / "environment.json")),
+              (nlohmann::json{{"shards", {{{"cpu", "fast"}, {"folder", two_.string()}}}}}));
     for (const char* id : {"a", "b", "c", "d"})
         EXPECT_EQ(read_whole_file(TrialStore(whole_).folder_of(id) / "log.txt"),
                   std::string("log of ") + id);
