@@ -31,6 +31,16 @@ TEST(Ior, GlassesHaveTheIndexAndAbbeNumberOfTheirCatalogue) {
     }
 }
 
+TEST(Ior, OfASurfaceIsTheRatioOfBothMediaAtTheWavelength) {
+    const Dielectric gem{.int_ior = Ior::cauchy(1.6, 0.01), .ext_ior = 1.25F};
+    for (const float nm : {400.0F, 500.0F, 700.0F}) {
+        const double um = static_cast<double>(nm) / 1000;
+        const double ratio = (1.6 + 0.01 / (um * um)) / 1.25;
+        EXPECT_NEAR(gem.relative_ior(true, nm), ratio, 1e-6);
+        EXPECT_NEAR(gem.relative_ior(false, nm), 1 / ratio, 1e-6);
+    }
+}
+
 // Schott's table of refractive indices at spectral lines.
 TEST(Ior, Bk7IsSchottsAtItsLines) {
     const Ior bk7 = named("bk7");

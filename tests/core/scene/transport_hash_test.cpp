@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/support/build_scene.h"
 
 namespace caustics {
@@ -42,6 +44,24 @@ TEST(TransportHash, SeesEverythingThatALightPathMeets) {
     others[8].lights.emplace_back(support::directional_light({0, 0, -1}, 1));
     for (std::size_t i = 0; i < others.size(); ++i)
         EXPECT_NE(digest(still_life()), digest(others[i])) << i;
+}
+
+TEST(TransportHash, OfAllPhotonsSeesHowReceiversScatter) {
+    const auto whole = [](const Bsdf& floor) {
+        SceneDesc desc = still_life();
+        desc.shapes[0].bsdf = floor;
+        return whole_transport_hash(Scene(std::move(desc)));
+    };
+    const std::vector<Bsdf> floors = {
+        support::diffuse(0.5F),         support::diffuse(0.6F),
+        support::schlick(0.8F, 0.1F),   support::schlick(0.8F, 0.2F),
+        support::schlick(0.7F, 0.1F),   support::phong(0.3F, 0.2F, 30),
+        support::phong(0.4F, 0.2F, 30), support::phong(0.3F, 0.1F, 30),
+        support::phong(0.3F, 0.2F, 31), support::phong(0.3F, 0.2F, 30, Phong::Model::classic)};
+    std::set<std::uint64_t> hashes;
+    for (const Bsdf& floor : floors) hashes.insert(whole(floor));
+    EXPECT_EQ(hashes.size(), floors.size());
+    EXPECT_TRUE(hashes.contains(whole(support::diffuse(0.5F))));
 }
 
 }  // namespace

@@ -383,6 +383,12 @@ INSTANTIATE_TEST_SUITE_P(
                     d.shapes[2].bsdf = support::glass(1.3F, 1, Spectrum(Spectrum::Ones()));
                 },
                 {"/mirror", "absorption"}},
+        Refused{"PovrayAbsorbingSurroundings",
+                to_povray,
+                [](SceneDesc& d) {
+                    std::get<Dielectric>(d.shapes[1].bsdf.model).ext_absorption.setOnes();
+                },
+                {"/ball", "ext_absorption"}},
         Refused{"PovrayTwoOutsides",
                 to_povray,
                 [](SceneDesc& d) { d.shapes[0].bsdf = support::glass(1.3F, 1.1F); },
