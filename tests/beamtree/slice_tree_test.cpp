@@ -261,9 +261,10 @@ BeamSet lens(int cells, const Vec3& focus, const Vec3& shift) {
     return set;
 }
 
-void expect_as_scan(const std::vector<BeamSet>& sets, const Box& where, int count) {
+void expect_as_scan(const std::vector<BeamSet>& sets, const Box& where, int count,
+                    Isa isa = widest_isa()) {
     Rng rng(9, Stage::test, 0);
-    const SliceTree tree(all_of(sets, where), widest_isa());
+    const SliceTree tree(all_of(sets, where), isa);
     std::size_t hits = 0;
     for (int i = 0; i < count; ++i) {
         const Vec3 share(rng.next(), rng.next(), rng.next());
@@ -286,6 +287,15 @@ TEST(SliceTree, FollowsBeamsThroughAFocus) {
         const Vec3 at = shift + focus + Vec3(1e-3F, 2e-3F, 0);
         EXPECT_EQ(found_in(tree, sets, at), scanned(sets[0], at));
     }
+}
+
+// Their triangles are cut at points between their starts, where boxes hold what is left of them.
+TEST(SliceTree, FollowsBeamsWhoseRaysBeginAtAllDepths) {
+    std::vector<BeamSet> sets = {lens(9, {0.3F, 0.6F, -4}, Vec3::Zero())};
+    Rng rng(6, Stage::test, 0);
+    for (VertexRay& ray : sets[0].rays) ray.position += 1.5F * rng.next() * ray.direction;
+    for (const Isa isa : supported_isas())
+        expect_as_scan(sets, box_of({0, 0, -2}, {1, 1, 0}), 3000, isa);
 }
 
 TEST(SliceTree, TakesBeamsThatCannotBeParted) {

@@ -311,6 +311,32 @@ TEST(LightPath, PathsThatGoTogetherArriveWhereTheyArriveAlone) {
     }
 }
 
+// Light through glass that hardly bends it: what arrives is white but for the chance in its wavelengths.
+TEST(LightPath, PathsThatGoTogetherShareOutTheWavelengths) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
+                   support::sphere("ball", {0, 0, 1}, 0.5, support::glass(1))};
+    std::get<Dielectric>(desc.shapes[1].bsdf.model).int_ior = Ior::cauchy(1, 1e-5);
+    const Scene scene(std::move(desc));
+    constexpr std::size_t count = 729;  // whole periods of the base 3
+    const auto error = [&](std::optional<double> shift) {
+        std::vector<LightPathStart> starts;
+        for (std::size_t i = 0; i < count; ++i)
+            starts.push_back({{{Vec3(0.1F, 0.1F, 3), -Vec3::UnitZ()}, Spectrum::Ones()},
+                              Rng(5, Stage::test, i),
+                              i});
+        LightPathCounts counts;
+        std::vector<DepositOfMany> deposits;
+        trace_light_paths(scene, starts, {.wavelength_shift = shift}, counts, deposits);
+        EXPECT_EQ(deposits.size(), count);
+        Spectrum mean = black();
+        for (const DepositOfMany& each : deposits) mean += each.deposit.flux / count;
+        return (mean - 1).abs().maxCoeff();
+    };
+    EXPECT_LT(error(0.3), 0.01F);
+    EXPECT_GT(error({}), 0.01F);
+}
+
 TEST(LightPath, RouletteKeepsTheMeanOfEveryChannel) {
     SceneDesc desc;
     desc.shapes.push_back(support::horizontal("mirror", 0, 1, true, support::mirror()));

@@ -183,6 +183,20 @@ TEST(Bsdf, GrazingOppositeDirectionsStayFinite) {
     }
 }
 
+TEST(Bsdf, AMirrorPartTakesItsWeightFromTheRest) {
+    const Vec3 up = Vec3::UnitZ();
+    const Vec3 wi = Vec3(0.6F, 0, 0.8F);
+    for (Bsdf bsdf :
+         {support::diffuse(0.5F), support::schlick(0.8F, 0.1F), support::phong(0.4F, 0.5F, 9)}) {
+        const Spectrum alone = evaluate(bsdf, Vec2::Zero(), up, up, wi);
+        const Spectrum all = albedo(bsdf, Vec2::Zero());
+        bsdf.mirror = MirrorPart{0.25F, Spectrum(Spectrum::Constant(0.9F))};
+        EXPECT_LT((evaluate(bsdf, Vec2::Zero(), up, up, wi) - 0.75F * alone).abs().maxCoeff(),
+                  1e-6F);
+        EXPECT_LT((albedo(bsdf, Vec2::Zero()) - 0.75F * all).abs().maxCoeff(), 1e-6F);
+    }
+}
+
 TEST(Bsdf, CastersReceiversAndSides) {
     EXPECT_TRUE(is_caster(support::glass(1.5F)) && is_caster(support::mirror()));
     EXPECT_TRUE(is_receiver(support::diffuse(1)) && is_receiver(support::schlick(1, 0.5F)));

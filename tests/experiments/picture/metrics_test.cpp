@@ -63,13 +63,17 @@ TEST(Metrics, AreUndefinedAgainstABlackReference) {
 }
 
 TEST(Metrics, NameThePixelThatIsNotFinite) {
-    Film x = grey_film("caustic", {1, 1, 1, 1});
-    x.set_rgb("caustic", 2, {1, std::numeric_limits<float>::quiet_NaN(), 1});
-    try {
-        measure(x, grey_film("caustic", {1, 1, 1, 1}), "caustic", all);
-        FAIL() << "a NaN went through";
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(), "picture: layer \"caustic\" is not finite at pixel (0, 1)");
+    const std::vector<std::string> places = {"(0, 0)", "(1, 0)", "(0, 1)", "(1, 1)"};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        Film x = grey_film("caustic", {1, 1, 1, 1});
+        x.set_rgb("caustic", i, {1, std::numeric_limits<float>::quiet_NaN(), 1});
+        try {
+            measure(x, grey_film("caustic", {1, 1, 1, 1}), "caustic", all);
+            FAIL() << "a NaN went through";
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.what(),
+                      "picture: layer \"caustic\" is not finite at pixel " + places[i]);
+        }
     }
 }
 
