@@ -11,12 +11,17 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tools" / "reliability"))
 
 try:
-    from clang.cindex import Index, LibclangError
+    from clang.cindex import Index
 
-    from mutation import drawing, schemata
-    from mutation.sites import Finder
+    from mutation import drawing, page, schemata
+    from mutation.sites import Finder, Site
+    from mutation.suite import Test
+    from mutation.trial import Trials
     Index.create()
-except (ImportError, LibclangError) as missing:
+except Exception as missing:
+    # The library is looked for by the first call, and what it raises is a class of the module that may be missing.
+    if not isinstance(missing, ImportError) and type(missing).__name__ != "LibclangError":
+        raise
     print(f"skipped: no clang.cindex (Debian: python3-clang): {missing}")
     sys.exit(77)
 
@@ -108,6 +113,59 @@ class Mutants(unittest.TestCase):
     def said(self, program, **environment):
         done = subprocess.run([program], check=True, capture_output=True, text=True, env={**os.environ, **environment})
         return done.stdout.strip()
+
+
+class Answers:
+    """A sandbox whose tests fail as they are told; notes the filters it was asked for."""
+
+    def __init__(self, failing):
+        self.failing = failing
+        self.asked = []
+
+    def run(self, command, _, **_environment):
+        names = command[1].split("=")[1].split(":")
+        self.asked += names
+        failed = [name for name in names if name in self.failing]
+        return (1, f"[  FAILED  ] {failed[0]} (1 ms)\n") if failed else (0, "")
+
+
+class Rounds(unittest.TestCase):
+    SITES = [Site("a.cpp", 7 + n, n, n + 1, "constant", "1", "a | b", "", n) for n in range(3)]
+
+    def trials(self, box, budget, *names, since=0):
+        tests = [Test(f"unit.{name}", "unit", name, 1, since if name == "New.one" else 0, frozenset({0, 1})) for name in names]
+        return Trials(tests, box, budget)
+
+    def test_what_survived_is_asked_what_it_was_not_asked_before(self):
+        first = self.trials(Answers([]), 1, "Old.one", "Old.two").judge(self.SITES[0])
+        self.assertEqual((first["status"], first["asked"], first["reaching"], first["round"]), ("survived", 1, 2, 1))
+        self.assertIsNone(self.trials(Answers([]), 1, "Old.one", "Old.two").judge(self.SITES[0], first))
+        box = Answers(["New.one"])
+        later = self.trials(box, 1, "Old.one", "Old.two", "New.one", since=first["at"] + 1).judge(self.SITES[0], first)
+        self.assertEqual(box.asked, ["New.one"])
+        self.assertEqual((later["status"], later["by"], later["round"]), ("killed", "unit.New.one", 2))
+        self.assertIsNone(self.trials(box, 9, "Old.one").judge(self.SITES[0], later))
+        box = Answers([])
+        longer = self.trials(box, 9, "Old.one", "Old.two").judge(self.SITES[0], first)
+        self.assertEqual(sorted(box.asked), ["Old.one", "Old.two"])
+        self.assertIsNone(self.trials(box, 99, "Old.one", "Old.two").judge(self.SITES[0], longer))
+
+    def test_the_page_tells_what_came_of_each(self):
+        trials = self.trials(Answers(["Old.one"]), 9, "Old.one")
+        rows = [trials.judge(site) for site in self.SITES]
+        rows[1].update(status="survived", by="")
+        text = page.text(self.SITES, rows, {1: ("equivalent", "A sum of one.")})
+        self.assertIn("| file | tried | killed in round 1 | equivalent | not reached |\n", text)
+        self.assertIn("| a.cpp | 3 | 1 | 1 | 1 |\n", text)
+        self.assertIn("| 1 | a.cpp:8 | `1` | `a \\| b` | equivalent | A sum of one. |", text)
+        self.assertNotIn("a.cpp:7", text)
+
+    def test_words_on_mutants_are_read_whole(self):
+        with tempfile.NamedTemporaryFile("w+", suffix=".tsv") as file:
+            file.write("# no.\tclass\treason\n4\topen\tWhy.\n5\topen\n")
+            file.flush()
+            with self.assertRaisesRegex(ValueError, "5\topen"):
+                page.words(pathlib.Path(file.name))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,8 @@
 All mutants are compiled at once into a copy of the sources (mutant schemata): each site asks at run time whether its
 mutant is on. Every test runs once without a mutant, which says how long it takes and which sites it reaches; then each
 mutant meets the tests that reach it, until one fails, dies or takes ten times its time and 5 s more. Results are kept
-in DIR/build/mutants.jsonl, a line a mutant, and a run that is stopped goes on there.
+in DIR/build/mutants.jsonl, a line a trial, and a run that is stopped goes on there. What survived is tried again by a
+run with more seconds, labels or tests: that is the next round.
 Exit codes: 0 done, 2 bad input or usage.
 """
 import argparse
@@ -13,14 +14,14 @@ import json
 import pathlib
 import subprocess
 import sys
-from collections import Counter
+import time
 from concurrent.futures import ThreadPoolExecutor
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools" / "reliability"))
 
-from mutation import suite  # noqa: E402
+from mutation import page, suite  # noqa: E402
 from mutation.drawing import Parser, draw  # noqa: E402
 from mutation.sandbox import Sandbox  # noqa: E402
 from mutation.sites import Site  # noqa: E402
@@ -40,6 +41,8 @@ def arguments():
     parser.add_argument("--labels", default="unit,statistical,agreement", help="of the tests, as ctest knows them")
     parser.add_argument("--budget", type=float, default=30, help="seconds of tests for a mutant (default: 30)")
     parser.add_argument("--slowest", type=float, default=10, help="tests that take longer are left out (default: 10 s)")
+    parser.add_argument("--judged", type=pathlib.Path, metavar="FILE",
+                        help="words on mutants for the page: lines of number, class and reason with tabs between")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at once (default: 2)")
     return parser.parse_args()
 
@@ -84,52 +87,30 @@ def tests_of(options, tree, kept):
                 print(f"left out: {test.name} {trouble}", flush=True)
             else:
                 known[test.name] = {**dataclasses.asdict(test), "reached": sorted(test.reached)}
+                known[test.name]["since"] = time.time()
     kept.write_text(json.dumps(list(known.values())), encoding="utf-8")
     rows = [known[test.name] for test in tests if test.name in known]
     return [suite.Test(**{**row, "reached": frozenset(row["reached"])}) for row in rows]
 
 
 def judge_all(options, tree, sites, tests):
-    """Judges what has no line in the results yet, and again what survived less; a line a mutant."""
+    """Judges what has no line in the results yet, and what survived where there is more to ask; a line a trial."""
     results = tree.build.parent / "mutants.jsonl"
     lines = results.read_text(encoding="utf-8").splitlines() if results.exists() else []
-    rows = {row["number"]: row for row in map(json.loads, lines)}
+    rows = list(map(json.loads, lines))
+    last = {row["number"]: row for row in rows}
     trials = Trials(tests, Sandbox(options.memory / "trial", tree.path), options.budget)
+    for site in sites:
+        if site.number in last:
+            trials.remember(site, last[site.number]["by"])
     with results.open("a", encoding="utf-8") as file:
-        for site in sites:
-            if site.number in rows:
-                trials.remember(site, rows[site.number]["by"])
         for site in sites[:options.first]:
-            if is_open(rows.get(site.number), options):
-                rows[site.number] = {**trials.judge(site), "labels": sorted(labels(options))}
-                file.write(json.dumps(rows[site.number]) + "\n")
+            row = trials.judge(site, last.get(site.number))
+            if row:
+                rows.append(row)
+                file.write(json.dumps(row) + "\n")
                 file.flush()
-    return list(rows.values())
-
-
-def is_open(row, options):
-    """Whether a mutant may still be noticed: by other tests than before, or by those that the budget had no room for."""
-    if row is None:
-        return True
-    more = row["asked"] < row["reaching"] and row["budget"] < options.budget
-    return row["status"] != "killed" and (more or not labels(options) <= set(row["labels"]))
-
-
-def table(sites, rows):
-    """A line a file, and what survived."""
-    site_of = {site.number: site for site in sites}  # the compiler may have dropped some numbers
-    counts = {}
-    for row in rows:
-        counts.setdefault(site_of[row["number"]].file, Counter())[row["status"]] += 1
-    print("| file | tried | killed | survived | not reached |\n|---|--:|--:|--:|--:|")
-    for name, count in [*sorted(counts.items()), ("all", sum(counts.values(), Counter()))]:
-        print(f"| {name} | {count.total()} | {count['killed']} | {count['survived']} | {count['unreached']} |")
-    print("\n| place | operator | what is there | mutant | tests that reach it |\n|---|---|---|---|--:|")
-    for row in sorted(rows, key=lambda row: (site_of[row["number"]].file, site_of[row["number"]].line)):
-        site = site_of[row["number"]]
-        if row["status"] != "killed":
-            cells = (site.before.replace("|", "\\|"), (site.after or "(nothing)").replace("|", "\\|"))
-            print(f"| {site.file}:{site.line} | {site.operator} | `{cells[0]}` | `{cells[1]}` | {row['reaching']} |")
+    return rows
 
 
 def main():
@@ -140,7 +121,8 @@ def main():
     try:
         sites = sites_of(options, tree, tree.path / "build" / "mutant_sites.json")
         tests = tests_of(options, tree, tree.path / "build" / "mutant_tests.json")
-        table(sites, judge_all(options, tree, sites, tests))
+        words = page.words(options.judged) if options.judged else {}
+        print(page.text(sites, judge_all(options, tree, sites, tests), words))
     except (ValueError, OSError, subprocess.CalledProcessError) as error:
         print(f"mutants: error: {error}", file=sys.stderr)
         return 2

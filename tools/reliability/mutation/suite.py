@@ -12,6 +12,7 @@ class Test:
     program: str
     filter: str
     seconds: float = 0
+    since: float = 0  # when it was first tried
     reached: frozenset = field(default_factory=frozenset)
 
 

@@ -14,21 +14,36 @@ class Trials:
         self.tests, self.sandbox, self.budget = tests, sandbox, budget
         self.kills = defaultdict(Counter)
 
-    def judge(self, site):
-        """The result as a dict: status (killed, survived, unreached), by which test, how many tests, seconds."""
-        reaching = [test for test in self.tests if site.number in test.reached]
-        known = self.kills[site.file]
-        reaching.sort(key=lambda test: (test.seconds + 0.01) * len(test.reached) ** 0.5 / (1 + 4 * known[test.name]))
-        begin, asked, status, killer = time.monotonic(), 0, "survived" if reaching else "unreached", ""
-        for tests in slices(reaching, self.budget):
-            asked += len(tests)
-            killer = self.run(site, tests)
+    def judge(self, site, last=None):
+        """The result as a dict: status (killed, survived, unreached), by which test, how many tests, seconds, and the
+        round. With the result of the round before, None where there is nothing more to ask."""
+        tests = [test for test in self.tests if site.number in test.reached]
+        reaching = len(tests)
+        if last:
+            if last["status"] == "killed":
+                return None
+            if last["asked"] == last["reaching"] or last["budget"] >= self.budget:
+                tests = [test for test in tests if test.since > last["at"]]
+            if not tests:
+                return None
+        begin, asked, killer = time.monotonic(), 0, ""
+        for some in slices(self.by_promise(site, tests), self.budget):
+            asked += len(some)
+            killer = self.run(site, some)
             if killer:
-                status = "killed"
                 self.remember(site, killer)
                 break
-        return {"number": site.number, "status": status, "by": killer, "reaching": len(reaching), "asked": asked,
-                "budget": self.budget, "seconds": round(time.monotonic() - begin, 2)}
+        status = "killed" if killer else "survived" if reaching else "unreached"
+        if last and len(tests) < reaching:
+            asked += last["asked"]
+        return {"number": site.number, "status": status, "by": killer, "reaching": reaching, "asked": asked,
+                "budget": self.budget, "seconds": round(time.monotonic() - begin, 2), "at": time.time(),
+                "round": last["round"] + 1 if last else 1}
+
+    def by_promise(self, site, tests):
+        """Cheap and narrow tests first, and those that noticed other mutants of the file."""
+        known = self.kills[site.file]
+        return sorted(tests, key=lambda test: (test.seconds + 0.01) * len(test.reached) ** 0.5 / (1 + 4 * known[test.name]))
 
     def remember(self, site, killer):
         if killer:
