@@ -55,6 +55,18 @@ TEST(BeamBudget, DoesNotKnowAnOrder) {
     EXPECT_EQ(forward.least(), joined.least());
 }
 
+TEST(BeamBudget, KeepsAsManyAsItIsFor) {
+    BeamBudget part(3), all(3);
+    for (const double light : {1, 2, 3}) part.count(light);
+    all.add(part);
+    for (const BeamBudget& budget : {part, all}) {
+        EXPECT_FALSE(budget.is_over());
+        EXPECT_EQ(budget.count(), 3U);
+        EXPECT_TRUE(budget.has_room_for(0));
+        EXPECT_FALSE(budget.has_room_for(1));
+    }
+}
+
 // A budget of one beam drew two thousand polygons of a mesh of two hundred, and took longer than one of thousands.
 TEST(BeamBudget, DrawsNoMorePolygonsThanThereAre) {
     EXPECT_LE(draw_count(192, 1), 192U);

@@ -144,5 +144,25 @@ TEST(BeamSquare, BecomesAPointAsItShrinks) {
     for (std::size_t i = 0; i < at.size(); ++i) EXPECT_NEAR(squares[i] / points[i], 1, 1e-2);
 }
 
+// Between a square and a beam whose box it meets there may be room.
+TEST(BeamSquare, CountsTheBeamsThatItMeets) {
+    const Scene scene(folded_pool());
+    const auto estimator = build(scene, averaged(0.02F), {});
+    const auto context = estimator->make_context();
+    std::uint64_t lit = 0;
+    for (const Vec2& at : middles(10, 0.9F)) {
+        const ReceiverPoint point =
+            support::probe(scene, 1, Vec3(at.x(), at.y(), -1).cast<double>(), Vec3d::UnitZ(), 0);
+        Estimate estimate;
+        estimator->irradiance(std::span(&point, 1), std::span(&estimate, 1), *context);
+        lit += is_black(estimate.value) ? 0 : 1;
+    }
+    Counters counters;
+    context->add_to(counters);
+    EXPECT_GT(lit, 0U);
+    EXPECT_GE(counters.at("beam_point_hits"), lit);
+    EXPECT_LT(counters.at("beam_point_hits"), counters.at("beam_point_tests"));
+}
+
 }  // namespace
 }  // namespace caustics::beamtree

@@ -67,6 +67,11 @@ TEST(Cap, OfEqualOrOppositeDirections) {
     EXPECT_TRUE(smallest_cap({}).is_wide());
 }
 
+TEST(Cap, HasAnAngleWhereItsCosineIsRounded) {
+    EXPECT_EQ((Cap{Vec3d::UnitX(), std::nextafter(1, 2)}.angle()), 0);
+    EXPECT_EQ((Cap{Vec3d::UnitX(), std::nextafter(-1, -2)}.angle()), std::acos(-1));
+}
+
 // In all directions: no smallest cap is sought, which would take forever.
 TEST(Cap, OfManyDirectionsAllRound) {
     Rng rng(3, Stage::test, 0);

@@ -127,6 +127,24 @@ TEST(Hierarchy, HoldsEveryBeamOnce) {
     }
 }
 
+TEST(ConeTree, TellsTheMemoryOfItsBounds) {
+    const BeamScene pool("pool", pool_desc(8));
+    const BeamSet& set = pool.sets[0];
+    const Hierarchy hierarchy = binned_hierarchy(set, receiver_planes(set)[0].beams, 1);
+    const auto bytes_per_node = [&](Bound bound) {
+        const ConeTree tree(set, 0, hierarchy, {.bound = bound}, Vec3(Vec3::UnitZ()));
+        EXPECT_EQ(tree.node_count(), hierarchy.nodes.size());
+        return tree.bytes() / tree.node_count();
+    };
+    const std::uint64_t swept = bytes_per_node(Bound::sphere_swept);
+    EXPECT_GE(swept, sizeof(SweptSphere));
+    EXPECT_LE(swept, sizeof(SweptSphere) + 32);  // and the node itself
+    const std::uint64_t doubles = bytes_per_node(Bound::double_cone);
+    EXPECT_EQ(doubles, swept + sizeof(DoubleCone));
+    const std::uint64_t singles = bytes_per_node(Bound::single);
+    EXPECT_EQ(singles, swept - sizeof(SweptSphere) + sizeof(SingleCone));
+}
+
 // A mesh may have more triangles than its patches, and a triangle any number of beams.
 TEST(Hierarchy, HoldsBeamsOutsideOfThePatchesAndManyOfOneTriangle) {
     const BeamScene pool("pool", pool_desc(8));

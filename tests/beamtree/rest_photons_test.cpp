@@ -79,6 +79,8 @@ TEST(RestPhotons, BringWhatIsPruned) {
     const TracedScene few = traced(scene, params, 20'000);
     EXPECT_LT(carried(few), 0.99 * all);
     EXPECT_NEAR((carried(few) + brought(few)) / all, 1, 0.01);
+    const double share = few.balance.pruned / few.balance.lit;
+    EXPECT_NEAR(static_cast<double>(few.rest.size()) / (20'000 * share), 1, 0.1);
 }
 
 TEST(RestPhotons, TakeTheShareOfWhatIsLeftOut) {
@@ -105,8 +107,10 @@ TEST(RestPhotons, CompleteTheLightOfPoints) {
     for (int i = 0; i < cells * cells; ++i)
         points.push_back(floor_point({(static_cast<float>(i % cells) + 0.5F) / cells * 4 - 2,
                                       (static_cast<float>(i / cells) + 0.5F) / cells * 4 - 2, 0}));
+    std::uint64_t bytes = 0;
     const auto light = [&] {
         const auto beams = build(scene, params, {});
+        bytes = beams->build_report().bytes;
         std::vector<Estimate> estimates(points.size());
         const auto context = beams->make_context();
         beams->irradiance(points, estimates, *context);
@@ -117,10 +121,12 @@ TEST(RestPhotons, CompleteTheLightOfPoints) {
     const double all = light();
     params.max_beams = 100;
     EXPECT_LT(light(), 0.9 * all);
+    const std::uint64_t of_beams = bytes;
     params.rest = BeamTreeParams::Rest::photons;
     params.rest_photons = 30'000;
     // The focus, of a few cells, is sampled by the grid in one and blurred by discs in the other.
     EXPECT_NEAR(light() / all, 1, 0.03);
+    EXPECT_GT(bytes, of_beams + 1'000 * sizeof(Vec3));
 }
 
 TEST(RestPhotons, AreTheSameWithAnyThreads) {

@@ -42,7 +42,7 @@ def arguments():
     parser.add_argument("--budget", type=float, default=30, help="seconds of tests for a mutant (default: 30)")
     parser.add_argument("--slowest", type=float, default=10, help="tests that take longer are left out (default: 10 s)")
     parser.add_argument("--judged", type=pathlib.Path, metavar="FILE",
-                        help="words on mutants for the page: lines of number, class and reason with tabs between")
+                        help="what survivors are: lines of number, class and reason with tabs between; not tried again")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at once (default: 2)")
     return parser.parse_args()
 
@@ -93,8 +93,9 @@ def tests_of(options, tree, kept):
     return [suite.Test(**{**row, "reached": frozenset(row["reached"])}) for row in rows]
 
 
-def judge_all(options, tree, sites, tests):
-    """Judges what has no line in the results yet, and what survived where there is more to ask; a line a trial."""
+def judge_all(options, tree, sites, tests, words):
+    """Judges what has no line in the results yet, and what survived where there is more to ask, unless there is a word on
+    it; a line a trial."""
     results = tree.build.parent / "mutants.jsonl"
     lines = results.read_text(encoding="utf-8").splitlines() if results.exists() else []
     rows = list(map(json.loads, lines))
@@ -105,7 +106,7 @@ def judge_all(options, tree, sites, tests):
             trials.remember(site, last[site.number]["by"])
     with results.open("a", encoding="utf-8") as file:
         for site in sites[:options.first]:
-            row = trials.judge(site, last.get(site.number))
+            row = None if site.number in words else trials.judge(site, last.get(site.number))
             if row:
                 rows.append(row)
                 file.write(json.dumps(row) + "\n")
@@ -122,7 +123,7 @@ def main():
         sites = sites_of(options, tree, tree.path / "build" / "mutant_sites.json")
         tests = tests_of(options, tree, tree.path / "build" / "mutant_tests.json")
         words = page.words(options.judged) if options.judged else {}
-        print(page.text(sites, judge_all(options, tree, sites, tests), words))
+        print(page.text(sites, judge_all(options, tree, sites, tests, words), words))
     except (ValueError, OSError, subprocess.CalledProcessError) as error:
         print(f"mutants: error: {error}", file=sys.stderr)
         return 2

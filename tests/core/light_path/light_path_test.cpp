@@ -286,9 +286,13 @@ TEST(LightPath, PathsThatGoTogetherArriveWhereTheyArriveAlone) {
             if (const auto particle = emission.emit(rng)) starts.push_back({*particle, rng});
         }
         std::vector<LightPathStart> side_by_side = starts;
-        std::vector<DepositOfMany> many;
+        std::vector<DepositOfMany> many(1);
+        many[0].start = starts.size();  // of others, before
         LightPathCounts together, alone;
         trace_light_paths(scene, side_by_side, settings, together, many);
+        ASSERT_EQ(many[0].start, starts.size());
+        many.erase(many.begin());
+        EXPECT_TRUE(std::ranges::is_sorted(many, {}, &DepositOfMany::start));
         std::vector<std::optional<Deposit>> deposits(starts.size());
         for (const DepositOfMany& one : many) deposits[one.start] = one.deposit;
         for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -402,6 +406,17 @@ TEST(LightPath, BlackParticlesAndDeepChainsEnd) {
     EXPECT_EQ(counts.reflected, 100U);
     EXPECT_FALSE(trace_one(scene, {ray, black()}, {100}, rng, counts));
     EXPECT_EQ(counts.absorbed, 1U);
+    LightPathCounts branches;
+    std::vector<Ray> traced;
+    std::vector<Deposit> deposits;
+    trace_split_path(scene, {ray, Spectrum(Spectrum::Ones())}, {100, Interaction::split, &traced},
+                     rng, branches, deposits);
+    EXPECT_TRUE(deposits.empty());
+    EXPECT_EQ(branches.depth_limited, 1U);
+    EXPECT_EQ(branches.reflected, 100U);
+    ASSERT_EQ(traced.size(), 101U);
+    for (std::size_t i = 1; i < traced.size(); ++i)
+        EXPECT_EQ(traced[i].direction, -traced[i - 1].direction);
 }
 
 TEST(LightPath, TellsBlackSidesFromBlackWater) {

@@ -23,6 +23,10 @@ TEST(StratifiedSquare, SizesAreNextToWhatIsAsked) {
         EXPECT_GE(more, size);
         EXPECT_LE(less, size);
         EXPECT_GE(less, 1U);
+        if (size < 200) {  // grids without blocks
+            EXPECT_EQ(StratifiedSquare::at_least(more).size(), more);
+            EXPECT_EQ(StratifiedSquare::at_most(less).size(), less);
+        }
         if (size < 10'000) continue;
         EXPECT_LT(static_cast<double>(more), 1.03 * static_cast<double>(size));
         EXPECT_GT(static_cast<double>(less), 0.97 * static_cast<double>(size));

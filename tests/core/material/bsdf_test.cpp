@@ -197,6 +197,12 @@ TEST(Bsdf, AMirrorPartTakesItsWeightFromTheRest) {
     }
 }
 
+TEST(Bsdf, WhatScattersInOneDirectionOnlyHasNoDensity) {
+    const Vec3 up = Vec3::UnitZ();
+    for (const Bsdf& bsdf : {support::glass(1.5F), support::mirror()})
+        EXPECT_EQ(direction_pdf(bsdf, up, up, Vec3(0.6F, 0, 0.8F)), 0);
+}
+
 TEST(Bsdf, CastersReceiversAndSides) {
     EXPECT_TRUE(is_caster(support::glass(1.5F)) && is_caster(support::mirror()));
     EXPECT_TRUE(is_receiver(support::diffuse(1)) && is_receiver(support::schlick(1, 0.5F)));
