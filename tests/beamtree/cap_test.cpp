@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -96,6 +97,19 @@ TEST(Circle, SmallestIsThatOfBruteForce) {
             for (const Vec2d& p : points) radius = std::max(radius, (p - centre).norm());
             EXPECT_GT(radius, circle.radius);
         }
+    }
+}
+
+TEST(Circle, OfPointsOnALineIsThatOfItsEnds) {
+    Rng rng(4, Stage::test, 0);
+    for (int i = 0; i < 100; ++i) {
+        std::vector<Vec2d> points;
+        for (int j = 0; j < 3 + i % 7; ++j)
+            points.push_back(static_cast<double>(rng.next()) * Vec2d(1, 2));
+        const auto [first, last] = std::ranges::minmax(points, {}, &Vec2d::squaredNorm);
+        const Circle circle = smallest_circle(points);
+        EXPECT_NEAR(circle.radius, (last - first).norm() / 2, 1e-9);
+        EXPECT_NEAR((circle.centre - (first + last) / 2).norm(), 0, 1e-9);
     }
 }
 

@@ -310,6 +310,21 @@ TEST(SliceTree, TakesBeamsThatCannotBeParted) {
     }
 }
 
+TEST(SliceTree, TellsItsMemory) {
+    // One leaf; two, and the node above them.
+    for (const std::size_t count : {8U, 9U}) {
+        std::vector<BeamSet> sets = {lens(1, {0.5F, 0.5F, -1}, Vec3::Zero())};
+        sets[0].beams.resize(1);
+        sets[0].beams.resize(count, sets[0].beams[0]);
+        const SliceTree tree(all_of(sets, box_of({0, 0, -3}, {1, 1, 0})), widest_isa());
+        EXPECT_EQ(tree.node_count(), count == 8 ? 1U : 3U);
+        const std::size_t of_beams = count * (sizeof(BeamNumber) + 3 * sizeof(VertexRay));
+        const std::size_t of_nodes =
+            count == 8 ? sizeof(SliceLeaf) : 2 * sizeof(SliceLeaf) + sizeof(SliceNode);
+        EXPECT_EQ(tree.bytes(), of_beams + of_nodes);
+    }
+}
+
 TEST(SliceTree, RefusesPointsBelowItsSlab) {
     const std::vector<BeamSet> sets = {lens(3, {0.5F, 0.5F, -1}, Vec3::Zero())};
     const SliceTree tree(all_of(sets, box_of({0, 0, -2}, {1, 1, 0})), widest_isa());

@@ -419,6 +419,18 @@ TEST(LightPath, BlackParticlesAndDeepChainsEnd) {
         EXPECT_EQ(traced[i].direction, -traced[i - 1].direction);
 }
 
+TEST(LightPath, CountsAddUpOneByOne) {
+    Counters named;
+    LightPathCounts().add_to(named);
+    EXPECT_EQ(named.size(), 13U);
+    for (std::uint64_t next = 1; auto& [name, count] : named) count = next++;
+    LightPathCounts sum = light_path_counts(named);
+    sum.add(light_path_counts(named));
+    Counters twice;
+    sum.add_to(twice);
+    for (const auto& [name, count] : named) EXPECT_EQ(twice.at(name), 2 * count) << name;
+}
+
 TEST(LightPath, TellsBlackSidesFromBlackWater) {
     // Light falls through a sheet of water onto a floor that faces down, up, and under ink.
     const auto counts_of = [](bool up, float absorption) {

@@ -198,6 +198,7 @@ TEST(Sampling, PickFollowsTheShares) {
     EXPECT_EQ(pick(cumulative, 0.7499F), 2U);
     EXPECT_EQ(pick(cumulative, 0.75F), 3U);
     EXPECT_EQ(pick(cumulative, 0.99999994F), 3U);
+    EXPECT_EQ(pick({0.5, 0.9999999}, 0.99999994F), 1U);  // shares whose sum is rounded
 }
 
 // Each index as often as its share, and what is left of u uniform again.

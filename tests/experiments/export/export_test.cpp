@@ -305,6 +305,15 @@ TEST(PovrayScene, AbsorbsByBeersLaw) {
     EXPECT_LT(((1 - colour.array()) / fade - absorption.cast<double>()).abs().maxCoeff(), 1e-6);
 }
 
+TEST(PovrayScene, DispersesFromVioletToRed) {
+    SceneDesc desc = small_scene();
+    std::get<Dielectric>(desc.shapes[1].bsdf.model).int_ior = Ior::cauchy(1.5, 0.01);
+    const std::string interior = element(file(to_povray(desc, {}), "scene.pov"), "interior");
+    EXPECT_NEAR(numbers_after(interior, " ior ").at(0), 1.5 + 0.01 / (0.58756 * 0.58756), 1e-6);
+    EXPECT_NEAR(numbers_after(interior, "dispersion ").at(0),
+                (1.5 + 0.01 / (0.4 * 0.4)) / (1.5 + 0.01 / (0.7 * 0.7)), 1e-6);
+}
+
 /// A change that no renderer of that name can follow.
 struct Refused {
     const char* name;

@@ -96,6 +96,8 @@ TEST(Masks, KeepPixelsAtLeastAsBrightAsTheMean) {
     const Film r = grey_film("caustic", {0, 1, 2, 100});
     EXPECT_EQ(bright_pixels(r, "caustic", {true, true, true, false}),
               (PixelMask{false, true, true, false}));
+    EXPECT_EQ(bright_pixels(grey_film("caustic", {3, 0, 0, 1}), "caustic", all),
+              (PixelMask{true, false, false, true}));
     EXPECT_EQ(bright_pixels(grey_film("caustic", {0, 0, 0, 0}), "caustic", all),
               PixelMask(4, false));
 }
