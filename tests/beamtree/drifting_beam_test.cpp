@@ -4,20 +4,10 @@
 
 #include <cmath>
 
-#include "beamtree/tracing/beam_drift.h"
 #include "core/math/rng.h"
 
 namespace caustics::beamtree {
 namespace {
-
-TEST(DriftAccount, AddsRaysAndKeepsTheLargestBend) {
-    DriftAccount all{10, 1, 0.2};
-    all.add({5, 2, 0.1});
-    all.add({1, 0, 0.3});
-    EXPECT_EQ(all.rays, 16);
-    EXPECT_EQ(all.unknown, 3);
-    EXPECT_EQ(all.bend, 0.3);
-}
 
 // Two triangles with a common edge, whose rays move each in its own way.
 BeamSet pair_of_triangles(std::uint64_t seed) {
