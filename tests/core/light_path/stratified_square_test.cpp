@@ -82,5 +82,15 @@ TEST(StratifiedSquare, NeighboursInTheWalkAreNeighboursInTheSquare) {
     EXPECT_LT(sum / static_cast<double>(square.size()), 2 * stratum);
 }
 
+TEST(StratifiedSquare, IsWalkedToAndFro) {
+    const StratifiedSquare square = StratifiedSquare::at_least(200);
+    const double column = (point(square, 1, Vec2d::Zero()) - point(square, 0, Vec2d::Zero())).x();
+    const double row = 1 / (column * static_cast<double>(square.size()));
+    for (std::uint64_t i = 1; i < square.size(); ++i) {
+        const Vec2d step = point(square, i, Vec2d::Zero()) - point(square, i - 1, Vec2d::Zero());
+        EXPECT_NEAR(std::abs(step.x()) / column + std::abs(step.y()) / row, 1, 1e-9) << i;
+    }
+}
+
 }  // namespace
 }  // namespace caustics

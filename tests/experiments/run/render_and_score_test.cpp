@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "experiments/run/notes.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics::experiments {
@@ -51,14 +52,18 @@ TEST(Command, MakesThePictureAgain) {
         << indirect;
 }
 
-// What a terminal shows: stages, and within them the phases of the method.
-TEST(Run, TellsItsStagesAndPhases) {
+SceneDesc ball_lit_from(double height) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
                    support::sphere("ball", {0, 0, 1}, 0.5, support::glass(1.5F))};
-    desc.lights = {support::point_light({0, 0, 3}, 5)};
+    desc.lights = {support::point_light({0, 0, height}, 5)};
     desc.camera.width = desc.camera.height = 4;
-    const Scene scene(std::move(desc));
+    return desc;
+}
+
+// What a terminal shows: stages, and within them the phases of the method.
+TEST(Run, TellsItsStagesAndPhases) {
+    const Scene scene(ball_lit_from(3));
     RunRequest request = small_request();
     request.method = parse_method("photonmap", parameters_node({"photons=1000"}));
     std::vector<std::string> stages;
@@ -71,6 +76,15 @@ TEST(Run, TellsItsStagesAndPhases) {
     EXPECT_GT(stopwatch.of("precompute/balance").wall, 0);
     EXPECT_GT(stopwatch.of("render").wall, 0);
     EXPECT_GT(result.report.bytes, 1000U);
+    EXPECT_TRUE(result.notes.empty());
+}
+
+TEST(Run, TellsWhatIsToBeNotedOnItsScene) {
+    const Scene scene(ball_lit_from(1.5));  // on the ball
+    Stopwatch stopwatch;
+    const RunResult result = run(scene, small_request(), {}, stopwatch);
+    EXPECT_FALSE(result.notes.empty());
+    EXPECT_EQ(result.notes, notes_on(scene));
 }
 
 }  // namespace
