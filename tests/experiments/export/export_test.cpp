@@ -186,6 +186,17 @@ TEST(MitsubaScene, NeverAsksForStrataWithoutJitter) {
     }
 }
 
+TEST(MitsubaScene, SaysThatMitsubaDimsTheMirrorOfABlend) {
+    SceneDesc desc = small_scene();
+    const auto names_it = [](const std::string& note) {
+        return note.find("/floor: a mirror") == 0;
+    };
+    for (const bool blended : {false, true}) {
+        if (blended) desc.shapes[0].bsdf.mirror = MirrorPart{0.25F, Spectrum::Ones()};
+        EXPECT_EQ(std::ranges::count_if(to_mitsuba(desc, {}).notes, names_it), blended);
+    }
+}
+
 TEST(MitsubaScene, TakesAllPathsForLightBetweenReceivers) {
     const std::string text = to_mitsuba(small_scene(), {.indirect = true}).files[0].bytes;
     EXPECT_EQ(numbers_after(text, "name=\"max_depth\" value=\"")[0], -1);
