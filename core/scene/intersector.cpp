@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -31,6 +32,16 @@ void throw_embree_error(void*, RTCError code, const char* text) {
     if (code == RTC_ERROR_CANCELLED) return;
     throw std::runtime_error("Embree: " + std::string(text) + " (error " +
                              std::to_string(static_cast<int>(code)) + ")");
+}
+
+[[noreturn]] void throw_no_device() {
+    const RTCError code = rtcGetDeviceError(nullptr);
+    if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(
+        code == RTC_ERROR_UNSUPPORTED_CPU
+            ? "Embree does not run on this processor: it needs SSE2 or Neon at least"
+            : "Embree cannot start (error " + std::to_string(static_cast<int>(code)) +
+                  "): memory or threads may be limited (ulimit -v, -u)");
 }
 
 void exact_bounds(const RTCBoundsFunctionArguments* args) {
@@ -193,7 +204,7 @@ struct Intersector::Embree {
     explicit Embree(std::size_t shapes) {
         geometries.reserve(shapes);  // so that none moves
         device = rtcNewDevice(nullptr);
-        if (device == nullptr) throw std::runtime_error("Embree: no device");
+        if (device == nullptr) throw_no_device();
         rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
         scene = rtcNewScene(device);
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);

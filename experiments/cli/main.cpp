@@ -3,6 +3,7 @@
 
 #include <clocale>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -43,6 +44,21 @@ int run_and_report(int argc, char** argv) {
     }
 }
 
+// What no function catches: libraries that start threads end the program where the system has none left.
+[[noreturn]] void report_uncaught() {
+    std::string reason = "a library gave up without a reason";
+    try {
+        if (const std::exception_ptr uncaught = std::current_exception())
+            std::rethrow_exception(uncaught);
+    } catch (const std::exception& error) {
+        reason = error.what();
+    } catch (...) {
+        reason = "a library gave up by an unknown exception";
+    }
+    report(reason + " (threads or memory may be limited: ulimit -u, -v)", failed);
+    std::_Exit(failed);
+}
+
 }  // namespace
 
 }  // namespace caustics::experiments
@@ -53,6 +69,7 @@ int main(int argc, char** argv) {
     std::setlocale(LC_ALL, "C");
     hold_standard_streams();
     catch_interrupts();
+    std::set_terminate(report_uncaught);
     std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write like others
     try {
         return run_and_report(argc, argv);

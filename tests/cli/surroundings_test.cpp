@@ -9,6 +9,7 @@
 #include "core/render/film.h"
 #include "experiments/base/file_io.h"
 #include "tests/cli/program.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics::experiments {
@@ -84,6 +85,27 @@ TEST_F(Surroundings, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
     EXPECT_EQ(merge.exit_code, 2);
     EXPECT_NE(merge.err.find("merged.part/"), std::string::npos) << merge.err;
     EXPECT_NE(merge.err.find("File too large"), std::string::npos) << merge.err;
+    EXPECT_EQ(temporary_files(), 0U);
+}
+
+// Of the address space the system's loader needs some for the libraries themselves: there it is the one that complains.
+TEST_F(Surroundings, TooLittleAddressSpaceIsOneLine) {
+    if (CAUSTICS_ADDRESS_SANITIZER || CAUSTICS_THREAD_SANITIZER)
+        GTEST_SKIP() << "sanitizers reserve terabytes";
+    constexpr int unloaded = 127;
+    int failures = 0;
+    for (const int megabytes : {60, 100, 150, 190, 195, 200, 205, 220}) {
+        const ProgramResult result =
+            run(fmt::format("ulimit -v {}; $P render $S --method beamtree -o $D/a.exr --set "
+                            "/sensor/film/width=8 --set /sensor/film/height=6",
+                            1000 * megabytes));
+        if (result.exit_code == 0 || result.exit_code == unloaded) continue;
+        ++failures;
+        EXPECT_EQ(result.exit_code, 1) << megabytes << result.err;
+        EXPECT_TRUE(result.err.starts_with("causticbench: error: ")) << megabytes << result.err;
+        EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << megabytes << result.err;
+    }
+    EXPECT_GT(failures, 0);
     EXPECT_EQ(temporary_files(), 0U);
 }
 
