@@ -83,6 +83,40 @@ TEST(RestPhotons, BringWhatIsPruned) {
     EXPECT_NEAR(static_cast<double>(few.rest.size()) / (20'000 * share), 1, 0.1);
 }
 
+// A mirror whose light meets a small one above it, which sends it aside.
+SceneDesc two_mirrors() {
+    SineHeightfield flat;
+    flat.half_size = Vec2d::Constant(1);
+    SceneDesc desc;
+    desc.shapes = {
+        support::mesh("large", tessellate_heightfield(flat, 16), Transform::Identity(),
+                      support::mirror()),
+        support::rectangle("small", {0, 0, 1}, {0, 0.15, 0}, {0.1, 0, -0.1}, support::mirror()),
+        support::enclosure(6, support::diffuse(0.5F))};
+    desc.lights = {support::point_light({0.5, 0.4, 2}, 5)};
+    return desc;
+}
+
+// Few beams of much light each, that are little together, are left out as one.
+TEST(RestPhotons, BringASetThatIsPrunedAsAWhole) {
+    const Scene scene(two_mirrors());
+    const auto of_two_events = [](const TracedScene& traced) {
+        double sum = 0;
+        for (const BeamSet& set : traced.sets)
+            if (set.path.size() > 1) sum += flux_of(set);
+        return sum;
+    };
+    BeamParams params = params_of(2);
+    params.prune = 0;
+    const double all = of_two_events(traced(scene, params, 0));
+    EXPECT_GT(all, 0);
+    params.prune = 0.9;
+    const TracedScene few = traced(scene, params, 200'000);
+    EXPECT_EQ(of_two_events(few), 0);
+    EXPECT_NEAR(few.balance.pruned / all, 1, 0.01);
+    EXPECT_NEAR(brought(few) / all, 1, 0.05);
+}
+
 TEST(RestPhotons, TakeTheShareOfWhatIsLeftOut) {
     const Scene scene(glass_ball(16));
     BeamParams params = params_of(4);

@@ -71,6 +71,7 @@ TEST_F(Runner, MakesARowOfATrialThatHangs) {
     const json row = rows().at(0);
     EXPECT_EQ(row.at("status"), "timeout");
     EXPECT_EQ(row.at("message"), "no result after 0.5 s");
+    EXPECT_EQ(row.at("timeout_s"), 0.5);
     EXPECT_NE(log_of(row).find("timeout: no result after 0.5 s"), std::string::npos);
     EXPECT_GE(row.at("elapsed_s"), 0.5);
     EXPECT_NE(result.err.find("log.txt"), std::string::npos) << "failures name their log at once";
