@@ -103,6 +103,22 @@ BeamParams with_most(std::int64_t most) {
     return params;
 }
 
+// Those that are kept, and no others, have so much light.
+void expect_brightest(const TracedScene& some, const TracedScene& all) {
+    std::size_t bright = 0, kept = 0;
+    for (const BeamSet& set : all.sets)
+        if (set.path.size() > 1)
+            for (const Beam& beam : set.beams)
+                bright += static_cast<double>(beam.flux.mean()) >= some.least_light ? 1 : 0;
+    for (const BeamSet& set : some.sets)
+        if (set.path.size() > 1)
+            for (const Beam& beam : set.beams) {
+                EXPECT_GE(static_cast<double>(beam.flux.mean()), 0.999 * some.least_light);
+                ++kept;
+            }
+    EXPECT_NEAR(static_cast<double>(kept) / static_cast<double>(bright), 1, 0.02);
+}
+
 TEST(BeamBudget, KeepsTheBeamsWithTheMostLight) {
     const Scene scene(glass_ball());
     const TracedScene all = trace_scene(scene, "beams", {}, {});
@@ -116,19 +132,7 @@ TEST(BeamBudget, KeepsTheBeamsWithTheMostLight) {
         EXPECT_GT(some.balance.over_budget, 0);
         EXPECT_GT(light_of(some), before);
         before = light_of(some);
-        // Those that are kept, and no others, have so much light.
-        std::size_t bright = 0, kept = 0;
-        for (const BeamSet& set : all.sets)
-            if (set.path.size() > 1)
-                for (const Beam& beam : set.beams)
-                    bright += static_cast<double>(beam.flux.mean()) >= some.least_light ? 1 : 0;
-        for (const BeamSet& set : some.sets)
-            if (set.path.size() > 1)
-                for (const Beam& beam : set.beams) {
-                    EXPECT_GE(static_cast<double>(beam.flux.mean()), 0.999 * some.least_light);
-                    ++kept;
-                }
-        EXPECT_NEAR(static_cast<double>(kept) / static_cast<double>(bright), 1, 0.02);
+        expect_brightest(some, all);
     }
     const TracedScene roomy = trace_scene(scene, "beams", with_most(1'000'000), {});
     EXPECT_EQ(light_of(roomy), light_of(all));
@@ -145,6 +149,7 @@ TEST(BeamBudget, IsSharedByLightsTheSameWithAnyThreads) {
     const TracedScene one = trace_scene(scene, "beams", with_most(1'500), {});
     const TracedScene other = trace_scene(scene, "beams", with_most(1'500), two);
     EXPECT_EQ(one.least_light, other.least_light);
+    expect_brightest(one, trace_scene(scene, "beams", {}, {}));
     ASSERT_EQ(one.sets.size(), other.sets.size());
     for (std::size_t i = 0; i < one.sets.size(); ++i) {
         ASSERT_EQ(one.sets[i].beams.size(), other.sets[i].beams.size());

@@ -130,7 +130,7 @@ class Answers:
 
 
 class Rounds(unittest.TestCase):
-    SITES = [Site("a.cpp", 7 + n, n, n + 1, "constant", "1", "a | b", "", n) for n in range(3)]
+    SITES = [Site("core/a.cpp", 7 + n, n, n + 1, "constant", "1", "a | b", "", n) for n in range(3)]
 
     def trials(self, box, budget, *names, since=0):
         tests = [Test(f"unit.{name}", "unit", name, 1, since if name == "New.one" else 0, frozenset({0, 1})) for name in names]
@@ -155,10 +155,10 @@ class Rounds(unittest.TestCase):
         rows = [trials.judge(site) for site in self.SITES]
         rows[1].update(status="survived", by="")
         text = page.text(self.SITES, rows, {1: ("equivalent", "A sum of one.")})
-        self.assertIn("| file | tried | killed in round 1 | equivalent | not reached |\n", text)
-        self.assertIn("| a.cpp | 3 | 1 | 1 | 1 |\n", text)
-        self.assertIn("| 1 | a.cpp:8 | `1` | `a \\| b` | equivalent | A sum of one. |", text)
-        self.assertNotIn("a.cpp:7", text)
+        self.assertIn("| folder | tried | killed in round 1 | equivalent | not reached |\n", text)
+        self.assertIn("| core | 3 | 1 | 1 | 1 |\n", text)
+        self.assertIn("| 1 | core/a.cpp:8 | `1` | `a \\| b` | equivalent | A sum of one. |", text)
+        self.assertNotIn("core/a.cpp:7", text)
 
     def test_words_on_mutants_are_read_whole(self):
         with tempfile.NamedTemporaryFile("w+", suffix=".tsv") as file:

@@ -316,6 +316,13 @@ TEST(PovrayScene, AbsorbsByBeersLaw) {
     EXPECT_LT(((1 - colour.array()) / fade - absorption.cast<double>()).abs().maxCoeff(), 1e-6);
 }
 
+TEST(PovrayScene, BendsByTheRatioOfBothMedia) {
+    SceneDesc desc = small_scene();
+    desc.shapes[1].bsdf = support::glass(1.8F, 1.2F);
+    const std::string interior = element(file(to_povray(desc, {}), "scene.pov"), "interior");
+    EXPECT_NEAR(numbers_after(interior, " ior ").at(0), 1.5, 1e-6);
+}
+
 TEST(PovrayScene, DispersesFromVioletToRed) {
     SceneDesc desc = small_scene();
     std::get<Dielectric>(desc.shapes[1].bsdf.model).int_ior = Ior::cauchy(1.5, 0.01);

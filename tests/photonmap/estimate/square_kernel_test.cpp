@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "core/math/plane_axes.h"
 #include "tests/photonmap/estimate_map.h"
 #include "tests/support/statistics.h"
 
@@ -100,6 +102,38 @@ TEST(SquareKernel, WeighsByItsFormulaAndTheSameBitsOnEveryInstructionSet) {
                         3e-6)
                 << name(kind) << " " << i;
     }
+}
+
+TEST(SquareKernel, WeighsOnATiltedPlaneAsOnALevelOne) {
+    constexpr std::size_t count = 200;
+    const SquareKernel kernel({.kind = FilterKind::cone}, 1.2, 1);
+    std::vector<std::vector<float>> found;
+    for (const Vec3d& normal : {Vec3d(0, 0, 1), Vec3d(0.48, 0.64, 0.6), Vec3d(0.6, 0, -0.8)}) {
+        const PlaneAxes axes(normal);
+        const Vec3 centre(5, 3, 1);
+        std::array<std::vector<float>, 3> at;
+        for (std::vector<float>& each : at) each.resize(count + 16);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double turn = static_cast<double>(i);
+            const Vec3d off =
+                0.01 * turn / 2 * (std::cos(turn) * axes.right + std::sin(turn) * axes.forward);
+            for (std::size_t c = 0; c < 3; ++c)
+                at[c][i] = (centre + off.cast<float>())[static_cast<Eigen::Index>(c)];
+        }
+        const GatheredPhotons photons{.count = count,
+                                      .position = {at[0].data(), at[1].data(), at[2].data()}};
+        ReceiverPoint point = floor_point(centre);
+        point.geometric_normal = normal.cast<float>();
+        found.emplace_back(count + 16);
+        Shading(Isa::plain)
+            .weigh_on_square(kernel, kernel.reach(1), point, photons, found.back().data());
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_NEAR(found[1][i], found[0][i], 1e-4F) << i;
+        EXPECT_NEAR(found[2][i], found[0][i], 1e-4F) << i;
+    }
+    EXPECT_GT(found[0][1], 0.1F);
+    EXPECT_LT(found[0][count - 1], found[0][1] / 2);
 }
 
 // g'(a) by differences of what the disc holds of the weights' integral.

@@ -15,14 +15,13 @@ def words(path):
 
 
 def text(sites, rows, judged):
-    """Tables of files, of operators and of what survived the first round. `rows` are results in the order of trials."""
+    """Tables of folders and of what survived the first round. `rows` are results in the order of trials."""
     site_of = {site.number: site for site in sites}  # the compiler may have dropped some numbers
     ends = {}
     for row in rows:
         ends.setdefault(row["number"], []).append(row)
     rounds = max((row["round"] for row in rows), default=1)
-    lines = counted("file", lambda number: site_of[number].file, ends, judged, rounds)
-    lines += ["", *counted("operator", lambda number: site_of[number].operator, ends, judged, rounds)]
+    lines = counted("folder", lambda number: site_of[number].file.split("/")[0], ends, judged, rounds)
     lines += ["", "| no. | place | what is there | mutant | came of it | reason |", "|--:|---|---|---|---|---|"]
     for number in sorted(ends, key=lambda number: (site_of[number].file, site_of[number].start)):
         if ends[number][0]["status"] != "killed":
