@@ -155,8 +155,8 @@ class Rounds(unittest.TestCase):
         rows = [trials.judge(site) for site in self.SITES]
         rows[1].update(status="survived", by="")
         text = page.text(self.SITES, rows, {1: ("equivalent", "A sum of one.")})
-        self.assertIn("| folder | tried | killed in round 1 | equivalent | not reached |\n", text)
-        self.assertIn("| core | 3 | 1 | 1 | 1 |\n", text)
+        self.assertIn("| folder | tried | killed at first | killed since | equivalent | not reached |\n", text)
+        self.assertIn("| core | 3 | 1 |  | 1 | 1 |\n", text)
         self.assertIn("| 1 | core/a.cpp:8 | `1` | `a \\| b` | equivalent | A sum of one. |", text)
         self.assertNotIn("core/a.cpp:7", text)
 

@@ -1,6 +1,8 @@
 """What came of mutants, as tables in Markdown."""
 from collections import Counter
 
+KILLED = ("killed at first", "killed since")
+
 
 def words(path):
     """Class and reason by the mutant's number, from lines with tabs; what begins with # is for readers."""
@@ -20,8 +22,7 @@ def text(sites, rows, judged):
     ends = {}
     for row in rows:
         ends.setdefault(row["number"], []).append(row)
-    rounds = max((row["round"] for row in rows), default=1)
-    lines = counted("folder", lambda number: site_of[number].file.split("/")[0], ends, judged, rounds)
+    lines = counted("folder", lambda number: site_of[number].file.split("/")[0], ends, judged)
     lines += ["", "| no. | place | what is there | mutant | came of it | reason |", "|--:|---|---|---|---|---|"]
     for number in sorted(ends, key=lambda number: (site_of[number].file, site_of[number].start)):
         if ends[number][0]["status"] != "killed":
@@ -31,17 +32,15 @@ def text(sites, rows, judged):
     return "\n".join(lines)
 
 
-def counted(head, group, ends, judged, rounds):
-    """A line a group: how many mutants were tried, killed in each round, and what the others are."""
-    kinds = sorted({outcome(ends[number], judged.get(number))[0] for number in ends if is_alive(ends[number])})
+def counted(head, group, ends, judged):
+    """A line a group: how many mutants were tried, killed in the first round and since, and what the others are."""
     counts = {}
     for number, own in ends.items():
-        what = outcome(own, judged.get(number))[0] if is_alive(own) else own[-1]["round"]
+        what = outcome(own, judged.get(number))[0]
         for name in (group(number), "**all**"):
             counts.setdefault(name, Counter())[what] += 1
-    columns = [*range(1, rounds + 1), *kinds]
-    titles = [f"killed in round {column}" if isinstance(column, int) else column for column in columns]
-    lines = [f"| {head} | tried | {' | '.join(titles)} |", "|---|--:|" + "--:|" * len(columns)]
+    columns = [*KILLED, *sorted(set(counts.get("**all**", ())) - set(KILLED))]
+    lines = [f"| {head} | tried | {' | '.join(columns)} |", "|---|--:|" + "--:|" * len(columns)]
     for name in sorted(counts, key=lambda name: (name == "**all**", name)):
         cells = [str(counts[name][column] or "") for column in columns]
         lines.append(f"| {name} | {counts[name].total()} | {' | '.join(cells)} |")
@@ -55,11 +54,11 @@ def is_alive(own):
 def outcome(own, word):
     """What a mutant is in the end, and why."""
     if not is_alive(own):
-        return f"killed in round {own[-1]['round']}", f"by {own[-1]['by']}"
+        return KILLED[own[-1]["round"] > 1], f"by {own[-1]['by']}"
     return word or ("not reached" if own[-1]["status"] == "unreached" else "not judged", "")
 
 
 def code(source):
     """Source in a cell of a table; nothing is a deletion."""
-    short = source if len(source) <= 110 else source[:107] + "..."
+    short = source if len(source) <= 60 else source[:57] + "..."
     return "`" + short.replace("|", "\\|") + "`" if source else "deleted"
