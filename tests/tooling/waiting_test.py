@@ -7,6 +7,7 @@ Nothing here is timed: each program is asked for much more work than it will do,
 """
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -47,7 +48,7 @@ class Waiting(unittest.TestCase):
     def test_render_in_each_phase(self):
         render = ["render", *POOL, "--spp", "100", "-o", "a.exr", "--method"]
         self.interrupt([*render, "photonmap", "--param", "photons=30000000"], r"^trace \[.* %, ETA at least \d")
-        self.interrupt([*render, "beamtree"], r"^beams \[.* %, ETA at least \d")
+        self.interrupt([*render, "beamtree", "--set", "/water/resolution=512"], r"^beams \[.* %, ETA at least \d")
         self.interrupt([*render, "none"], r"^render \[.* %, ETA \d")
         self.interrupt([*render, "lighttrace", "--param", "paths=100000000000"], r" %, ETA ")
 
@@ -79,6 +80,25 @@ class Waiting(unittest.TestCase):
     def test_report(self):
         work = self.interrupt(["report", ROOT / "results/quickstart-2026-11", "-o", "page.html"], r"^report: \[\d+/\d+\] ETA ")
         self.assertFalse([line for _, line in work.lines() if "Traceback" in line], work.lines())
+
+    def test_ctrl_c_in_the_midst_of_a_line(self):
+        script = f"""import io, signal, sys
+sys.path.insert(0, {str(ROOT / "tools")!r})
+from report import report_files
+class Stopped(io.RawIOBase):
+    pressed = False
+    writable = lambda self: True
+    def write(self, text):
+        if not self.pressed:
+            self.pressed = True
+            signal.raise_signal(signal.SIGINT)
+        return len(text)
+report_files.end_on_interrupt("tool")
+sys.stderr = io.TextIOWrapper(io.BufferedWriter(Stopped()))
+print("half a line", file=sys.stderr, flush=True)
+"""
+        run = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, check=False)
+        self.assertEqual((run.returncode, run.stderr), (130, "tool: interrupted\n"))
 
 
 if __name__ == "__main__":

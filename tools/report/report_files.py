@@ -34,9 +34,17 @@ def write(path, content):
 def end_on_interrupt(tool):
     """From now on Ctrl-C ends the program with exit code 130 and one line, wherever it is."""
     def end(*_):
-        print(f"{tool}: interrupted", file=sys.stderr)
+        write_at_once(f"{tool}: interrupted\n")
         raise SystemExit(130)
     signal.signal(signal.SIGINT, end)
+
+
+def write_at_once(text):
+    """Past Python's buffer of standard error, which Ctrl-C may find half-written and then refuses to take more."""
+    try:
+        os.write(2, text.encode("utf-8", "replace"))
+    except OSError:  # nobody listens
+        pass
 
 
 class Progress:
@@ -65,7 +73,7 @@ class Progress:
 
     @staticmethod
     def write(line):
-        print(f"\r\033[K{line}", end="", file=sys.stderr, flush=True)
+        write_at_once(f"\r\033[K{line}")
 
 
 def report(tool, what, output, make):
