@@ -18,10 +18,14 @@ public:
 
 class BeamTree final : public BeamEstimator {
 public:
-    BeamTree(const Scene& scene, TracedScene traced, Forest forest, std::uint32_t rest_nearest,
+    BeamTree(const Scene& scene, TracedScene traced, Forest forest, const BeamTreeParams& params,
              int threads)
-        : BeamEstimator(scene, std::move(traced), rest_nearest, threads),
-          forest_(std::move(forest)) {}
+        : BeamEstimator(scene, std::move(traced), static_cast<std::uint32_t>(params.rest_nearest),
+                        threads),
+          forest_(std::move(forest)),
+          pixel_footprint_(params.pixel_footprint) {}
+
+    bool asks_for_cells() const override { return pixel_footprint_; }
 
     std::unique_ptr<QueryContext> make_context() const override {
         return std::make_unique<ConeSearch>();
@@ -39,6 +43,7 @@ private:
     }
 
     Forest forest_;
+    bool pixel_footprint_;
 };
 
 }  // namespace
@@ -52,8 +57,7 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTree
                     completed ? static_cast<std::uint64_t>(params.rest_photons) : 0);
     options.phase("tree");
     Forest forest(scene, traced, params, options);
-    return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest),
-                                      static_cast<std::uint32_t>(params.rest_nearest),
+    return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest), params,
                                       options.threads);
 }
 

@@ -62,6 +62,12 @@ std::vector<Parameter<P>> tree_parameters() {
                                        .meaning = "With two_slice: side of the square round a "
                                                   "point that irradiance is averaged over."})
             .usually("none"),
+        parameter::yes_or_no<P>(
+            &P::pixel_footprint,
+            {.key = "pixel_footprint",
+             .meaning = "With two_slice: averages over each pixel as the camera sees it on the "
+                        "receiver; what mirrors and glass show is asked at points."})
+            .only_if([](const P& p) { return p.pixel_footprint; }),
         parameter::choice<P>(
             &P::rest, {{"none", P::Rest::none}, {"photons", P::Rest::photons}},
             {.key = "rest",
@@ -102,10 +108,17 @@ void settle_bound(const JsonNode& node, P& params) {
     if (const auto threshold = node.find("spread_threshold"))
         if (params.bound != Bound::hybrid)
             threshold->fail("only the bound \"hybrid\" has a spread threshold");
-    if (const auto footprint = node.find("footprint"))
-        if (params.bound != Bound::two_slice)
-            footprint->fail("only the bound \"two_slice\" averages over squares of its planes");
-    if (params.dispersion == Dispersion::intervals && params.footprint > 0)
+}
+
+void settle_footprint(const JsonNode& node, const P& params) {
+    for (const char* key : {"footprint", "pixel_footprint"})
+        if (const auto given = node.find(key); given && params.bound != Bound::two_slice)
+            given->fail("only the bound \"two_slice\" averages over squares of its planes");
+    if (params.pixel_footprint && params.footprint > 0)
+        node.at("pixel_footprint")
+            .fail("footprint gives the squares' side already (leave one out)");
+    if (params.dispersion == Dispersion::intervals &&
+        (params.footprint > 0 || params.pixel_footprint))
         node.at("dispersion").fail("intervals are of points, not of squares (leave out footprint)");
 }
 
@@ -149,6 +162,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
          .settle =
              [](const JsonNode& node, P& params) {
                  settle_bound(node, params);
+                 settle_footprint(node, params);
                  settle_tree(node, params);
                  settle_rest(node, params);
              },

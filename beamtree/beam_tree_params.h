@@ -36,6 +36,8 @@ struct BeamTreeParams : BeamParams {
     /// exactly [m]; 0: at the point alone. Only with the bound two_slice; beams that spread too far for
     /// a fixed plane, and polygons that the plane cuts, are asked at the point.
     float footprint = 0;
+    /// The same over the cell of the pixel or its stratum that a point stands for, where the camera sees it directly.
+    bool pixel_footprint = false;
     Rest rest = Rest::none;
     std::int64_t rest_photons =
         300'000;            ///< paths for all light on casters; what is left out has its share

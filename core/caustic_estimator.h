@@ -15,6 +15,8 @@ class CausticEstimator : public PointEstimator {
 public:
     /// Of the direct light in its pictures.
     virtual Shadows shadows() const { return Shadows::opaque; }
+    /// Whether it answers with means over the pixels' cells (ReceiverPoint::cell), where a camera sees its points.
+    virtual bool asks_for_cells() const { return false; }
 };
 
 }  // namespace caustics

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/material/bsdf.h"
+#include "core/pixel_cell.h"
 #include "core/scene/scene.h"
 
 namespace caustics {
@@ -24,6 +25,8 @@ struct ReceiverPoint {
     const Spectrum* medium = nullptr;
     std::uint64_t id = 0;  ///< names the point's random numbers
     float radius = 0;      ///< of the disc that `lighttrace` gathers over [m]
+    /// The camera sample's part of the picture, for methods that ask for it; null: there is none.
+    const PixelCell* cell = nullptr;
 };
 
 /// The receiver point at a surface point, seen along `wo`; its normals are turned to that side.

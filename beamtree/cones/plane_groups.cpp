@@ -8,7 +8,6 @@
 namespace caustics::beamtree {
 namespace {
 
-constexpr float least_sine = 0.25F;
 constexpr float good_sine = 0.5F;
 
 // Of the six: +x, -x, +y, ...

@@ -46,6 +46,20 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     return ray;
 }
 
+// Whether what light meets first on its way to a part of a cell is the receiver: the same shape about where the part lies, or
+// any other just there, of a floor in pieces. Surfaces bend away from the point's tangent plane.
+bool meets_receiver(const Scene& scene, const ReceiverPoint& point, const BeamHit& hit,
+                    const SegmentEnd& start) {
+    const Vec3 middle = point.position + hit.offset;
+    const Vec3 direction = (middle - start.position).normalized();
+    const auto met = scene.intersect(spawn_ray(start, direction));
+    if (!met) return false;
+    const float away = (met->position - middle).norm();
+    const float slant = std::abs(point.geometric_normal.dot(direction));
+    return away <= hit.cell_radius / 100 ||
+           (met->shape == point.shape && away * slant <= 2 * hit.cell_radius);
+}
+
 }  // namespace
 
 BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
@@ -83,7 +97,9 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
         if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
         const Spectrum factor = share * weight(Vec3(-ray.direction));
         if (is_black(factor)) continue;
-        if (scene_.occluded(receiver, ray.start)) continue;
+        if (hit.cell_radius > 0 ? !meets_receiver(scene_, point, hit, ray.start)
+                                : scene_.occluded(receiver, ray.start))
+            continue;
         // Of light after several events the earlier legs were seen to be free when it was traced.
         if (set.path.size() <= 1 && !sees(scene_, ray.start, set.light)) continue;
         const double cosine =

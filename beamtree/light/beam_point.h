@@ -24,13 +24,16 @@ struct BeamHit {
     /// Covariances of the weights (1, 2), (2, 0) and (0, 1) over the part of the square that is covered;
     /// 0 where the point itself is asked.
     Vec3 covariances = Vec3::Zero();
+    /// Where the middle of a pixel's cell part lies, from the point, and the cell's radius [m]; 0: not of a cell.
+    Vec3 offset = Vec3::Zero();
+    float cell_radius = 0;
     /// Of a beam that drifts: the places in its bin of wavelengths between which it holds the point.
     double from = 0;
     double to = 0;
 
     double place() const { return (from + to) / 2; }
     /// Whether the mean over a square is asked for, of which this is a part.
-    bool is_part_of_square() const { return coverage != 1; }
+    bool is_part_of_square() const { return coverage != 1 || cell_radius > 0; }
 };
 
 /// Does the point that the plane goes through lie inside the beam? Writes up to two hits (a polygon

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "beamtree/cones/plane_groups.h"
 #include "beamtree/light/find_in_beam.h"
 
 namespace caustics::beamtree {
@@ -19,14 +20,38 @@ struct Part {
     std::size_t count = 0;
 };
 
-// What lies at sign * axis <= half [Sutherland and Hodgman 1974].
-Part cut(const Part& from, Eigen::Index axis, double sign, double half) {
+/// A convex quadrilateral: what lies at outward . p <= limit for each side.
+struct Window {
+    std::array<Vec2d, 4> outward;
+    std::array<double, 4> limit;
+};
+
+Window square_window(double half) {
+    return {{Vec2d(-1, 0), Vec2d(1, 0), Vec2d(0, -1), Vec2d(0, 1)}, {half, half, half, half}};
+}
+
+// Empty where it has no area.
+std::optional<Window> window_of(const std::array<Vec2d, 4>& corners) {
+    Window window;
+    const double area = cross(corners[2] - corners[0], corners[3] - corners[1]);
+    if (area == 0) return {};
+    const double turn = area > 0 ? 1 : -1;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec2d side = corners[(i + 1) % 4] - corners[i];
+        window.outward[i] = turn * Vec2d(side.y(), -side.x());
+        window.limit[i] = window.outward[i].dot(corners[i]);
+    }
+    return window;
+}
+
+// What lies within one side [Sutherland and Hodgman 1974].
+Part cut(const Part& from, const Vec2d& outward, double limit) {
     Part kept;
     for (std::size_t i = 0; i < from.count; ++i) {
         const Vec2d& a = from.corners[i];
         const Vec2d& b = from.corners[(i + 1) % from.count];
-        const double beyond_a = sign * a[axis] - half;
-        const double beyond_b = sign * b[axis] - half;
+        const double beyond_a = outward.dot(a) - limit;
+        const double beyond_b = outward.dot(b) - limit;
         if (beyond_a <= 0) kept.corners[kept.count++] = a;
         if ((beyond_a <= 0) != (beyond_b <= 0))
             kept.corners[kept.count++] = a + beyond_a / (beyond_a - beyond_b) * (b - a);
@@ -34,11 +59,10 @@ Part cut(const Part& from, Eigen::Index axis, double sign, double half) {
     return kept;
 }
 
-Part on_square(const Triangle& triangle, double half) {
+Part within(const Window& window, const Triangle& triangle) {
     Part part;
     for (const Vec2d& corner : triangle) part.corners[part.count++] = corner;
-    for (const Eigen::Index axis : {0, 1})
-        for (const double sign : {-1.0, 1.0}) part = cut(part, axis, sign, half);
+    for (std::size_t i = 0; i < 4; ++i) part = cut(part, window.outward[i], window.limit[i]);
     return part;
 }
 
@@ -70,23 +94,65 @@ Extent extent(const Part& part) {
     return found;
 }
 
-// The triangle round the plane's point, in the frame's coordinates. Empty where its light does not
-// come down to the plane everywhere, or not evenly.
-std::optional<Triangle> project(const std::array<const VertexRay*, 3>& rays, const TestPlane& plane,
-                                const SliceFrame& frame) {
-    const Vec2d origin = frame.across(plane.point());
+Part all_of(const PixelCell& cell) {
+    Part part;
+    for (const Vec2d& corner : cell.corners) part.corners[part.count++] = corner;
+    return part;
+}
+
+double area_on_film(const Part& part, const PixelCell& cell) {
+    double area = 0;
+    for (std::size_t i = 1; i + 1 < part.count; ++i) {
+        const Vec2d first = cell.on_film(part.corners[0]);
+        area += cross(cell.on_film(part.corners[i]) - first,
+                      cell.on_film(part.corners[i + 1]) - first) /
+                2;
+    }
+    return area;
+}
+
+/// A plane with coordinates from its point, and the window on it.
+struct Asked {
+    TestPlane plane;
+    const SliceFrame* frame;  ///< whose axes are the coordinates', or:
+    const PixelCell* cell;
+    Window window;
+    double area;  ///< of the window; of a cell as the camera shows it
+
+    // Empty for a cell that has no area.
+    static std::optional<Asked> about(const BeamSquare& square, const TestPlane& plane) {
+        if (square.cell == nullptr)
+            return Asked{plane, &square.frame, nullptr, square_window(square.half),
+                         4 * square.half * square.half};
+        const auto window = window_of(square.cell->corners);
+        if (!window) return {};
+        return Asked{TestPlane(plane.point().cast<float>(), square.cell->normal.cast<float>()),
+                     nullptr, square.cell, *window,
+                     area_on_film(all_of(*square.cell), *square.cell)};
+    }
+    double area_of(const Part& part, const Extent& extent) const {
+        return cell == nullptr ? extent.area : area_on_film(part, *cell);
+    }
+    Vec2d place(const Vec3d& p) const {
+        return cell == nullptr ? frame->across(p) - frame->across(plane.point())
+                               : cell->along(p - plane.point());
+    }
+};
+
+// The triangle on the plane that is asked about. Empty where its light does not come down to the plane
+// everywhere, or not evenly.
+std::optional<Triangle> project(const std::array<const VertexRay*, 3>& rays, const Asked& asked) {
     Triangle at;
     double least = 1;
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double height = plane.height(rays[i]->position);
-        const double steepness = plane.steepness(rays[i]->direction);
+        const double height = asked.plane.height(rays[i]->position);
+        const double steepness = asked.plane.steepness(rays[i]->direction);
         if (!(height > 0 && steepness > 0)) return {};
         least = std::min(least, steepness);
         most = std::max(most, steepness);
-        at[i] = frame.across(rays[i]->position.cast<double>() +
-                             height / steepness * rays[i]->direction.cast<double>()) -
-                origin;
+        at[i] = asked.place(rays[i]->position.cast<double>() +
+                            height / steepness * rays[i]->direction.cast<double>());
     }
     if (most > most_uneven * least) return {};
     return at;
@@ -114,14 +180,30 @@ Vec3 weights_at(const Vec2d& p, const Triangle& t, double area) {
 
 }  // namespace
 
+CellReach reach_of(const PixelCell& cell, const SliceFrame& frame) {
+    constexpr auto sine = static_cast<double>(least_sine);
+    const double most_slant = std::sqrt(1 / (sine * sine) - 1);
+    CellReach reach;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3d corner = cell.corner(i);
+        const double slanted = most_slant * std::abs(frame.rise(corner));
+        reach.across =
+            reach.across.cwiseMax(frame.along(corner).cwiseAbs() + Vec2d::Constant(slanted));
+        reach.down = std::max(reach.down, -frame.rise(corner));
+    }
+    return reach;
+}
+
 void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
                     const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,
                     std::vector<BeamHit>& hits, SearchCounts& counts) {
     const std::size_t count = rays[3] == nullptr ? 1 : 2;
+    const auto asked = Asked::about(square, plane);
     std::array<Triangle, 2> triangles;
     std::array<double, 2> areas{};
     for (std::size_t i = 0; i < count; ++i) {
-        const auto projected = project({rays[0], rays[1 + i], rays[2 + i]}, plane, square.frame);
+        const auto projected =
+            asked ? project({rays[0], rays[1 + i], rays[2 + i]}, *asked) : std::nullopt;
         if (!projected) return find_in_beam(set, rays, number, plane, hits, counts);
         triangles[i] = *projected;
         areas[i] = area_of(*projected);
@@ -132,18 +214,23 @@ void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& r
     const std::size_t before = hits.size();
     for (std::size_t i = 0; i < count; ++i) {
         if (areas[i] == 0) continue;
-        const Extent part = extent(on_square(triangles[i], square.half));
+        const Part covered = within(asked->window, triangles[i]);
+        const Extent part = extent(covered);
         if (!(part.area / areas[i] > 0)) continue;
         BeamHit hit;
         hit.set = number.set;
         hit.beam = number.beam;
         hit.triangle = static_cast<std::uint8_t>(i);
         hit.winding = areas[i] > 0 ? 1 : -1;
-        hit.plane_normal = plane.normal().cast<float>();
+        hit.plane_normal = asked->plane.normal().cast<float>();
         hit.weights = weights_at(part.middle, triangles[i], areas[i]);
         hit.covariances = weights_covariances(part.covariance, triangles[i], areas[i]);
         hit.area = std::abs(together ? areas[0] + areas[1] : areas[i]);
-        hit.coverage = std::abs(part.area) / (4 * square.half * square.half);
+        hit.coverage = std::abs(asked->area_of(covered, part)) / std::abs(asked->area);
+        if (square.cell != nullptr) {
+            hit.offset = square.cell->at(part.middle).cast<float>();
+            hit.cell_radius = static_cast<float>(square.cell->radius);
+        }
         if (count == 2 && !together) hit.flux_share = set.beams[number.beam].share_of(i);
         hits.push_back(hit);
     }

@@ -2,15 +2,26 @@
 
 #include "beamtree/light/beam_point.h"
 #include "beamtree/slices/slice_frame.h"
+#include "core/pixel_cell.h"
 
 namespace caustics::beamtree {
 
-/// Squares on the planes of a frame, along its axes: where irradiance is averaged instead of being
-/// asked at a point (`footprint`).
+/// Where irradiance is averaged instead of being asked at a point: squares on the planes of a frame, along its axes
+/// (`footprint`), or the cell of a camera sample on the receiver's plane (`pixel_footprint`).
 struct BeamSquare {
     const SliceFrame& frame;
     double half;  ///< of a side [m]
+    const PixelCell* cell = nullptr;
 };
+
+/// How far a cell reaches from its point [m]: down from the frame's plane through it, and, along both axes, on that
+/// plane where the cell's light passes it. The light comes down to the plane at a sine of least_sine or more
+/// (fixed_planes).
+struct CellReach {
+    Vec2d across = Vec2d::Zero();
+    double down = 0;
+};
+CellReach reach_of(const PixelCell& cell, const SliceFrame& frame);
 
 /// The part of a beam's caustic polygon that lies on the square round the plane's point. Appends a hit
 /// for each of the beam's triangles that has one, with the share of the square it covers, and the

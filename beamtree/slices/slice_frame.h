@@ -30,6 +30,9 @@ public:
     Vec2d across(const Vec3d& p) const {
         return {axes_.right.dot(p - origin_), axes_.forward.dot(p - origin_)};
     }
+    /// Of a way from one point to another.
+    Vec2d along(const Vec3d& way) const { return {axes_.right.dot(way), axes_.forward.dot(way)}; }
+    double rise(const Vec3d& way) const { return up_.dot(way); }
     /// The ray must come down.
     RaySlices slices(const VertexRay& ray) const;
 

@@ -57,6 +57,9 @@ struct SliceView {
 struct SlicePoint {
     float at[2];
     float share;  ///< of the way down, in [0, 1]
+    /// What lies so near along both axes is to be found as well [m]; 0: triangles that hold the point.
+    float reach[2];
+    float last_share;  ///< of the lowest thing near it that is asked about
 };
 
 /// A beam a triangle of which may hold a point.

@@ -222,10 +222,13 @@ struct SliceTree::Group {
     std::array<SlicePoint, room> points;
     std::array<std::uint32_t, room> number;
     std::array<const Vec3*, room> position;
+    std::array<const PixelCell*, room> cell;
     std::uint32_t count = 0;
     /// x, y, share, and nothing.
     Eigen::Array4f low;
     Eigen::Array4f high;
+    float reach[2];  ///< of the points that reach farthest
+    float last_share;
 
     // Unless the box round the points would become too large.
     bool take(const SlicePoint& point, const Eigen::Array4f& largest) {
@@ -235,6 +238,12 @@ struct SliceTree::Group {
         if (count == room || !(new_high - new_low <= largest).all()) return false;
         low = new_low;
         high = new_high;
+        const auto widen = [this](float& most, float by) {
+            most = count == 0 ? by : std::max(most, by);
+        };
+        widen(reach[0], point.reach[0]);
+        widen(reach[1], point.reach[1]);
+        widen(last_share, point.last_share);
         points[count++] = point;
         return true;
     }
@@ -243,11 +252,14 @@ struct SliceTree::Group {
 // False for a point above all polygons.
 bool SliceTree::place(const ReceiverPoint& point, SlicePoint& placed) const {
     const double height = frame_.height(point.position);
-    if (height > frame_.top()) return false;
+    const CellReach reach = point.cell == nullptr ? CellReach{} : reach_of(*point.cell, frame_);
+    if (height - reach.down > frame_.top()) return false;
     if (height < frame_.bottom()) throw std::out_of_range("a receiver point below the slab");
     const Vec2d across = frame_.across(point.position.cast<double>());
     placed = {{static_cast<float>(across.x()), static_cast<float>(across.y())},
-              static_cast<float>(frame_.share(height))};
+              static_cast<float>(frame_.share(std::min(height, frame_.top()))),
+              {static_cast<float>(reach.across.x()), static_cast<float>(reach.across.y())},
+              static_cast<float>(frame_.share(height - reach.down))};
     return true;
 }
 
@@ -273,6 +285,7 @@ void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoin
         Group& group = groups[count - 1];
         group.number[group.count - 1] = i;
         group.position[group.count - 1] = &points[i].position;
+        group.cell[group.count - 1] = points[i].cell;
     }
     if (count > 0) find(std::span(groups).first(count), sets, stack, hits, counts);
 }
@@ -289,10 +302,10 @@ void SliceTree::find(std::span<const Group> groups, std::span<const BeamSet> set
         const Group& group = groups[i];
         walks[i] = {group.points.data(),
                     group.count,
-                    {group.low[0], group.low[1]},
-                    {group.high[0], group.high[1]},
+                    {group.low[0] - group.reach[0], group.low[1] - group.reach[1]},
+                    {group.high[0] + group.reach[0], group.high[1] + group.reach[1]},
                     group.low[2],
-                    group.high[2],
+                    group.last_share,
                     stack.data() + i * room,
                     1,
                     found[i].data(),
@@ -337,8 +350,10 @@ void SliceTree::test(const SliceWalk& walk, const Group& group, std::span<const 
         const VertexRay* const corner = corners_.data() + candidate.beam * corner_count_;
         std::array<const VertexRay*, 4> rays = {corner, corner + 1, corner + 2, nullptr};
         if (corner_count_ == 4 && !corner[3].direction.isZero(0)) rays[3] = corner + 3;
-        if (half_footprint_ > 0)
-            find_on_square(set, rays, number, plane, {frame_, half_footprint_}, found_here, counts);
+        const PixelCell* const cell = group.cell[candidate.point];
+        if (half_footprint_ > 0 || cell != nullptr)
+            find_on_square(set, rays, number, plane, {frame_, half_footprint_, cell}, found_here,
+                           counts);
         else
             find_in_beam(set, rays, number, plane, found_here, counts);
     }

@@ -23,6 +23,12 @@ public:
 
     static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
         const __m256 share = _mm256_set1_ps(point.share);
+        const __m256 begun =
+            not_above(_mm256_load_ps(leaf.begun_from), _mm256_set1_ps(point.last_share));
+        if (point.reach[0] > 0) {
+            const __m256 taken = not_above(_mm256_setzero_ps(), _mm256_load_ps(leaf.slack));
+            return bits(_mm256_and_ps(_mm256_and_ps(begun, taken), box_holds(leaf, point, room)));
+        }
         __m256 x[3];
         __m256 y[3];
         for (unsigned c = 0; c < 3; ++c) {
@@ -40,15 +46,16 @@ public:
         const __m256 most = _mm256_max_ps(_mm256_max_ps(a, b), c);
         const __m256 holds = _mm256_or_ps(not_above(minus, least), not_above(most, slack));
         const __m256 cut = _mm256_cmp_ps(share, _mm256_load_ps(leaf.whole_from), _CMP_LT_OQ);
-        const __m256 begun = not_above(_mm256_load_ps(leaf.begun_from), share);
         const uint32_t held = bits(_mm256_and_ps(begun, holds));
         const uint32_t clipped = bits(_mm256_andnot_ps(holds, _mm256_and_ps(begun, cut)));
         if (clipped == 0) return held;
-        return held | (clipped & bits(_mm256_and_ps(box_holds(leaf, 0, point, room),
-                                                    box_holds(leaf, 1, point, room))));
+        return held | (clipped & bits(box_holds(leaf, point, room)));
     }
 
 private:
+    static __m256 box_holds(const SliceLeaf& leaf, const SlicePoint& point, float room) {
+        return _mm256_and_ps(box_holds(leaf, 0, point, room), box_holds(leaf, 1, point, room));
+    }
     static __m256 box_holds(const SliceLeaf& leaf, unsigned axis, const SlicePoint& point,
                             float room) {
         __m256 top[3];
@@ -66,8 +73,9 @@ private:
         const __m256 share = _mm256_set1_ps(point.share);
         const __m256 low_here = _mm256_add_ps(low, _mm256_mul_ps(share, low_growth));
         const __m256 high_here = _mm256_add_ps(high, _mm256_mul_ps(share, high_growth));
-        return _mm256_and_ps(not_above(low_here, _mm256_set1_ps(point.at[axis] + room)),
-                             not_above(_mm256_set1_ps(point.at[axis] - room), high_here));
+        const float reach = point.reach[axis] + room;
+        return _mm256_and_ps(not_above(low_here, _mm256_set1_ps(point.at[axis] + reach)),
+                             not_above(_mm256_set1_ps(point.at[axis] - reach), high_here));
     }
 
     __m256 meets(const SliceNode& node, unsigned axis) const {

@@ -30,7 +30,8 @@ public:
         return bits;
     }
 
-    // The point is on one side of all three edges, but for rounding; or the triangle is cut there and its box holds it.
+    // The point is on one side of all three edges, but for rounding; or the triangle is cut there and its box holds it. Of a
+    // point that reaches farther the boxes alone are asked.
     static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
         uint32_t bits = 0;
         for (unsigned i = 0; i < slice_width; ++i) {
@@ -44,11 +45,12 @@ public:
             const float b = x[1] * y[2] - y[1] * x[2];
             const float c = x[2] * y[0] - y[2] * x[0];
             const float slack = leaf.slack[i];
-            const bool holds = -slack <= least(least(a, b), c) || most(most(a, b), c) <= slack;
-            const bool cut = point.share < leaf.whole_from[i] &&
+            const bool holds = point.reach[0] == 0 &&
+                               (-slack <= least(least(a, b), c) || most(most(a, b), c) <= slack);
+            const bool cut = (point.reach[0] > 0 ? slack >= 0 : point.share < leaf.whole_from[i]) &&
                              box_holds(leaf, i, 0, point, room) &&
                              box_holds(leaf, i, 1, point, room);
-            const bool begun = leaf.begun_from[i] <= point.share;
+            const bool begun = leaf.begun_from[i] <= point.last_share;
             bits |= (begun && (holds || cut) ? 1U : 0U) << i;
         }
         return bits;
@@ -68,8 +70,9 @@ private:
         const float high = most(most(top[0], top[1]), top[2]);
         const float low_growth = least(least(bottom[0], bottom[1]), bottom[2]) - low;
         const float high_growth = most(most(bottom[0], bottom[1]), bottom[2]) - high;
-        return low + point.share * low_growth <= point.at[axis] + room &&
-               point.at[axis] - room <= high + point.share * high_growth;
+        const float reach = point.reach[axis] + room;
+        return low + point.share * low_growth <= point.at[axis] + reach &&
+               point.at[axis] - reach <= high + point.share * high_growth;
     }
 
     const SliceWalk& walk_;

@@ -29,7 +29,7 @@ Vec2d CameraSamples::film_point(int x, int y, int sample, Rng& rng) const {
     double v = static_cast<double>(rng.next());
     const PixelSampling& sampling = scene_.sampling();
     if (sampling.stratified) {
-        const int n = static_cast<int>(std::lround(std::sqrt(per_pixel_)));
+        const int n = strata();
         if (!sampling.jitter) u = v = 0.5;
         u = (sample % n + u) / n;
         v = (sample / n + v) / n;
@@ -37,6 +37,16 @@ Vec2d CameraSamples::film_point(int x, int y, int sample, Rng& rng) const {
     if (adaptive_) return Vec2d(x, y) + sequence_point(x, y, sample);
     return {x + u, y + v};
 }
+
+Eigen::AlignedBox2d CameraSamples::film_cell(int x, int y, int sample) const {
+    const Vec2d pixel(x, y);
+    if (!scene_.sampling().stratified || adaptive_) return {pixel, pixel + Vec2d::Ones()};
+    const int n = strata();
+    const Vec2d low = pixel + Vec2d(sample % n, sample / n) / n;
+    return {low, low + Vec2d::Constant(1.0 / n)};
+}
+
+int CameraSamples::strata() const { return static_cast<int>(std::lround(std::sqrt(per_pixel_))); }
 
 Vec2d CameraSamples::sequence_point(int x, int y, int sample) const {
     // The words that place the first sample also turn over the digits of all others.

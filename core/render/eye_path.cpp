@@ -96,7 +96,7 @@ EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum
         if (auto point = receiver_point(scene, *hit, wo)) {
             point->nm = branch.wavelength.nm;
             point->medium = branch.start_absorption;
-            points.push_back({*point, branch.weight});
+            points.push_back({*point, branch.weight, branch.bounces == 0});
         }
         if (is_caster(bsdf) && branch.bounces < max_eye_bounces)
             scatter(*hit, bsdf, scene.sampling().split_depth, branch, rng, stack);

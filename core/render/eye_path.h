@@ -21,6 +21,7 @@ struct FirstHit {
 struct WeightedPoint {
     ReceiverPoint point;
     Spectrum weight;
+    bool seen_directly = false;  ///< not by mirrors or through glass
 };
 
 /// The specular part S* E of one camera sample.

@@ -4,6 +4,7 @@
 
 #include "core/base/interrupt.h"
 #include "core/render/direct_light.h"
+#include "core/render/pixel_cells.h"
 #include "core/scene/eye_medium.h"
 
 namespace caustics {
@@ -32,6 +33,7 @@ TileSampler::TileSampler(const Scene& scene, const CameraSamples& samples,
 void TileSampler::sample(const Tile& tile, int first, int count, std::vector<PixelSums>& sums,
                          TileWorker& worker) const {
     worker.points.clear();
+    worker.cells.clear();
     worker.owners.clear();
     worker.values.clear();
     for (const std::size_t pixel : worker.pixels)
@@ -40,6 +42,8 @@ void TileSampler::sample(const Tile& tile, int first, int count, std::vector<Pix
             worker.values.push_back(
                 trace(tile.x(pixel), tile.y(pixel), i, pixel, sums[pixel], worker));
         }
+    for (std::size_t i = 0; i < worker.cells.size(); ++i)
+        if (worker.cells[i]) worker.points[i].cell = &*worker.cells[i];
     worker.receiver_points += worker.points.size();
     if (parts_.caustic) add_caustic(worker, sums);
     if (!parts_.others) return;
@@ -67,6 +71,11 @@ SpectrumSum TileSampler::trace(int x, int y, int sample, std::size_t pixel, Pixe
     for (WeightedPoint& found : worker.found) {
         found.point.id = id << 8U | (branch++ & 0xFFU);
         worker.points.push_back(found.point);
+        if (asks_for_cells())
+            worker.cells.push_back(
+                found.seen_directly
+                    ? pixel_cell(camera, samples_.film_cell(x, y, sample), found.point)
+                    : std::nullopt);
         worker.owners.push_back({pixel, worker.values.size(), found.weight});
     }
     if (!parts_.others) return SpectrumSum::Zero();

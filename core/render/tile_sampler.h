@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/caustic_estimator.h"
@@ -40,6 +41,8 @@ struct TileWorker {
     std::vector<std::size_t> pixels;  ///< that are sampled next, numbered in their tile
     std::vector<WeightedPoint> found;
     std::vector<ReceiverPoint> points;
+    std::vector<std::optional<PixelCell>>
+        cells;  ///< of the points; none where the method asks for none
     std::vector<PointOwner> owners;
     std::vector<Estimate> estimates;
     std::vector<SpectrumSum> values;  ///< of the samples of a round
@@ -76,6 +79,7 @@ public:
                 TileWorker& worker) const;
 
 private:
+    bool asks_for_cells() const { return parts_.caustic && estimator_->asks_for_cells(); }
     SpectrumSum trace(int x, int y, int sample, std::size_t pixel, PixelSums& sums,
                       TileWorker& worker) const;
     SpectrumSum add_eye_path(const EyePath& path, Rng& rng, PixelSums& sums,

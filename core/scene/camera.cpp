@@ -23,10 +23,14 @@ Vec2d Camera::half_extent() const {
 
 Vec3 Camera::position() const { return Vec3d(to_world.translation()).cast<float>(); }
 
-Vec3 Camera::direction(double x, double y) const {
+Vec3d Camera::towards(double x, double y) const {
     const Vec2d half = half_extent();
     const Vec3d local(half.x() * (1 - 2 * x / width), half.y() * (1 - 2 * y / height), 1);
-    return Vec3d(to_world.linear() * local).normalized().cast<float>();
+    return to_world.linear() * local;
+}
+
+Vec3 Camera::direction(double x, double y) const {
+    return towards(x, y).normalized().cast<float>();
 }
 
 double Camera::pixel_area() const {

@@ -17,6 +17,8 @@ struct Camera {
     int height = 576;
 
     Vec3 position() const;
+    /// World direction through the film point (x, y) in pixels, of any length.
+    Vec3d towards(double x, double y) const;
     /// Unit world direction through the film point (x, y) in pixels, (0, 0) the top left corner.
     Vec3 direction(double x, double y) const;
 

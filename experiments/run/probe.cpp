@@ -211,11 +211,16 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
     for (int pass = 0; pass < passes; ++pass) {
         const auto built = method.configured->build(scene, options, pass);
         answers.has_standard_errors = built->is_statistical();
-        if constexpr (std::is_same_v<Estimator, CausticEstimator>)
+        if constexpr (std::is_same_v<Estimator, CausticEstimator>) {
+            if (built->asks_for_cells())
+                throw InputError(method.facts().name +
+                                 ": pixel_footprint is of a camera's pixels, and points have none: "
+                                 "leave it out, or give a footprint in metres");
             if (pass == 0) {
                 answers.notes = notes(scene, method, built->build_report());
                 std::ranges::copy(notes_on(scene), std::back_inserter(answers.notes));
             }
+        }
         const Ask ask{*built, asked, method.facts().gathers_over_discs, options.threads};
         ask.add(&PointEstimator::irradiance, answers.irradiance);
         if (list.has_viewer) ask.add(&PointEstimator::radiance, answers.radiance);

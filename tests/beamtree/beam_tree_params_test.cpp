@@ -82,6 +82,17 @@ TEST(BeamTreeParams, AveragesOverSquaresOfTheSlicesPlanes) {
             << value;
 }
 
+TEST(BeamTreeParams, AverageOverPixels) {
+    EXPECT_FALSE(params("{}").pixel_footprint);
+    EXPECT_TRUE(params(R"({"pixel_footprint": true})").pixel_footprint);
+    for (const std::string other :
+         {R"("bound": "hybrid")", R"("preset": "chuang1995")", R"("footprint": 0.1)",
+          R"("wavelengths": 4, "dispersion": "intervals")"}) {
+        const std::string line = error(R"({"pixel_footprint": true, )" + other + "}");
+        EXPECT_NE(line.find("footprint"), std::string::npos) << line;
+    }
+}
+
 TEST(BeamTreeParams, NameTheAlternatives) {
     EXPECT_NE(error(R"({"bound": "tripple"})").find("sphere_swept"), std::string::npos);
     EXPECT_NE(error(R"({"intensity": "fine"})").find("refined"), std::string::npos);

@@ -146,6 +146,7 @@ ReceiverPoint probe(const Scene& scene, std::size_t shape, const Vec3d& position
     point.uv = Vec2::Zero();
     point.offset = surface_offset(scene, shape, point.position, point.geometric_normal);
     point.bsdf = &scene.shapes()[shape].bsdf;
+    point.shape = static_cast<std::uint32_t>(shape);
     point.id = id;
     point.radius = radius;
     return point;

@@ -262,10 +262,11 @@ TEST(Knobs, AreAllTurnedAbove) {
                        "interaction", "tree",        "tables",       "passes",      "save",
                        "load"}},  // these three: photonmap/progressive_test, kept_photons_test
         {"beamtree",
-         {"preset", "bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity",
-          "footprint", "polygons", "light_samples", "mesh_resolution", "max_bounces", "prune",
-          "max_beams", "rest", "rest_photons", "rest_nearest", "wavelengths",
-          "dispersion"}},  // the last two: agreement/dispersion_test
+         {"preset",        "bound",           "spread_threshold", "merging",         "hierarchy",
+          "leaf",          "intensity",       "footprint",        "pixel_footprint", "polygons",
+          "light_samples", "mesh_resolution", "max_bounces",      "prune",           "max_beams",
+          "rest",          "rest_photons",    "rest_nearest",     "wavelengths",     "dispersion"}},
+        // pixel_footprint: beamtree/slices/pixel_footprint_test; the last two: agreement/dispersion_test
         {"causticpolygons",
          {"polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
           "wavelengths", "receiver_resolution"}},

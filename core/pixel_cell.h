@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+
+#include "core/math/plane_axes.h"
+
+namespace caustics {
+
+/// The part of a picture that one camera sample stands for, as the camera sees it on the tangent plane of a
+/// receiver point: a convex quadrilateral. A pixel's cells cover it once.
+struct PixelCell {
+    Vec3d normal;    ///< of the plane, on the camera's side; unit to rounding
+    PlaneAxes axes;  ///< of the plane; coordinates along them are from the receiver point [m]
+    std::array<Vec2d, 4> corners;  ///< in order round it
+    double radius = 0;             ///< distance of the farthest one
+    /// By which share of the point's depth [1/m] the camera's depth grows along the axes.
+    Vec2d depth_slope = Vec2d::Zero();
+
+    Vec2d along(const Vec3d& way) const { return {axes.right.dot(way), axes.forward.dot(way)}; }
+    /// From the receiver point [m].
+    Vec3d at(const Vec2d& p) const { return p.x() * axes.right + p.y() * axes.forward; }
+    Vec3d corner(std::size_t i) const { return at(corners[i]); }
+    /// Where the camera shows a place of the plane, but for an affine map: straight lines stay so, and areas are in the
+    /// ratios that they have in the picture.
+    Vec2d on_film(const Vec2d& p) const { return p / (1 + depth_slope.dot(p)); }
+};
+
+}  // namespace caustics
