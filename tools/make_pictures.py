@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes results/pictures/caustics.png, the picture on README's first screen, glass.png and rooms.png.
+"""Makes results/pictures/caustics.png, README's three caustics, glass.png and rooms.png.
 
 caustics.png: the ring, the ball and the pool with the photon map (2 million photons, N = 80, 16 samples a
 pixel) side by side. glass.png: bowl, crystal bowl and cognac above prism, rainbow and gem (2 million photons,
