@@ -240,6 +240,11 @@ class Pages(unittest.TestCase):
             for name, text in page.rendered(each, found, kept).items():
                 self.assertEqual((folder / name).read_text(encoding="utf-8"), text, f"{folder.name}/{name}")
 
+    def test_one_claim_holds_and_two_hold(self):
+        of = lambda *verdicts: page.tally([{"verdict": each} for each in verdicts])
+        self.assertEqual(of("holds", "holds", "does not hold"), "2 hold, 1 does not hold")
+        self.assertEqual(of("does not hold", "does not hold", "holds", "undecided"), "1 holds, 2 do not hold, 1 undecided")
+
     def test_every_figure_is_there_and_in_the_gallery(self):
         gallery = (RESULTS / "README.md").read_text(encoding="utf-8")
         for _, folder, _, kept in self.committed():

@@ -74,8 +74,9 @@ def took(kept):
 
 def tally(entries):
     count = lambda verdict: sum(entry["verdict"] == verdict for entry in entries)
-    return ", ".join(f"{count(verdict)} {verdict if verdict != HOLDS else 'hold'}" for verdict in (HOLDS, FAILS, UNDECIDED, UNMEASURED)
-                     if count(verdict)).replace("does not hold", "do not hold")
+    several = {HOLDS: "hold", FAILS: "do not hold"}
+    return ", ".join(f"{count(verdict)} {several.get(verdict, verdict) if count(verdict) > 1 else verdict}"
+                     for verdict in (HOLDS, FAILS, UNDECIDED, UNMEASURED) if count(verdict))
 
 
 def by_group(entries):

@@ -113,7 +113,8 @@ def factors(results):
     lines = ["## The peer's time over ours at equal error", "",
              "Ours is the better of photon map and beam tree. *Common*: at the least error that both reach. *After a second*: at the error that ours "
              "has after one CPU second; ≥ is a bound, the peer's longest run never got there; ~ draws the peer's curve on by its law, squared error "
-             "as one over work.", ""]
+             "as one over work. A ratio is of the seeds' median times and mean errors; in brackets the least and the greatest that one seed alone "
+             "gives at a common error of its own, so that the ratio may lie beside them.", ""]
     common, later = results.ratios(scores.common), results.ratios(scores.after_a_second)
     plain = results.ratios(scores.common, measure=scores.PLAIN)
     laws = results.ratios(scores.by_law, scores.UNBIASED)
@@ -181,12 +182,12 @@ def against_us(results):
         wanted = results.held.text["expected"].get(peer, {}).get(name)
         who = f"{titles[name].capitalize()}, {results.held.titles[peer]}"
         if ratio.value < 1:
-            lines.append(f"- **{who}: it needs {1 / ratio.value:.3g} times less than ours for {percent(ratio.at)}.**")
+            lines.append(f"- **{who}: it is {1 / ratio.value:.3g} times as fast as ours, at an error of {percent(ratio.at)}.**")
         elif wanted and ratio.value < wanted:
             lines.append(f"- {who}: {ratio.value:.3g} × at the least common error, {wanted} × were expected.")
         if (name, peer) in plain and plain[name, peer].value < 1 <= ratio.value:
-            less = 1 / plain[name, peer].value
-            lines.append(f"- **{who}: by rmse it needs {less:.3g} times less than ours** (for {percent(plain[name, peer].at)} of the mean).")
+            faster = 1 / plain[name, peer].value
+            lines.append(f"- **{who}: by rmse it is {faster:.3g} times as fast as ours** (at {percent(plain[name, peer].at)} of the mean).")
     for scene in results.scenes:
         for name in contest.OURS:
             cell = best(results.cells(scene), name)
