@@ -106,7 +106,7 @@ def not_measured(results):
     rows = [[each["question"], each["says"], each["why"]] for each in results.duel.text["not_measured"]]
     lacking = [scene.title for scene in results.duel.scenes if scene.name not in results.fields]
     rows += [[f"Scene: {title}", "", "not run"] for title in lacking]
-    return Table("not_measured", "Not measured", ["question", "says", "why"], rows)
+    return Table("not_measured", "Not measured here", ["question", "says", "why"], rows)
 
 
 def number(results, found, kind, words):
