@@ -146,8 +146,8 @@ GalleryScene dark_ball() {
     GalleryScene scene =
         ball("dark_ball", "a sphere times exp(-sigma d)",
              {.around = 1.333, .absorption = 7, .of_around = 1, .inner = 0.1, .outer = 0.18});
-    scene.series = {light_trace(0.01, 0.05, 400'000), beam_tree(2, 0.08, "", 64),
-                    beam_tree(2, 0.08, "bound=two_slice", 64)};
+    scene.series = {light_trace(0.01, 0.05, 400'000), beam_tree(2, 0.08, "preset=chuang1995", 64),
+                    beam_tree(2, 0.08, "", 64)};
     allow_events(scene, "2");
     return scene;
 }

@@ -185,9 +185,9 @@ std::vector<Series> usual_series(double radius, double beam_factor, double beam_
                                  int coarsest) {
     return {light_trace(radius, 0.05),
             photon_map(0.08),
-            beam_tree(beam_factor, beam_tolerance, "", coarsest),
-            beam_tree(beam_factor, beam_tolerance, "bound=two_slice", coarsest),
-            beam_tree(beam_factor * beam_factor, beam_tolerance / 3, "intensity=refined", coarsest),
+            beam_tree(beam_factor, beam_tolerance, "preset=chuang1995", coarsest),
+            beam_tree(beam_factor, beam_tolerance, "intensity=area", coarsest),
+            beam_tree(beam_factor * beam_factor, beam_tolerance / 3, "", coarsest),
             caustic_polygons(beam_factor, beam_tolerance, "", coarsest)};
 }
 
