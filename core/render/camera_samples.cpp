@@ -1,15 +1,28 @@
 #include "core/render/camera_samples.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/sampling.h"
 
 namespace caustics {
 
+namespace {
+
+// Of samples in rows and columns: as nearly as many of both as their number allows.
+int columns_of(int samples) {
+    int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(samples))));
+    while (samples % columns != 0) --columns;
+    return columns;
+}
+
+}  // namespace
+
 CameraSamples::CameraSamples(const Scene& scene, const RunOptions& options, int most)
     : scene_(scene),
       seed_(options.seed),
       per_pixel_(options.samples_per_pixel),
+      columns_(columns_of(per_pixel_)),
       most_(most),
       adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
       disperses_(disperses(scene)) {}
@@ -29,7 +42,7 @@ Vec2d CameraSamples::film_point(int x, int y, int sample, Rng& rng) const {
     double v = static_cast<double>(rng.next());
     const PixelSampling& sampling = scene_.sampling();
     if (sampling.stratified) {
-        const int n = strata();
+        const int n = columns_;
         if (!sampling.jitter) u = v = 0.5;
         u = (sample % n + u) / n;
         v = (sample / n + v) / n;
@@ -40,13 +53,11 @@ Vec2d CameraSamples::film_point(int x, int y, int sample, Rng& rng) const {
 
 Eigen::AlignedBox2d CameraSamples::film_cell(int x, int y, int sample) const {
     const Vec2d pixel(x, y);
-    if (!scene_.sampling().stratified || adaptive_) return {pixel, pixel + Vec2d::Ones()};
-    const int n = strata();
-    const Vec2d low = pixel + Vec2d(sample % n, sample / n) / n;
-    return {low, low + Vec2d::Constant(1.0 / n)};
+    if (adaptive_) return {pixel, pixel + Vec2d::Ones()};
+    const Vec2d size(1.0 / columns_, static_cast<double>(columns_) / per_pixel_);
+    const Vec2d low = pixel + Vec2d(sample % columns_, sample / columns_).cwiseProduct(size);
+    return {low, low + size};
 }
-
-int CameraSamples::strata() const { return static_cast<int>(std::lround(std::sqrt(per_pixel_))); }
 
 Vec2d CameraSamples::sequence_point(int x, int y, int sample) const {
     // The words that place the first sample also turn over the digits of all others.

@@ -23,20 +23,20 @@ public:
     /// follow a (0, 2)-sequence [Sobol 1967], scrambled at random in every pixel: with each doubling they
     /// fill the cells of all grids of so many cells, one in each.
     Vec2d film_point(int x, int y, int sample, Rng& rng) const;
-    /// The part of the film that the sample stands for, in pixels: its stratum, or the whole pixel of samples that
-    /// have none of their own.
+    /// The part of the film that the sample stands for, in pixels: its stratum; of random samples, one of as many equal
+    /// rectangles as there are samples; of adaptive ones, the whole pixel.
     Eigen::AlignedBox2d film_cell(int x, int y, int sample) const;
     /// The number of [0, 1) that chooses a sample's wavelength; none where no glass disperses. Spread over the
     /// pixel's samples (van der Corput), and at random over the pixels: few samples have all colours.
     std::optional<double> wavelength_choice(int x, int y, int sample) const;
 
 private:
-    int strata() const;  ///< along a pixel's side
     Vec2d sequence_point(int x, int y, int sample) const;
 
     const Scene& scene_;
     std::uint64_t seed_;
     int per_pixel_;
+    int columns_;
     int most_;
     bool adaptive_;
     bool disperses_;

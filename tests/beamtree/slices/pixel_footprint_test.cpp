@@ -120,7 +120,7 @@ Film picture(SceneDesc desc, bool stratified, int samples, const RunOptions& how
     return render(scene, *build(scene, by_pixels(), options), options).film;
 }
 
-// A pixel is the mean of its strata, as the film has them, and every sample without strata has the pixel.
+// A pixel is the mean of its samples' parts, as the film has them.
 TEST(PixelFootprint, IsTheSameWithAnyNumberOfSamples) {
     const Film one = picture(ring_desc(128), true, 1);
     for (const auto& [stratified, samples] : {std::pair{true, 9}, std::pair{false, 3}}) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "core/render/camera_samples.h"
 #include "tests/support/build_scene.h"
 
@@ -62,27 +65,33 @@ TEST(PixelCell, HasNoHorizon) {
     EXPECT_FALSE(pixel_cell(camera, {Vec2d(4, 2), Vec2d(5, 3)}, point));
 }
 
-// Strata cover their pixel once; samples without strata stand for all of it.
+// The samples' cells cover their pixel once; strata hold their samples.
 TEST(PixelCell, CoversThePixel) {
-    for (const bool stratified : {true, false}) {
+    for (const auto& [stratified, count] :
+         {std::pair{true, 9}, std::pair{false, 9}, std::pair{false, 6}, std::pair{false, 5}}) {
         SceneDesc desc;
         desc.shapes = {support::horizontal("floor", 0, 1, true, support::diffuse(0.5F))};
         desc.camera = support::camera({0, 0, 2}, {0, 0.1, 0}, {0, 1, 0}, 20, 4, 4);
         desc.sampling.stratified = stratified;
         const Scene scene(std::move(desc));
         RunOptions options;
-        options.samples_per_pixel = 9;
-        const CameraSamples samples(scene, options, 9);
+        options.samples_per_pixel = count;
+        const CameraSamples samples(scene, options, count);
+        const Eigen::AlignedBox2d pixel(Vec2d(2, 1), Vec2d(3 + 1e-12, 2 + 1e-12));
+        std::vector<Eigen::AlignedBox2d> cells;
         double area = 0;
-        for (int i = 0; i < 9; ++i) {
+        for (int i = 0; i < count; ++i) {
             Rng rng(0, Stage::eye, samples.id(2, 1, i));
-            const Eigen::AlignedBox2d cell = samples.film_cell(2, 1, i);
-            EXPECT_TRUE(cell.contains(samples.film_point(2, 1, i, rng)));
-            EXPECT_TRUE(
-                Eigen::AlignedBox2d(Vec2d(2, 1), Vec2d(3 + 1e-12, 2 + 1e-12)).contains(cell));
-            area += cell.volume();
+            const Vec2d at = samples.film_point(2, 1, i, rng);
+            cells.push_back(samples.film_cell(2, 1, i));
+            EXPECT_TRUE(!stratified || cells.back().contains(at));
+            EXPECT_TRUE(pixel.contains(cells.back()));
+            area += cells.back().volume();
+            for (int j = 0; j < i; ++j)
+                EXPECT_LT(cells[static_cast<std::size_t>(j)].intersection(cells.back()).volume(),
+                          1e-12);
         }
-        EXPECT_NEAR(area, stratified ? 1 : 9, 1e-12);
+        EXPECT_NEAR(area, 1, 1e-12);
     }
 }
 
