@@ -20,30 +20,6 @@ struct Part {
     std::size_t count = 0;
 };
 
-/// A convex quadrilateral: what lies at outward . p <= limit for each side.
-struct Window {
-    std::array<Vec2d, 4> outward;
-    std::array<double, 4> limit;
-};
-
-Window square_window(double half) {
-    return {{Vec2d(-1, 0), Vec2d(1, 0), Vec2d(0, -1), Vec2d(0, 1)}, {half, half, half, half}};
-}
-
-// Empty where it has no area.
-std::optional<Window> window_of(const std::array<Vec2d, 4>& corners) {
-    Window window;
-    const double area = cross(corners[2] - corners[0], corners[3] - corners[1]);
-    if (area == 0) return {};
-    const double turn = area > 0 ? 1 : -1;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const Vec2d side = corners[(i + 1) % 4] - corners[i];
-        window.outward[i] = turn * Vec2d(side.y(), -side.x());
-        window.limit[i] = window.outward[i].dot(corners[i]);
-    }
-    return window;
-}
-
 // What lies within one side [Sutherland and Hodgman 1974].
 Part cut(const Part& from, const Vec2d& outward, double limit) {
     Part kept;
@@ -59,11 +35,28 @@ Part cut(const Part& from, const Vec2d& outward, double limit) {
     return kept;
 }
 
-Part within(const Window& window, const Triangle& triangle) {
+Part within(const BeamSquare& square, const Triangle& triangle) {
     Part part;
     for (const Vec2d& corner : triangle) part.corners[part.count++] = corner;
-    for (std::size_t i = 0; i < 4; ++i) part = cut(part, window.outward[i], window.limit[i]);
+    for (std::size_t i = 0; i < 4; ++i) part = cut(part, square.outward[i], square.limit[i]);
     return part;
+}
+
+// Whether one of the square's sides, or of the triangle's, has the other figure on its outer side.
+bool apart(const BeamSquare& square, const Triangle& triangle, double area) {
+    for (std::size_t i = 0; i < 4; ++i)
+        if (std::ranges::all_of(triangle, [&](const Vec2d& p) {
+                return square.outward[i].dot(p) - square.limit[i] > 0;
+            }))
+            return true;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec2d side = triangle[(i + 1) % 3] - triangle[i];
+        if (std::ranges::all_of(square.corners, [&](const Vec2d& p) {
+                return cross(side, p - triangle[i]) * area < 0;
+            }))
+            return true;
+    }
+    return false;
 }
 
 /// Area, with the sign of the triangle's, centre and covariance of its places.
@@ -94,12 +87,6 @@ Extent extent(const Part& part) {
     return found;
 }
 
-Part all_of(const PixelCell& cell) {
-    Part part;
-    for (const Vec2d& corner : cell.corners) part.corners[part.count++] = corner;
-    return part;
-}
-
 double area_on_film(const Part& part, const PixelCell& cell) {
     double area = 0;
     for (std::size_t i = 1; i + 1 < part.count; ++i) {
@@ -111,48 +98,27 @@ double area_on_film(const Part& part, const PixelCell& cell) {
     return area;
 }
 
-/// A plane with coordinates from its point, and the window on it.
-struct Asked {
-    TestPlane plane;
-    const SliceFrame* frame;  ///< whose axes are the coordinates', or:
-    const PixelCell* cell;
-    Window window;
-    double area;  ///< of the window; of a cell as the camera shows it
-
-    // Empty for a cell that has no area.
-    static std::optional<Asked> about(const BeamSquare& square, const TestPlane& plane) {
-        if (square.cell == nullptr)
-            return Asked{plane, &square.frame, nullptr, square_window(square.half),
-                         4 * square.half * square.half};
-        const auto window = window_of(square.cell->corners);
-        if (!window) return {};
-        return Asked{TestPlane(plane.point().cast<float>(), square.cell->normal.cast<float>()),
-                     nullptr, square.cell, *window,
-                     area_on_film(all_of(*square.cell), *square.cell)};
-    }
-    double area_of(const Part& part, const Extent& extent) const {
-        return cell == nullptr ? extent.area : area_on_film(part, *cell);
-    }
-    Vec2d place(const Vec3d& p) const {
-        return cell == nullptr ? frame->across(p) - frame->across(plane.point())
-                               : cell->along(p - plane.point());
-    }
-};
+Vec2d place(const BeamSquare& square, const Vec3d& p) {
+    const Vec3d& point = square.plane.point();
+    return square.cell == nullptr ? square.frame->across(p) - square.frame->across(point)
+                                  : square.cell->along(p - point);
+}
 
 // The triangle on the plane that is asked about. Empty where its light does not come down to the plane
 // everywhere, or not evenly.
-std::optional<Triangle> project(const std::array<const VertexRay*, 3>& rays, const Asked& asked) {
+std::optional<Triangle> project(const std::array<const VertexRay*, 3>& rays,
+                                const BeamSquare& square) {
     Triangle at;
     double least = 1;
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double height = asked.plane.height(rays[i]->position);
-        const double steepness = asked.plane.steepness(rays[i]->direction);
+        const double height = square.plane.height(rays[i]->position);
+        const double steepness = square.plane.steepness(rays[i]->direction);
         if (!(height > 0 && steepness > 0)) return {};
         least = std::min(least, steepness);
         most = std::max(most, steepness);
-        at[i] = asked.place(rays[i]->position.cast<double>() +
-                            height / steepness * rays[i]->direction.cast<double>());
+        at[i] = place(square, rays[i]->position.cast<double>() +
+                                  height / steepness * rays[i]->direction.cast<double>());
     }
     if (most > most_uneven * least) return {};
     return at;
@@ -180,6 +146,33 @@ Vec3 weights_at(const Vec2d& p, const Triangle& t, double area) {
 
 }  // namespace
 
+BeamSquare BeamSquare::at(const TestPlane& plane, const SliceFrame& frame, double half) {
+    return {
+        .plane = plane,
+        .frame = &frame,
+        .corners = {Vec2d(-half, -half), Vec2d(half, -half), Vec2d(half, half), Vec2d(-half, half)},
+        .outward = {Vec2d(-1, 0), Vec2d(1, 0), Vec2d(0, -1), Vec2d(0, 1)},
+        .limit = {half, half, half, half},
+        .area = 4 * half * half};
+}
+
+std::optional<BeamSquare> BeamSquare::at(const Vec3& point, const PixelCell& cell) {
+    BeamSquare square{.plane = TestPlane(point, cell.normal.cast<float>()),
+                      .cell = &cell,
+                      .corners = cell.corners};
+    const double turn = cross(cell.corners[2] - cell.corners[0], cell.corners[3] - cell.corners[1]);
+    if (turn == 0) return {};
+    Part all;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec2d side = cell.corners[(i + 1) % 4] - cell.corners[i];
+        square.outward[i] = (turn > 0 ? 1 : -1) * Vec2d(side.y(), -side.x());
+        square.limit[i] = square.outward[i].dot(cell.corners[i]);
+        all.corners[all.count++] = cell.corners[i];
+    }
+    square.area = area_on_film(all, cell);
+    return square;
+}
+
 CellReach reach_of(const PixelCell& cell, const SliceFrame& frame) {
     constexpr auto sine = static_cast<double>(least_sine);
     const double most_slant = std::sqrt(1 / (sine * sine) - 1);
@@ -198,12 +191,10 @@ void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& r
                     const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,
                     std::vector<BeamHit>& hits, SearchCounts& counts) {
     const std::size_t count = rays[3] == nullptr ? 1 : 2;
-    const auto asked = Asked::about(square, plane);
     std::array<Triangle, 2> triangles;
     std::array<double, 2> areas{};
     for (std::size_t i = 0; i < count; ++i) {
-        const auto projected =
-            asked ? project({rays[0], rays[1 + i], rays[2 + i]}, *asked) : std::nullopt;
+        const auto projected = project({rays[0], rays[1 + i], rays[2 + i]}, square);
         if (!projected) return find_in_beam(set, rays, number, plane, hits, counts);
         triangles[i] = *projected;
         areas[i] = area_of(*projected);
@@ -213,8 +204,8 @@ void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& r
     ++counts.beam_point_tests;
     const std::size_t before = hits.size();
     for (std::size_t i = 0; i < count; ++i) {
-        if (areas[i] == 0) continue;
-        const Part covered = within(asked->window, triangles[i]);
+        if (areas[i] == 0 || apart(square, triangles[i], areas[i])) continue;
+        const Part covered = within(square, triangles[i]);
         const Extent part = extent(covered);
         if (!(part.area / areas[i] > 0)) continue;
         BeamHit hit;
@@ -222,12 +213,13 @@ void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& r
         hit.beam = number.beam;
         hit.triangle = static_cast<std::uint8_t>(i);
         hit.winding = areas[i] > 0 ? 1 : -1;
-        hit.plane_normal = asked->plane.normal().cast<float>();
+        hit.plane_normal = square.plane.normal().cast<float>();
         hit.weights = weights_at(part.middle, triangles[i], areas[i]);
         hit.covariances = weights_covariances(part.covariance, triangles[i], areas[i]);
         hit.area = std::abs(together ? areas[0] + areas[1] : areas[i]);
-        hit.coverage = std::abs(asked->area_of(covered, part)) / std::abs(asked->area);
+        hit.coverage = std::abs(part.area) / square.area;
         if (square.cell != nullptr) {
+            hit.coverage = std::abs(area_on_film(covered, *square.cell) / square.area);
             hit.offset = square.cell->at(part.middle).cast<float>();
             hit.cell_radius = static_cast<float>(square.cell->radius);
         }

@@ -1,17 +1,30 @@
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "beamtree/light/beam_point.h"
 #include "beamtree/slices/slice_frame.h"
 #include "core/pixel_cell.h"
 
 namespace caustics::beamtree {
 
-/// Where irradiance is averaged instead of being asked at a point: squares on the planes of a frame, along its axes
-/// (`footprint`), or the cell of a camera sample on the receiver's plane (`pixel_footprint`).
+/// Where irradiance is averaged instead of being asked at a point, a convex quadrilateral with its plane: a square on a
+/// plane of a frame, along its axes (`footprint`), or the cell of a camera sample on the receiver's plane
+/// (`pixel_footprint`). Coordinates are from the point.
 struct BeamSquare {
-    const SliceFrame& frame;
-    double half;  ///< of a side [m]
+    TestPlane plane;
+    const SliceFrame* frame = nullptr;  ///< whose axes they run along; or those of:
     const PixelCell* cell = nullptr;
+    std::array<Vec2d, 4> corners = {};
+    /// What lies inside has outward . p <= limit for each side.
+    std::array<Vec2d, 4> outward = {};
+    std::array<double, 4> limit = {};
+    double area = 0;  ///< of a cell as the camera shows it
+
+    static BeamSquare at(const TestPlane& plane, const SliceFrame& frame, double half_side);
+    /// Empty for a cell without area.
+    static std::optional<BeamSquare> at(const Vec3& point, const PixelCell& cell);
 };
 
 /// How far a cell reaches from its point [m]: down from the frame's plane through it, and, along both axes, on that
@@ -23,10 +36,10 @@ struct CellReach {
 };
 CellReach reach_of(const PixelCell& cell, const SliceFrame& frame);
 
-/// The part of a beam's caustic polygon that lies on the square round the plane's point. Appends a hit
+/// The part of a beam's caustic polygon that lies on the square. Appends a hit
 /// for each of the beam's triangles that has one, with the share of the square it covers, and the
 /// middle of that part as the place where the light left. Polygons that the plane cuts, and those
-/// that run towards the horizon, are asked at the point as in find_in_beam.
+/// that run towards the horizon, are asked at the point of `plane` as in find_in_beam.
 /// `rays` are the beam's or copies of them (test_beam).
 void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
                     const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,

@@ -222,7 +222,8 @@ struct SliceTree::Group {
     std::array<SlicePoint, room> points;
     std::array<std::uint32_t, room> number;
     std::array<const Vec3*, room> position;
-    std::array<const PixelCell*, room> cell;
+    std::array<std::optional<BeamSquare>, room>
+        square;  ///< that is asked about in the point's place
     std::uint32_t count = 0;
     /// x, y, share, and nothing.
     Eigen::Array4f low;
@@ -263,6 +264,14 @@ bool SliceTree::place(const ReceiverPoint& point, SlicePoint& placed) const {
     return true;
 }
 
+std::optional<BeamSquare> SliceTree::square_of(const ReceiverPoint& point) const {
+    if (point.cell != nullptr) return BeamSquare::at(point.position, *point.cell);
+    if (half_footprint_ == 0) return {};
+    TestPlane plane = plane_;
+    plane.move_to(point.position);
+    return BeamSquare::at(plane, frame_, half_footprint_);
+}
+
 void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
                      std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
                      SearchCounts& counts) const {
@@ -285,7 +294,7 @@ void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoin
         Group& group = groups[count - 1];
         group.number[group.count - 1] = i;
         group.position[group.count - 1] = &points[i].position;
-        group.cell[group.count - 1] = points[i].cell;
+        group.square[group.count - 1] = square_of(points[i]);
     }
     if (count > 0) find(std::span(groups).first(count), sets, stack, hits, counts);
 }
@@ -350,10 +359,8 @@ void SliceTree::test(const SliceWalk& walk, const Group& group, std::span<const 
         const VertexRay* const corner = corners_.data() + candidate.beam * corner_count_;
         std::array<const VertexRay*, 4> rays = {corner, corner + 1, corner + 2, nullptr};
         if (corner_count_ == 4 && !corner[3].direction.isZero(0)) rays[3] = corner + 3;
-        const PixelCell* const cell = group.cell[candidate.point];
-        if (half_footprint_ > 0 || cell != nullptr)
-            find_on_square(set, rays, number, plane, {frame_, half_footprint_, cell}, found_here,
-                           counts);
+        if (const auto& square = group.square[candidate.point])
+            find_on_square(set, rays, number, plane, *square, found_here, counts);
         else
             find_in_beam(set, rays, number, plane, found_here, counts);
     }

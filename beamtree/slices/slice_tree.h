@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "beamtree/beams/hierarchy.h"
 #include "beamtree/light/beam_point.h"
+#include "beamtree/slices/beam_square.h"
 #include "beamtree/slices/slice_frame.h"
 #include "beamtree/slices/slice_nodes.h"
 #include "core/caustic_estimator.h"
@@ -53,6 +55,7 @@ private:
     struct Group;
     SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa, int threads);
     bool place(const ReceiverPoint& point, SlicePoint& placed) const;
+    std::optional<BeamSquare> square_of(const ReceiverPoint& point) const;
     void keep_corners(std::span<const BeamSet> sets);
     void find(std::span<const Group> groups, std::span<const BeamSet> sets,
               std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,

@@ -23,12 +23,6 @@ public:
 
     static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
         const __m256 share = _mm256_set1_ps(point.share);
-        const __m256 begun =
-            not_above(_mm256_load_ps(leaf.begun_from), _mm256_set1_ps(point.last_share));
-        if (point.reach[0] > 0) {
-            const __m256 taken = not_above(_mm256_setzero_ps(), _mm256_load_ps(leaf.slack));
-            return bits(_mm256_and_ps(_mm256_and_ps(begun, taken), box_holds(leaf, point, room)));
-        }
         __m256 x[3];
         __m256 y[3];
         for (unsigned c = 0; c < 3; ++c) {
@@ -41,11 +35,30 @@ public:
         const __m256 b = cross(x[1], y[1], x[2], y[2]);
         const __m256 c = cross(x[2], y[2], x[0], y[0]);
         const __m256 slack = _mm256_load_ps(leaf.slack);
+        const __m256 cut = _mm256_cmp_ps(share, _mm256_load_ps(leaf.whole_from), _CMP_LT_OQ);
+        const __m256 begun =
+            not_above(_mm256_load_ps(leaf.begun_from), _mm256_set1_ps(point.last_share));
+        if (point.reach[0] > 0) {
+            const __m256 by_a = _mm256_add_ps(slack, passed(point, x, y, 0, 1));
+            const __m256 by_b = _mm256_add_ps(slack, passed(point, x, y, 1, 2));
+            const __m256 by_c = _mm256_add_ps(slack, passed(point, x, y, 2, 0));
+            const __m256 zero = _mm256_setzero_ps();
+            const __m256 least =
+                _mm256_min_ps(_mm256_min_ps(_mm256_add_ps(a, by_a), _mm256_add_ps(b, by_b)),
+                              _mm256_add_ps(c, by_c));
+            const __m256 most =
+                _mm256_max_ps(_mm256_max_ps(_mm256_sub_ps(a, by_a), _mm256_sub_ps(b, by_b)),
+                              _mm256_sub_ps(c, by_c));
+            const __m256 holds =
+                _mm256_or_ps(cut, _mm256_or_ps(not_above(zero, least), not_above(most, zero)));
+            const __m256 taken = _mm256_and_ps(begun, not_above(zero, slack));
+            const uint32_t near = bits(_mm256_and_ps(taken, holds));
+            return near == 0 ? 0 : near & bits(box_holds(leaf, point, room));
+        }
         const __m256 minus = _mm256_xor_ps(slack, _mm256_set1_ps(-0.0F));
         const __m256 least = _mm256_min_ps(_mm256_min_ps(a, b), c);
         const __m256 most = _mm256_max_ps(_mm256_max_ps(a, b), c);
         const __m256 holds = _mm256_or_ps(not_above(minus, least), not_above(most, slack));
-        const __m256 cut = _mm256_cmp_ps(share, _mm256_load_ps(leaf.whole_from), _CMP_LT_OQ);
         const uint32_t held = bits(_mm256_and_ps(begun, holds));
         const uint32_t clipped = bits(_mm256_andnot_ps(holds, _mm256_and_ps(begun, cut)));
         if (clipped == 0) return held;
@@ -53,6 +66,15 @@ public:
     }
 
 private:
+    // Twice the area by which an edge may pass a point that reaches out.
+    static __m256 passed(const SlicePoint& point, const __m256 (&x)[3], const __m256 (&y)[3],
+                         unsigned from, unsigned to) {
+        const __m256 sign = _mm256_set1_ps(-0.0F);
+        const __m256 dx = _mm256_andnot_ps(sign, _mm256_sub_ps(x[to], x[from]));
+        const __m256 dy = _mm256_andnot_ps(sign, _mm256_sub_ps(y[to], y[from]));
+        return _mm256_add_ps(_mm256_mul_ps(dx, _mm256_set1_ps(point.reach[1])),
+                             _mm256_mul_ps(dy, _mm256_set1_ps(point.reach[0])));
+    }
     static __m256 box_holds(const SliceLeaf& leaf, const SlicePoint& point, float room) {
         return _mm256_and_ps(box_holds(leaf, 0, point, room), box_holds(leaf, 1, point, room));
     }

@@ -5,6 +5,7 @@ namespace {
 
 float least(float a, float b) { return a < b ? a : b; }
 float most(float a, float b) { return a > b ? a : b; }
+float magnitude(float a) { return a < 0 ? -a : a; }
 
 /// The tests one by one: what the wider ones must agree with.
 class PlainEight {
@@ -30,9 +31,10 @@ public:
         return bits;
     }
 
-    // The point is on one side of all three edges, but for rounding; or the triangle is cut there and its box holds it. Of a
-    // point that reaches farther the boxes alone are asked.
+    // The point is on one side of all three edges, but for rounding and its reach; or the triangle is cut there. Where it is cut, or
+    // the point reaches out, their boxes meet.
     static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
+        const bool reaches = point.reach[0] > 0;
         uint32_t bits = 0;
         for (unsigned i = 0; i < slice_width; ++i) {
             float x[3];
@@ -45,18 +47,29 @@ public:
             const float b = x[1] * y[2] - y[1] * x[2];
             const float c = x[2] * y[0] - y[2] * x[0];
             const float slack = leaf.slack[i];
-            const bool holds = point.reach[0] == 0 &&
-                               (-slack <= least(least(a, b), c) || most(most(a, b), c) <= slack);
-            const bool cut = (point.reach[0] > 0 ? slack >= 0 : point.share < leaf.whole_from[i]) &&
-                             box_holds(leaf, i, 0, point, room) &&
-                             box_holds(leaf, i, 1, point, room);
+            const bool cut = point.share < leaf.whole_from[i];
+            bool holds = -slack <= least(least(a, b), c) || most(most(a, b), c) <= slack;
+            if (reaches) {
+                const float by_a = slack + passed(point, x[1] - x[0], y[1] - y[0]);
+                const float by_b = slack + passed(point, x[2] - x[1], y[2] - y[1]);
+                const float by_c = slack + passed(point, x[0] - x[2], y[0] - y[2]);
+                holds = 0 <= least(least(a + by_a, b + by_b), c + by_c) ||
+                        most(most(a - by_a, b - by_b), c - by_c) <= 0;
+            }
+            if (reaches ? slack >= 0 && (holds || cut) : cut && !holds)
+                holds = box_holds(leaf, i, 0, point, room) && box_holds(leaf, i, 1, point, room);
             const bool begun = leaf.begun_from[i] <= point.last_share;
-            bits |= (begun && (holds || cut) ? 1U : 0U) << i;
+            bits |= (begun && holds ? 1U : 0U) << i;
         }
         return bits;
     }
 
 private:
+    // Twice the area by which an edge may pass a point that reaches out.
+    static float passed(const SlicePoint& point, float x, float y) {
+        return magnitude(x) * point.reach[1] + magnitude(y) * point.reach[0];
+    }
+
     // As the boxes of nodes: between those on both planes.
     static bool box_holds(const SliceLeaf& leaf, unsigned i, unsigned axis, const SlicePoint& point,
                           float room) {
