@@ -5,9 +5,9 @@
 #include <bit>
 #include <charconv>
 #include <cstdint>
+#include <set>
 #include <sstream>
 #include <string_view>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/mesh/quoted_word.h"
@@ -52,11 +52,12 @@ std::vector<PlyElement> PlyFile::read_header() {
         else if (words[0] == "element")
             elements.push_back(read_element(words));
         else if (words[0] == "property" && !elements.empty())
-            add_property(elements.back(), read_property(words));
+            elements.back().properties.push_back(read_property(words));
         else
             fail("header line beginning with " + quoted_word(words[0]) + " is not understood");
     }
     if (!format) fail("the header has no format line");
+    for (const PlyElement& element : elements) require_distinct(element.properties);
     format_ = *format;
     return elements;
 }
@@ -122,10 +123,12 @@ PlyProperty PlyFile::read_property(const std::vector<std::string>& words) const 
     return {words.back(), *type, count_type};
 }
 
-void PlyFile::add_property(PlyElement& to, PlyProperty property) const {
-    if (std::ranges::find(to.properties, property.name, &PlyProperty::name) != to.properties.end())
-        fail("property " + quoted_word(property.name) + " is given twice");
-    to.properties.push_back(std::move(property));
+// By order, as a header may have millions.
+void PlyFile::require_distinct(const std::vector<PlyProperty>& properties) const {
+    std::set<std::string_view> names;
+    for (const PlyProperty& property : properties)
+        if (!names.insert(property.name).second)
+            fail("property " + quoted_word(property.name) + " is given twice");
 }
 
 void PlyFile::fail_truncated(const std::string& element, std::size_t index) const {

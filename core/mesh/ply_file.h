@@ -44,7 +44,7 @@ private:
     PlyFormat read_format(const std::vector<std::string>& words) const;
     PlyElement read_element(const std::vector<std::string>& words) const;
     PlyProperty read_property(const std::vector<std::string>& words) const;
-    void add_property(PlyElement& to, PlyProperty property) const;
+    void require_distinct(const std::vector<PlyProperty>& properties) const;
     double read_ascii(const std::string& element, std::size_t index);
     template <class Value>
     Value read_binary(const std::string& element, std::size_t index);

@@ -178,5 +178,13 @@ TEST_F(PlyMesh, BrokenPlyFilesAreRefusedWithTheReason) {
     expect_refused("n.ply", binary_ply(nan, true), "vertex 3: y is");
 }
 
+// Names are not each held against all others, which takes minutes.
+TEST_F(PlyMesh, FindsWhatIsGivenTwiceAmongManyProperties) {
+    std::string header = "ply\nformat ascii 1.0\nelement vertex 0\n";
+    for (int i = 0; i < 100'000; ++i) header += "property float p" + std::to_string(i) + "\n";
+    expect_refused("many.ply", header + "property int p7\nend_header\n",
+                   "property 'p7' is given twice");
+}
+
 }  // namespace
 }  // namespace caustics
