@@ -67,6 +67,8 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
             const std::size_t caster = i % casters.size();
             TraceSettings own = of_all;
             own.threads = threads;
+            own.least_divided =
+                least_to_divide(settings, casters[caster].mesh.triangles.size(), parts.size());
             parts[i] = trace_beams(scene, boxes, casters[caster],
                                    neighbours.empty() ? nullptr : &neighbours[caster],
                                    lights[i / casters.size()], own, budgets[i], one);

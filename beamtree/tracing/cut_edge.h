@@ -20,8 +20,8 @@ struct CutEdge {
 
 /// Most halvings of an edge that cut_edge() is asked for: where it is cut is then known to a 16,000th.
 constexpr int most_halvings = 14;
-/// Finds by so many bisections where along an edge light does another thing. Neighbours find the same points,
-/// because both begin at the same end.
+/// Finds by so many bisections where along an edge light does another thing. Neighbours that bisect it as often find
+/// the same points, because both begin at the same end.
 CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b, int halvings);
 
 }  // namespace caustics::beamtree

@@ -49,7 +49,8 @@ public:
                 std::upper_bound(up_to_.begin(), up_to_.end(), at) - up_to_.begin());
             const auto light =
                 static_cast<std::size_t>(rng.next_fine() * static_cast<double>(lights_.size()));
-            drawn_.push_back({draw_polygons(casters[caster], together, rng), light});
+            drawn_.push_back({draw_polygons(casters[caster], together, rng), light,
+                              casters[caster].mesh.triangles.size()});
         }
     }
 
@@ -79,7 +80,11 @@ public:
         std::vector<BeamBudget> counts(drawn_.size(),
                                        BeamBudget(BeamBudget::no_limit, budget.least()));
         parallel_chunks(threads_, drawn_.size(), 1, [&](const Chunk& chunk) {
-            trace(drawn_[chunk.index], settings, counts[chunk.index]);
+            const Lot& lot = drawn_[chunk.index];
+            TraceSettings own = settings;
+            own.least_divided =
+                least_to_divide(settings, lot.of_polygons, up_to_.size() * lights_.size());
+            trace(lot, own, counts[chunk.index]);
         });
         for (const BeamBudget& one : counts) budget.add(one);
     }
@@ -88,6 +93,7 @@ private:
     struct Lot {
         CasterMesh polygons;
         std::size_t light;
+        std::size_t of_polygons;  ///< that the caster has
     };
 
     TracedBeams trace(const Lot& lot, const TraceSettings& settings, BeamBudget& budget) {
@@ -131,7 +137,8 @@ double expected_least(const Scene& scene, const SceneBoxes& boxes,
     draws.draw(casters, count, rng);
     const TraceSettings alone{.max_bounces = settings.max_bounces,
                               .prune = settings.prune,
-                              .least_divided = settings.least_divided};
+                              .least_divided = settings.least_divided,
+                              .divided_share = settings.divided_share};
     const auto most = static_cast<std::uint64_t>(a_polygon * static_cast<double>(count)) + 1;
     const double mean = draws.mean_light();
     for (double share = first_try; share > last_try; share *= step) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "beamtree/tracing/beam_budget.h"
@@ -19,8 +22,10 @@ struct TraceSettings {
     int max_bounces = 1;
     /// Of the light of the first events' beams on average: beams with less, were media clear, are not followed.
     double prune = 1e-3;
-    /// Of the same light: parts of polygons with less, were media clear, are not divided to see what they meet.
+    /// Of the same light: parts of polygons with less, were media clear, are not divided to see what they meet,
     double least_divided = 0;
+    /// but those that have this share of all light, as if each light sent as much to each caster.
+    double divided_share = std::numeric_limits<double>::infinity();
     /// Beams of several events, of all lights and casters: those with the most light.
     std::uint64_t max_beams = BeamBudget::no_limit;
     /// Beams that pass all receivers' bounds by more than this [m] are left out; none: no beams are.
@@ -32,5 +37,13 @@ struct TraceSettings {
     std::uint64_t seed = 1;
     int threads = 1;
 };
+
+/// What parts of a caster's polygons have at least to be divided, as `least_divided`. The caster has so many polygons, and
+/// all casters in all lights are so many parts.
+inline double least_to_divide(const TraceSettings& settings, std::size_t polygons,
+                              std::size_t parts) {
+    return std::min(settings.least_divided, settings.divided_share * static_cast<double>(polygons) *
+                                                static_cast<double>(parts));
+}
 
 }  // namespace caustics::beamtree

@@ -10,15 +10,10 @@ namespace {
 
 // How far a point may lie off a receiver's bounds, of the scene's diameter.
 constexpr float near_receiver = 1e-3F;
-// What parts of polygons that are divided have of all light: of a pane of two triangles a millionth.
+// What parts of polygons that are divided have of all light (of a pane of two triangles a millionth), or of a polygon's on
+// average: of many polygons in many lights each has little, but facets part its light as widely.
 constexpr double divided_share = 0x1p-20 / 2;
-
-double least_divided(const std::vector<CasterMesh>& casters, std::size_t lights) {
-    double polygons = 0;
-    for (const CasterMesh& caster : casters)
-        polygons += static_cast<double>(caster.mesh.triangles.size());
-    return divided_share * polygons * static_cast<double>(lights);
-}
+constexpr double least_divided = 0x1p-10;
 
 }  // namespace
 
@@ -87,7 +82,8 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     const TraceSettings settings{.intensity = intensity,
                                  .max_bounces = params.max_bounces,
                                  .prune = params.prune,
-                                 .least_divided = least_divided(traced.casters, lights.size()),
+                                 .least_divided = least_divided,
+                                 .divided_share = divided_share,
                                  .max_beams = static_cast<std::uint64_t>(params.max_beams),
                                  .receiver_margin = near_receiver * scene.diameter() + footprint,
                                  .rest_photons = rest_photons};

@@ -183,6 +183,48 @@ TEST(BeamBudget, DividesOnlyWhatHasLight) {
     EXPECT_LT(none.balance.lost, 1e-3 * none.balance.lit);
 }
 
+// A ball within a ball, of facets, whose light parts widely.
+SceneDesc nested_facets() {
+    SceneDesc desc;
+    for (const double radius : {0.5, 0.3}) {
+        const Transform place(Eigen::Translation3d(0, 0, 0.6) * Eigen::Scaling(radius));
+        const Bsdf bsdf = radius < 0.5 ? support::glass(1, 1.5F) : support::glass(1.5F);
+        desc.shapes.push_back(
+            support::mesh("ball" + std::to_string(radius), tessellate_sphere(8), place, bsdf));
+        desc.shapes.back().mesh.normals.clear();
+    }
+    desc.shapes.push_back(support::horizontal("floor", 0, 4, true, support::diffuse(0.5F)));
+    desc.lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
+    return desc;
+}
+
+// However many polygons another caster has, here below the floor.
+TEST(BeamBudget, DividesPolygonsAlikeBesideAFineMesh) {
+    const auto lost = [](const SceneDesc& desc) {
+        BeamParams params;
+        params.max_bounces = 2;
+        const TracedScene traced = trace_scene(Scene(desc), "beams", params, {});
+        return traced.balance.lost / traced.balance.lit;
+    };
+    SceneDesc desc = nested_facets();
+    const double alone = lost(desc);
+    EXPECT_GT(alone, 0.01);
+    desc.shapes.push_back(support::mesh("water", tessellate_heightfield(waves(), 150),
+                                        Transform(Eigen::Translation3d(0, 0, -2)),
+                                        support::glass(1.333F)));
+    EXPECT_NEAR(lost(desc) / alone, 1, 1e-3);
+}
+
+// Of many polygons in many lights each has little of all light, but of a polygon's own a thousandth is divided.
+TEST(BeamBudget, DividesByAllLightOrByThatOfAPolygon) {
+    const TraceSettings settings{.least_divided = 0x1p-10, .divided_share = 0x1p-21};
+    EXPECT_EQ(least_to_divide(settings, 2, 1), 0x1p-20);
+    EXPECT_EQ(least_to_divide(settings, 4, 8), 0x1p-16);
+    EXPECT_EQ(least_to_divide(settings, 1'000'000, 16), 0x1p-10);
+    EXPECT_EQ(least_to_divide({.least_divided = 0.25}, 2, 1), 0.25);
+    EXPECT_EQ(least_to_divide({}, 2, 1), 0);
+}
+
 // What is left out is told: prune and budget each by its share.
 TEST(BeamBudget, TellsWhatIsLeftOut) {
     const Scene scene(glass_ball());
