@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace caustics::beamtree {
 namespace {
@@ -27,7 +28,8 @@ BeamBudget::BeamBudget(std::uint64_t most, double least) : most_(most), least_(l
 
 void BeamBudget::count(double light) {
     if (!(light > 0) || light < least_) return;
-    ++counts_[step_of(light)];
+    // Infinite where media leave less than floats hold.
+    ++counts_[step_of(std::min(light, std::numeric_limits<double>::max()))];
     ++total_;
     if (total_ > most_) leave_out_weakest();
 }

@@ -145,8 +145,8 @@ int NextBeams::halvings(const Piece& piece) const {
     constexpr int fewest = 4;
     if (least_.to_divide == 0) return most_halvings;
     const double times = most_light(piece) / least_.to_divide;
-    return std::clamp(6 + static_cast<int>(std::log2(std::max(times, 1e-3))), fewest,
-                      most_halvings);
+    if (!(times > 0.25)) return fewest;
+    return std::min(6 + static_cast<int>(std::log2(std::min(times, 1e9))), most_halvings);
 }
 
 void NextBeams::count_search(const Piece& piece) { least_.budget.count(most_light(piece)); }

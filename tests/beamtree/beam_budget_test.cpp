@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "beamtree/tracing/beam_tracing.h"
 #include "beamtree/tracing/expected_least.h"
@@ -101,6 +102,17 @@ BeamParams with_most(std::int64_t most) {
     BeamParams params;
     params.max_beams = most;
     return params;
+}
+
+// A beam whose light media leave none of that floats hold has all light, were media clear.
+TEST(BeamBudget, KeepsWhatIsInfinitelyBright) {
+    BeamBudget budget(1);
+    budget.count(1);
+    budget.count(std::numeric_limits<double>::infinity());
+    EXPECT_EQ(budget.count(), 1U);
+    EXPECT_GT(budget.least(), 1);
+    EXPECT_FALSE(budget.all_have(std::numeric_limits<double>::infinity()));
+    EXPECT_TRUE(budget.all_have(2));
 }
 
 // Those that are kept, and no others, have so much light.
