@@ -41,53 +41,12 @@ std::vector<std::size_t> fit_to_budget(std::vector<BeamBudget>& budgets, std::ui
     return again;
 }
 
-}  // namespace
+// Of nothing where nobody asks for them.
+SceneBoxes boxes_for(const Scene& scene, const TraceSettings& settings) {
+    return settings.max_bounces > 1 || settings.receiver_margin ? scene_boxes(scene) : SceneBoxes{};
+}
 
-TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
-                            const std::vector<LightSample>& lights, const TraceSettings& settings,
-                            const RunOptions& options) {
-    std::vector<MeshNeighbours> neighbours;
-    if (settings.intensity == Intensity::refined)
-        for (const CasterMesh& caster : casters) neighbours.emplace_back(caster, options.threads);
-    const bool asks_boxes = settings.max_bounces > 1 || settings.receiver_margin;
-    const SceneBoxes boxes = asks_boxes ? scene_boxes(scene) : SceneBoxes{};
-    std::vector<TracedBeams> parts(lights.size() * casters.size());
-    const double least = expected_least(scene, boxes, casters, lights, settings, options);
-    TraceSettings of_all = settings;
-    of_all.seed = options.seed;
-    if (settings.rest_photons > 0)
-        of_all.watts_per_photon = first_flux(scene, casters, lights, options.threads) /
-                                  static_cast<double>(settings.rest_photons);
-    std::vector<BeamBudget> budgets(parts.size(),
-                                    part_of_budget(settings.max_beams, parts.size(), least));
-    const auto trace = [&](const std::vector<std::size_t>& which) {
-        TraceProgress progress(options);
-        const ProgressPart one{progress, 1 / static_cast<double>(which.size())};
-        const auto part = [&](std::size_t i, int threads) {
-            const std::size_t caster = i % casters.size();
-            TraceSettings own = of_all;
-            own.threads = threads;
-            own.least_divided =
-                least_to_divide(settings, casters[caster].mesh.triangles.size(), parts.size());
-            parts[i] = trace_beams(scene, boxes, casters[caster],
-                                   neighbours.empty() ? nullptr : &neighbours[caster],
-                                   lights[i / casters.size()], own, budgets[i], one);
-        };
-        std::vector<std::size_t> small;
-        for (const std::size_t i : which) {
-            const bool is_large = casters[i % casters.size()].mesh.triangles.size() >= large;
-            if (is_large || which.size() < few)
-                part(i, options.threads);
-            else
-                small.push_back(i);
-        }
-        parallel_for(options.threads, small.size(),
-                     [&](std::size_t k, std::size_t) { part(small[k], 1); });
-    };
-    std::vector<std::size_t> every(parts.size());
-    std::iota(every.begin(), every.end(), std::size_t{0});
-    trace(every);
-    trace(fit_to_budget(budgets, settings.max_beams));
+TracedBeams joined(std::vector<TracedBeams>& parts, const std::vector<BeamBudget>& budgets) {
     TracedBeams all;
     for (const BeamBudget& budget : budgets)
         all.least_light = std::max(all.least_light, budget.least());
@@ -100,6 +59,85 @@ TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& c
             if (!set.beams.empty()) all.sets.push_back(std::move(set));
     }
     return all;
+}
+
+/// Each caster in each light, lights outermost: a part.
+class Parts {
+public:
+    Parts(const Scene& scene, const std::vector<CasterMesh>& casters,
+          const std::vector<LightSample>& lights, const TraceSettings& settings,
+          const RunOptions& options)
+        : scene_(scene),
+          casters_(casters),
+          lights_(lights),
+          settings_(settings),
+          options_(options),
+          boxes_(boxes_for(scene, settings)),
+          parts_(lights.size() * casters.size()) {
+        if (settings.intensity == Intensity::refined)
+            for (const CasterMesh& caster : casters)
+                neighbours_.emplace_back(caster, options.threads);
+        settings_.seed = options.seed;
+        if (settings.rest_photons > 0)
+            settings_.watts_per_photon = first_flux(scene, casters, lights, options.threads) /
+                                         static_cast<double>(settings.rest_photons);
+    }
+
+    TracedBeams run() {
+        const double least = expected_least(scene_, boxes_, casters_, lights_, settings_, options_);
+        budgets_.assign(parts_.size(), part_of_budget(settings_.max_beams, parts_.size(), least));
+        std::vector<std::size_t> every(parts_.size());
+        std::iota(every.begin(), every.end(), std::size_t{0});
+        trace(every);
+        trace(fit_to_budget(budgets_, settings_.max_beams));
+        return joined(parts_, budgets_);
+    }
+
+private:
+    void trace(const std::vector<std::size_t>& which) {
+        TraceProgress progress(options_);
+        const ProgressPart one{progress, 1 / static_cast<double>(which.size())};
+        std::vector<std::size_t> small;
+        for (const std::size_t i : which) {
+            const bool is_large = casters_[i % casters_.size()].mesh.triangles.size() >= large;
+            if (is_large || which.size() < few)
+                trace(i, options_.threads, one);
+            else
+                small.push_back(i);
+        }
+        parallel_for(options_.threads, small.size(),
+                     [&](std::size_t k, std::size_t) { trace(small[k], 1, one); });
+    }
+
+    void trace(std::size_t i, int threads, const ProgressPart& progress) {
+        const std::size_t caster = i % casters_.size();
+        const CasterMesh& polygons = casters_[caster];
+        TraceSettings own = settings_;
+        own.threads = threads;
+        own.least_divided =
+            least_to_divide(settings_, polygons.mesh.triangles.size(), parts_.size());
+        parts_[i] = trace_beams(scene_, boxes_, polygons,
+                                neighbours_.empty() ? nullptr : &neighbours_[caster],
+                                lights_[i / casters_.size()], own, budgets_[i], progress);
+    }
+
+    const Scene& scene_;
+    const std::vector<CasterMesh>& casters_;
+    const std::vector<LightSample>& lights_;
+    TraceSettings settings_;
+    const RunOptions& options_;
+    SceneBoxes boxes_;
+    std::vector<MeshNeighbours> neighbours_;
+    std::vector<TracedBeams> parts_;
+    std::vector<BeamBudget> budgets_;
+};
+
+}  // namespace
+
+TracedBeams trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
+                            const std::vector<LightSample>& lights, const TraceSettings& settings,
+                            const RunOptions& options) {
+    return Parts(scene, casters, lights, settings, options).run();
 }
 
 std::vector<BeamSet> trace_all_beams(const Scene& scene, const std::vector<CasterMesh>& casters,
