@@ -97,6 +97,12 @@ std::string judged_layer(const CompareOptions& options, const Film& picture,
     return options.layer;
 }
 
+void require_png(const std::string& strip) {
+    if (std::filesystem::path(strip).extension() != ".png")
+        throw InputError(fmt::format("--strip {}: strips are drawn as .png", strip));
+    require_writable_place(strip);
+}
+
 /// A picture of luminance alone cannot be told from one of another hue.
 void require_colours(const Film& film, const std::string& file) {
     if (film.has_layer("")) return;
@@ -109,7 +115,7 @@ void require_colours(const Film& film, const std::string& file) {
 }
 
 int compare(const CompareOptions& options) {
-    if (!options.strip.empty()) require_writable_place(options.strip);
+    if (!options.strip.empty()) require_png(options.strip);
     const Film picture = read_exr(options.picture);
     const Film reference = read_exr(options.reference);
     const std::string layer = judged_layer(options, picture, reference);
@@ -127,7 +133,7 @@ int compare(const CompareOptions& options) {
     const nlohmann::json masked = to_json(measure(picture, reference, layer, mask));
     if (!options.strip.empty()) write_png(strip(picture, reference, layer), options.strip);
 
-    const std::vector<std::string> differences = light_differences(picture, reference);
+    const std::vector<std::string> differences = light_differences(picture, reference, layer);
     tell(differences);
     const std::string name = layer.empty() ? "beauty" : layer;
     const double unreached = 1 - fraction(reached);

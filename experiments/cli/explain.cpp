@@ -61,7 +61,8 @@ std::string this_program(const std::string& command_line) {
     const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
     if (unknown) return command_line;
     const fs::path near = fs::proximate(program, unknown);
-    return shell_path(unknown ? program : near) + command_line.substr(bare.size());
+    const fs::path named = unknown ? program : near.has_parent_path() ? near : "." / near;
+    return shell_path(named) + command_line.substr(bare.size());
 }
 
 bool is_instruction_set(const std::string& text) {

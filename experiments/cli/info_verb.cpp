@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -84,7 +85,7 @@ struct InfoOptions {
     bool beams = false;
     std::vector<std::string> params;  ///< of `beamtree`, for its beams
     std::string output;
-    double dot = 1;
+    std::optional<double> dot;  ///< pixels
 };
 
 /// Draws a picture with the whole machine, showing its progress, and writes it.
@@ -110,6 +111,7 @@ void info_on_scene(const InfoOptions& options) {
             fmt::format("{} is no photon map: --scene is for these", options.scene.file));
     if (options.beams == options.output.empty() || (!options.beams && !options.params.empty()))
         throw InputError("--beams and -o belong together, for a scene; --param is for them");
+    if (options.dot) throw InputError("--dot is for photons, which -o draws of a photon map");
     if (options.beams) require_png(options.output, "beams");
     SceneFile file = options.scene.load();
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
@@ -126,7 +128,7 @@ void draw(const InfoOptions& options, photonmap::SavedPhotons saved) {
     photonmap::require_transport(saved.origin, scene, options.scene.file);
     if (options.output.empty()) return;
     write_drawing(scene, options.output, [&](const RunOptions& run) {
-        return draw_photons(scene, std::move(saved.photons), options.dot, run);
+        return draw_photons(scene, std::move(saved.photons), options.dot.value_or(1), run);
     });
 }
 
@@ -135,6 +137,8 @@ void info_on_map(const InfoOptions& options) {
         throw InputError("-o and --set need --scene: the scene that the photons are drawn in");
     if (options.beams || !options.params.empty())
         throw InputError("--beams and --param are for scenes");
+    if (options.dot && options.output.empty())
+        throw InputError("--dot is for photons that are drawn, by -o");
     if (!options.output.empty()) require_png(options.output, "photons");
     photonmap::SavedPhotons saved = photonmap::load_photon_map(options.scene.file);
     const std::string text = describe_map(options.scene.file, saved);

@@ -11,6 +11,7 @@
 #include "experiments/run/probe.h"
 #include "experiments/run/render_and_score.h"
 #include "experiments/run/run_progress.h"
+#include "experiments/run/written_files.h"
 
 namespace caustics::experiments {
 
@@ -30,6 +31,9 @@ struct ProbeOptions {
 RunRequest request_of(const ProbeOptions& options) {
     RunRequest request{options.scene.file, options.scene.overrides(), {}, options.run.seed, 1};
     if (options.layer == "indirect") {
+        if (!options.method.name.empty() || !options.method.params.empty())
+            throw InputError(
+                "--method, --param: probe answers one layer; leave them out with --layer indirect");
         request.indirect = options.indirect.parse();
         const std::vector<std::string>& all = indirect_names();
         if (!request.indirect)  // "none" comes first
@@ -58,6 +62,8 @@ int probe_points(const ProbeOptions& options) {
     if (to_file) require_writable_place(options.output);
     SceneFile file = options.scene.load();
     const RunRequest request = request_of(options);
+    require_files_apart(to_file ? std::vector{options.output} : std::vector<std::string>(),
+                        request);
     const ProbeList list = read_probe_list(options.points);
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     RunOptions run = options.run.options(1);

@@ -13,6 +13,7 @@
 #include "experiments/run/cli_options.h"
 #include "experiments/run/render_and_score.h"
 #include "experiments/run/run_progress.h"
+#include "experiments/run/written_files.h"
 
 namespace caustics::experiments {
 
@@ -83,6 +84,7 @@ int render_picture(const RenderOptions& options) {
                              options.run.seed,
                              samples_per_pixel(file.desc.sampling, options.spp),
                              options.indirect.parse()};
+    require_files_apart(options.outputs, request);
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     Stopwatch stopwatch;
     RunResult result = run_shown(scene, request, options.run, stopwatch);

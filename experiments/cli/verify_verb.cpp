@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -34,6 +35,9 @@ int verify_gallery(const VerifyOptions& options, const RunOptions& run) {
     for (const GalleryScene& scene : scenes)
         for (const Series& series : scene.series)
             count += is_wanted(options.methods, series.method);
+    if (count == 0)
+        throw InputError(fmt::format("--method {}: the gallery has no known answer for it",
+                                     fmt::join(options.methods, ", ")));
     StepProgress progress(count);
     std::vector<SeriesOutcome> outcomes;
     bool holds = true;
@@ -61,6 +65,8 @@ int verify(const VerifyOptions& options) {
             parse_method(name, parameters_node({}));
     if (options.gallery == !options.scene.file.empty())
         throw InputError("verify: give either a scene or --gallery");
+    if (options.gallery && !options.scene.sets.empty())
+        throw InputError("--set: changes a scene, and --gallery takes its own as they are");
     RunOptions run;
     run.threads = options.machine.threads > 0 ? options.machine.threads : available_threads();
     run.isa = options.machine.isa;

@@ -56,19 +56,37 @@ void add_differences(std::vector<std::string>& all, const json& a, const json& b
                 fmt::format("{}: {} against {}", visible(key), text_of(a, key), text_of(b, key)));
 }
 
-/// Of the parameters only those that both methods have and that say which light paths count.
-json path_parameters(const Film& film, const json& other) {
-    constexpr const char* name = "max_bounces";
-    const json all = attribute(film, "parameters");
-    return all.contains(name) && other.contains(name) ? json{{name, all.at(name)}} : json::object();
+/// Of one method's parameters those that both pictures have and that say which light paths count,
+/// as "PREFIXname".
+json path_parameters(const Film& film, const Film& other, const char* attribute_name,
+                     const char* prefix) {
+    json counted = json::object();
+    const json all = attribute(film, attribute_name);
+    const json others = attribute(other, attribute_name);
+    for (const char* name : {"max_bounces", "diffuse_bounces", "shadows"})
+        if (all.contains(name) && others.contains(name))
+            counted[std::string(prefix) + name] = all.at(name);
+    return counted;
+}
+
+/// What a picture asks of its methods in the light of `layer`.
+json asked_paths(const Film& film, const Film& other, const std::string& layer) {
+    json asked = path_parameters(film, other, "parameters", "");
+    const bool is_whole = layer.empty();
+    if (is_whole || layer == "indirect")
+        asked.update(path_parameters(film, other, "indirect_parameters", "indirect_"));
+    if (is_whole && film.metadata.contains("scene") && other.metadata.contains("scene"))
+        asked["light between surfaces"] = film.has_layer("indirect");
+    return asked;
 }
 
 }  // namespace
 
-std::vector<std::string> light_differences(const Film& picture, const Film& reference) {
+std::vector<std::string> light_differences(const Film& picture, const Film& reference,
+                                           const std::string& layer) {
     std::vector<std::string> all;
-    add_differences(all, path_parameters(picture, attribute(reference, "parameters")),
-                    path_parameters(reference, attribute(picture, "parameters")));
+    add_differences(all, asked_paths(picture, reference, layer),
+                    asked_paths(reference, picture, layer));
     if (!picture.metadata.contains("scene") || !reference.metadata.contains("scene")) return all;
     add_differences(all, plain_values(without_sampler(attribute(picture, "scene"))),
                     plain_values(without_sampler(attribute(reference, "scene"))));

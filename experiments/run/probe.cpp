@@ -174,7 +174,7 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
     list.has_viewer = viewer[0];
     if (viewer[1] != viewer[0] || viewer[2] != viewer[0])
         throw InputError(
-            fmt::format("{}: give all of the columns wx, wy, wz or none", file.string()));
+            fmt::format("{}: give all of the columns wx, wy, wz or none", list.file.string()));
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         ProbePoint point;
         point.position = vector_at(list, row, {"x", "y", "z"});

@@ -205,6 +205,11 @@ TEST_F(Surroundings, HostileNamesAreNamesAndNothingElse) {
     EXPECT_EQ(run("cd $D && for t in $(ls out/trials); do $P explain out $t | sh || exit 1; done")
                   .exit_code,
               0);
+    EXPECT_EQ(run("cd $(dirname $P) && $P explain $D/out $(ls $D/out/trials | head -n 1) | "
+                  "grep -q '^[.]/causticbench render '")
+                  .exit_code,
+              0)
+        << "the shell looks for a bare name elsewhere";
     const std::string table = read_whole_file(folder_ / "out/records.csv");
     EXPECT_EQ(table.find(",=cmd"), std::string::npos) << table;
     EXPECT_NE(table.find(",'=cmd"), std::string::npos) << table;

@@ -230,6 +230,12 @@ TEST(Probe, ReadsPointsFromStandardInputAndWritesToStandardOutput) {
     EXPECT_EQ(empty.exit_code, 2);
     EXPECT_EQ(empty.err,
               "causticbench: error: standard input: cannot be read (neither a file nor a pipe)\n");
+    write_atomic_file(folder / "half.csv", "x,y,z,nx,ny,nz,wz\n0,0,0,0,0,1,1\n");
+    const ProgramResult half = support::causticbench_reading(
+        folder / "half.csv", {"probe", scene, "--method", "none", "--points", "-"});
+    EXPECT_EQ(half.exit_code, 2);
+    EXPECT_EQ(half.err,
+              "causticbench: error: standard input: give all of the columns wx, wy, wz or none\n");
 }
 
 // Light along a diagonal starts outside of the scene's bounds, where Embree must still take it.

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/run/render_and_score.h"
+
+namespace caustics::experiments {
+
+/// Throws InputError where one file is named for two results, of which the later would take the
+/// place of the earlier: those of `-o`, and files that parameters of the request's methods name.
+void require_files_apart(const std::vector<std::string>& outputs, const RunRequest& request);
+
+}  // namespace caustics::experiments
