@@ -95,7 +95,7 @@ Verb add_verify(CLI::App& app) {
         "same picture with any number of threads, each method against the reference in cells of "
         "the\n"
         "picture, and why there is no caustic if there is none.\n"
-        "Exit code 0 if all holds, 1 if not.\n"
+        "Exit code 0 if all holds, 1 if not, 3 if a named method cannot serve the scene.\n"
         "Example:\n  causticbench verify experiments/scenes/pool.json");
     return {verb, [options] { return verify(*options); }};
 }

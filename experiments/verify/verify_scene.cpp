@@ -81,6 +81,7 @@ public:
             if (each->facts().has_caustic &&
                 (methods.empty() || std::ranges::count(methods, each->facts().name) > 0))
                 methods_.push_back(each);
+        if (!methods.empty()) require_served();
     }
 
     SceneReport run() {
@@ -100,6 +101,16 @@ public:
     }
 
 private:
+    /// Methods that are asked for by name: nothing would be checked of one that cannot serve. Where no
+    /// light can make a caustic, the report says why.
+    void require_served() const {
+        if (methods_.empty()) throw InputError("--method none: has no caustic to check");
+        if (why_nothing_is_aimed(scene_)) return;
+        for (const MethodDescription* each : methods_)
+            if (const auto reason = why_unsupported(scene_, with_effort(*each)))
+                throw UnsupportedScene(*reason);
+    }
+
     void add(std::string what, Verdict result, std::string detail) {
         report_.findings.push_back({std::move(what), result, std::move(detail)});
     }

@@ -32,6 +32,7 @@ struct SceneReport {
 ///     shrinks with more effort: an estimate by the nearest photons gains light in the dark beside a
 ///     bright edge;
 ///   * whether light comes from a light by casters to a place that the camera sees, and where that ends.
+/// Throws UnsupportedScene where a method that is named cannot serve the scene.
 SceneReport verify_scene(SceneFile file, const std::vector<std::string>& methods,
                          const RunOptions& options);
 

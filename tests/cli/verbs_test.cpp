@@ -287,6 +287,10 @@ TEST(Verify, WantsASceneOrTheGallery) {
     EXPECT_EQ(causticbench({"verify"}).exit_code, 2);
     EXPECT_EQ(causticbench({"verify", scene, "--gallery"}).exit_code, 2);
     EXPECT_EQ(causticbench({"verify", scene, "--method", "photonmaps"}).exit_code, 2);
+    EXPECT_EQ(causticbench({"verify", scene, "--method", "none"}).exit_code, 2);
+    const ProgramResult unserved = causticbench({"verify", scene, "--method", "pathtrace"});
+    EXPECT_EQ(unserved.exit_code, 3) << "of what cannot serve the scene nothing is checked";
+    EXPECT_NE(unserved.err.find("point light"), std::string::npos) << unserved.err;
 }
 
 }  // namespace
