@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -178,6 +179,19 @@ double count_trials(const SweepFile& sweep) {
     return trials;
 }
 
+/// An axis's column would hold the parameter's value in place of its own.
+void require_own_columns(const SweepFile& sweep, const JsonNode& node) {
+    std::set<std::string> parameters;
+    for (const SweepFile::MethodCase& each : sweep.methods)
+        for (const auto& [key, value] : each.params) parameters.insert(key);
+    for (const SweepFile::IndirectCase& each : sweep.indirect)
+        for (const auto& [key, value] : each.params) parameters.insert("indirect_" + key);
+    for (const SweepFile::Axis& axis : sweep.axes)
+        if (parameters.contains(axis.name))
+            node.at("set").at(axis.name).fail(fmt::format(
+                "\"{}\" is the column of a method's parameter: choose another name", axis.name));
+}
+
 /// Pictures with light between surfaces are scored against one that has it.
 void require_same_layers(const SweepFile& sweep, const JsonNode& node) {
     const bool has_indirect = std::ranges::any_of(
@@ -225,6 +239,7 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     if (const std::optional<JsonNode> reference = node.find("reference"))
         sweep.reference = read_reference(*reference, sweep.spp);
     require_same_layers(sweep, node);
+    require_own_columns(sweep, node);
     node.finish();
     require_few(count_trials(sweep), node);
     return sweep;
