@@ -154,8 +154,8 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
         {.facts = {.name = "beamtree",
                    .summary = "Chuang and Cheng 1995: beams of specular polygons, found through a "
                               "tree of cones",
-                   .serves = "every scene; on coarse meshes beams lose light, and the record "
-                             "says how much",
+                   .serves = "every light but `constant`; on coarse meshes beams lose light, "
+                             "and the record says how much",
                    .effort = {"mesh_resolution=64"},
                    .more_effort = {"mesh_resolution=128"}},
          .parameters = joined(tree_parameters(), beam_param_table<P>()),

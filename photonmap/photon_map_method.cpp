@@ -119,7 +119,7 @@ std::vector<Parameter<P>> estimate_parameters() {
                               .source = "[Jensen 2001]"})
             .only_if([](const P& p) { return p.filter_beta != P{}.filter_beta; }),
         parameter::number<P>(
-            &P::filter_alpha, 0, 100,
+            &P::filter_alpha, 0.001, 100,
             {.key = "filter_alpha",
              .meaning = "Of the filter gaussian as printed, whose mean is not 1: 0.918 there.",
              .source = "[Jensen 2001]"})
@@ -179,8 +179,6 @@ void settle_filter(const JsonNode& node, const P& params) {
     for (const char* const key : {"filter_beta", "filter_alpha"})
         if (const auto given = node.find(key); given && params.filter != FilterKind::gaussian)
             given->fail("belongs to the filter gaussian");
-    if (const auto alpha = node.find("filter_alpha"); alpha && !(params.filter_alpha > 0))
-        alpha->fail("must be above 0 (leave it out for a filter whose mean is 1)");
 }
 
 void settle_radius(const JsonNode& node, P& params) {
@@ -226,7 +224,7 @@ const DescribedMethod<PhotonMapParams>& photonmap_method() {
         {.facts = {.name = "photonmap",
                    .summary =
                        "Jensen 1996: photons aimed at the casters, balanced kd-tree, N nearest",
-                   .serves = "every scene",
+                   .serves = "every scene; without light on casters by `emitted` alone",
                    .effort = {"photons=60000", "nearest=60"},
                    .more_effort = {"photons=480000", "nearest=60"}},
          .parameters = joined(photon_parameters(), estimate_parameters()),

@@ -30,7 +30,7 @@ double read_length(const JsonNode& node, const std::string& otherwise) {
     const auto stored = static_cast<float>(value);
     // The square must be a float above 0 too: that is what distances are compared with.
     if (!(stored > 0 && stored * stored > 0) || !std::isfinite(stored * stored))
-        node.fail("must be a length above 0 [m] (" + otherwise + ")");
+        node.fail("must be a length above 0 [m], 4e-23 to 1.8e19 (" + otherwise + ")");
     return value;
 }
 

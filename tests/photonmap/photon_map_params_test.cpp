@@ -136,6 +136,10 @@ TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
         EXPECT_NE(line, "") << json;
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;
     }
+    EXPECT_NE(refusal(R"({"filter": "gaussian", "filter_alpha": 0})").find("from 0.001 to 100"),
+              std::string::npos)
+        << "as help says";
+    EXPECT_NE(refusal(R"({"max_radius": 1e30})").find("1.8e19"), std::string::npos);
 }
 
 }  // namespace
