@@ -116,10 +116,13 @@ void settle_footprint(const JsonNode& node, const P& params) {
             given->fail("only the bound \"two_slice\" averages over squares of its planes");
     if (params.pixel_footprint && params.footprint > 0)
         node.at("pixel_footprint")
-            .fail("footprint gives the squares' side already (leave one out)");
+            .fail("footprint asks for squares of its own (leave one of the two out)");
     if (params.dispersion == Dispersion::intervals &&
         (params.footprint > 0 || params.pixel_footprint))
-        node.at("dispersion").fail("intervals are of points, not of squares (leave out footprint)");
+        node.at("dispersion")
+            .fail(
+                "intervals are of points, not of squares (leave out footprint and "
+                "pixel_footprint)");
 }
 
 void settle_rest(const JsonNode& node, const P& params) {

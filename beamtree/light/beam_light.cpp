@@ -8,6 +8,7 @@
 #include "beamtree/beams/caster_mesh.h"
 #include "beamtree/light/refined_density.h"
 #include "core/material/optics.h"
+#include "core/scene/same_surface.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -55,9 +56,10 @@ bool meets_receiver(const Scene& scene, const ReceiverPoint& point, const BeamHi
     const auto met = scene.intersect(spawn_ray(start, direction));
     if (!met) return false;
     const float away = (met->position - middle).norm();
+    if (away <= hit.cell_radius / 100) return true;
     const float slant = std::abs(point.geometric_normal.dot(direction));
-    return away <= hit.cell_radius / 100 ||
-           (met->shape == point.shape && away * slant <= 2 * hit.cell_radius);
+    return met->shape == point.shape && away * slant <= 2 * hit.cell_radius &&
+           std::abs(met->geometric_normal.dot(point.geometric_normal)) >= same_surface_cosine;
 }
 
 }  // namespace
@@ -111,9 +113,10 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                 (factor * exact->weight * left).template cast<double>() * exact->density * cosine;
             continue;
         }
-        double density =
-            refined_density(set, hit, point.position)
-                .value_or(hit.flux_share / std::max(hit.area, least_area));  // [CC95 (11)]
+        // Of a small polygon in a square no more than the square's area counts.
+        const double area = hit.is_part_of_square() ? hit.area : std::max(hit.area, least_area);
+        double density = refined_density(set, hit, point.position)
+                             .value_or(hit.flux_share / area);  // [CC95 (11)]
         density *= hit.coverage;
         // The caustic polygon lies on the test's plane; the receiver's is turned against it.
         density *= cosine / std::abs(static_cast<double>(hit.plane_normal.dot(ray.direction)));

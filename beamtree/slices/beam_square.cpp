@@ -14,9 +14,9 @@ using Triangle = std::array<Vec2d, 3>;
 
 double area_of(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]) / 2; }
 
-/// A triangle cut by the four sides of a square has up to seven corners.
+/// A triangle cut by the four sides of a square has up to seven corners; rounding may add some.
 struct Part {
-    std::array<Vec2d, 8> corners;
+    std::array<Vec2d, 16> corners;
     std::size_t count = 0;
 };
 

@@ -1,6 +1,9 @@
 #include "core/render/pixel_cells.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "core/scene/same_surface.h"
 
 namespace caustics {
 
@@ -22,6 +25,21 @@ std::optional<PixelCell> pixel_cell(const Camera& camera, const Eigen::AlignedBo
         cell.radius = std::max(cell.radius, cell.corners[i].norm());
     }
     return cell;
+}
+
+bool lies_on_receiver(const Scene& scene, const ReceiverPoint& point, const PixelCell& cell) {
+    const float above = std::max(static_cast<float>(cell.radius) / 10, 2 * point.offset);
+    for (std::size_t i = 0; i < cell.corners.size(); ++i) {
+        Ray down;
+        down.origin =
+            point.position + cell.corner(i).cast<float>() + above * point.geometric_normal;
+        down.direction = -point.geometric_normal;
+        down.max_distance = 2 * above;
+        const auto met = scene.intersect(down);
+        if (!met || std::abs(met->geometric_normal.dot(down.direction)) < same_surface_cosine)
+            return false;
+    }
+    return true;
 }
 
 }  // namespace caustics

@@ -72,14 +72,18 @@ SpectrumSum TileSampler::trace(int x, int y, int sample, std::size_t pixel, Pixe
         found.point.id = id << 8U | (branch++ & 0xFFU);
         worker.points.push_back(found.point);
         if (asks_for_cells())
-            worker.cells.push_back(
-                found.seen_directly
-                    ? pixel_cell(camera, samples_.film_cell(x, y, sample), found.point)
-                    : std::nullopt);
+            worker.cells.push_back(found.seen_directly ? cell_of(x, y, sample, found.point)
+                                                       : std::nullopt);
         worker.owners.push_back({pixel, worker.values.size(), found.weight});
     }
     if (!parts_.others) return SpectrumSum::Zero();
     return add_eye_path(path, rng, sums, worker);
+}
+
+std::optional<PixelCell> TileSampler::cell_of(int x, int y, int sample,
+                                              const ReceiverPoint& point) const {
+    const auto cell = pixel_cell(scene_.camera(), samples_.film_cell(x, y, sample), point);
+    return cell && lies_on_receiver(scene_, point, *cell) ? cell : std::nullopt;
 }
 
 SpectrumSum TileSampler::add_eye_path(const EyePath& path, Rng& rng, PixelSums& sums,

@@ -82,6 +82,8 @@ private:
     bool asks_for_cells() const { return parts_.caustic && estimator_->asks_for_cells(); }
     SpectrumSum trace(int x, int y, int sample, std::size_t pixel, PixelSums& sums,
                       TileWorker& worker) const;
+    /// The sample's part of its pixel on the point's receiver; none where it reaches beyond it.
+    std::optional<PixelCell> cell_of(int x, int y, int sample, const ReceiverPoint& point) const;
     SpectrumSum add_eye_path(const EyePath& path, Rng& rng, PixelSums& sums,
                              TileWorker& worker) const;
     Spectrum direct(const ReceiverPoint& point, Rng& rng, TileWorker& worker) const;

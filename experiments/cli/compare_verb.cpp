@@ -114,56 +114,71 @@ void require_colours(const Film& film, const std::string& file) {
                     file, one_line(fmt::format("{}", fmt::join(channels, ", ")))));
 }
 
-int compare(const CompareOptions& options) {
-    if (!options.strip.empty()) require_png(options.strip);
-    const Film picture = read_exr(options.picture);
-    const Film reference = read_exr(options.reference);
-    const std::string layer = judged_layer(options, picture, reference);
+struct Comparison {
+    std::string layer;  ///< empty: RGB
+    PixelMask reached;
+    PixelMask mask;
+    nlohmann::json whole, masked;  ///< metrics
+    std::vector<std::string> light_differences;
+};
+
+Comparison compared(const CompareOptions& options, const Film& picture, const Film& reference) {
+    Comparison result;
+    const std::string& layer = result.layer = judged_layer(options, picture, reference);
     if (layer.empty()) {
         require_colours(picture, options.picture);
         require_colours(reference, options.reference);
     }
     require_finite(picture, layer, options.picture);
     require_finite(reference, layer, options.reference);
-    const PixelMask reached = reached_pixels(picture, reference);
-    const nlohmann::json whole = to_json(measure(picture, reference, layer, reached));
-    const PixelMask mask = options.mask.empty()
-                               ? bright_pixels(reference, layer, reached)
-                               : intersection(reached, mask_from(options.mask, reference));
-    const nlohmann::json masked = to_json(measure(picture, reference, layer, mask));
-    if (!options.strip.empty()) write_png(strip(picture, reference, layer), options.strip);
+    result.reached = reached_pixels(picture, reference);
+    result.whole = to_json(measure(picture, reference, layer, result.reached));
+    result.mask = options.mask.empty()
+                      ? bright_pixels(reference, layer, result.reached)
+                      : intersection(result.reached, mask_from(options.mask, reference));
+    result.masked = to_json(measure(picture, reference, layer, result.mask));
+    result.light_differences = light_differences(picture, reference, layer);
+    return result;
+}
 
-    const std::vector<std::string> differences = light_differences(picture, reference, layer);
-    tell(differences);
-    const std::string name = layer.empty() ? "beauty" : layer;
-    const double unreached = 1 - fraction(reached);
-    if (options.json) {
-        const std::optional<double> own = relative_standard_error(reference, layer, reached);
-        const nlohmann::json all = {
-            {"layer", name},
-            {"unreached_fraction", unreached},
-            {"mask_fraction", fraction(mask)},
-            {"reference_stderr", own ? nlohmann::json(*own) : nlohmann::json()},
-            {"metrics", whole},
-            {"mask_metrics", masked},
-            {"light_differences", differences},
-            {"formulas", metric_formulas}};
-        write_stdout(all.dump(2) + "\n");
-        return 0;
-    }
-    std::string text = fmt::format("layer {}{}\nunreached pixels left out: {:.4g} % of all\n", name,
-                                   layer.empty() && options.layer.empty()
-                                       ? " (RGB, because not both files have a layer \"caustic\")"
-                                       : "",
-                                   100 * unreached);
-    append_text(text, "all pixels", whole);
+std::string as_json(const Comparison& found, const Film& reference) {
+    const std::optional<double> own =
+        relative_standard_error(reference, found.layer, found.reached);
+    const nlohmann::json all = {{"layer", found.layer.empty() ? "beauty" : found.layer},
+                                {"unreached_fraction", 1 - fraction(found.reached)},
+                                {"mask_fraction", fraction(found.mask)},
+                                {"reference_stderr", own ? nlohmann::json(*own) : nlohmann::json()},
+                                {"metrics", found.whole},
+                                {"mask_metrics", found.masked},
+                                {"light_differences", found.light_differences},
+                                {"formulas", metric_formulas}};
+    return all.dump(2) + "\n";
+}
+
+std::string as_text(const Comparison& found, const CompareOptions& options, const Film& reference) {
+    const bool lacks_caustic = found.layer.empty() && options.layer.empty();
+    std::string text =
+        fmt::format("layer {}{}\nunreached pixels left out: {:.4g} % of all\n",
+                    found.layer.empty() ? "beauty" : found.layer,
+                    lacks_caustic ? " (RGB, because not both files have a layer \"caustic\")" : "",
+                    100 * (1 - fraction(found.reached)));
+    append_text(text, "all pixels", found.whole);
     append_text(
         text,
         options.mask.empty() ? "pixels whose reference is at least its mean" : "pixels of the mask",
-        masked);
-    text += said_of_reference(reference, layer, reached, whole);
-    text += metric_formulas;
-    write_stdout(text);
+        found.masked);
+    text += said_of_reference(reference, found.layer, found.reached, found.whole);
+    return text + metric_formulas;
+}
+
+int compare(const CompareOptions& options) {
+    if (!options.strip.empty()) require_png(options.strip);
+    const Film picture = read_exr(options.picture);
+    const Film reference = read_exr(options.reference);
+    const Comparison found = compared(options, picture, reference);
+    if (!options.strip.empty()) write_png(strip(picture, reference, found.layer), options.strip);
+    tell(found.light_differences);
+    write_stdout(options.json ? as_json(found, reference) : as_text(found, options, reference));
     return 0;
 }
 

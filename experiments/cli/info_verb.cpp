@@ -13,6 +13,7 @@
 #include "core/scene/transport_hash.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
+#include "experiments/base/signals.h"
 #include "experiments/base/status_line.h"
 #include "experiments/cli/map_info.h"
 #include "experiments/cli/shape_lines.h"
@@ -174,6 +175,7 @@ Verb add_info(CLI::App& app) {
         "  causticbench info pool.json --beams --set /water/resolution=32 -o beams.png\n"
         "  causticbench info pool.photons --scene pool.json -o photons.png");
     return {verb, [options] {
+                end_soon_after_interrupts();
                 if (photonmap::is_photon_map(options->scene.file))
                     info_on_map(*options);
                 else

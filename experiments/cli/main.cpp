@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <atomic>
 #include <clocale>
 #include <csignal>
 #include <cstdlib>
@@ -8,6 +9,8 @@
 #include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
+#include <thread>
 
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
@@ -33,6 +36,7 @@ int run_and_report(int argc, char** argv) {
     } catch (const UnsupportedScene& error) {
         return report(error.what(), unsupported);
     } catch (const Interrupted& error) {
+        end_in_own_time();
         return report(error.what(), interrupted);
     } catch (const std::filesystem::filesystem_error& error) {
         return report(reason_of(error), bad_input);
@@ -44,18 +48,30 @@ int run_and_report(int argc, char** argv) {
     }
 }
 
-// What no function catches: libraries that start threads end the program where the system has none left.
-[[noreturn]] void report_uncaught() {
-    std::string reason = "a library gave up without a reason";
+/// What no function caught; memory and threads that the system refuses by the limits that refuse them.
+std::string uncaught_reason() {
+    const std::string limits = " (threads or memory may be limited: ulimit -u, -v)";
     try {
         if (const std::exception_ptr uncaught = std::current_exception())
             std::rethrow_exception(uncaught);
+    } catch (const std::system_error& error) {
+        return error.what() + limits;
+    } catch (const std::bad_alloc& error) {
+        return error.what() + limits;
     } catch (const std::exception& error) {
-        reason = error.what();
+        return fmt::format("internal error: {}", error.what());
     } catch (...) {
-        reason = "a library gave up by an unknown exception";
+        return "a library gave up by an unknown exception" + limits;
     }
-    report(reason + " (threads or memory may be limited: ulimit -u, -v)", failed);
+    return "a library gave up without a reason" + limits;
+}
+
+// Libraries that start threads end the program where the system has none left. Several threads may come here at once.
+[[noreturn]] void report_uncaught() {
+    static std::atomic_flag is_reported;
+    if (is_reported.test_and_set())
+        while (true) std::this_thread::yield();
+    report(uncaught_reason(), failed);
     std::_Exit(failed);
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
+#include "experiments/base/signals.h"
 #include "experiments/cli/verbs.h"
 #include "experiments/run/cli_options.h"
 #include "experiments/run/probe.h"
@@ -58,6 +59,7 @@ ProbeAnswers probe_shown(const Scene& scene, const RunRequest& request, const Pr
 }
 
 int probe_points(const ProbeOptions& options) {
+    end_soon_after_interrupts();
     const bool to_file = options.output != "-";
     if (to_file) require_writable_place(options.output);
     SceneFile file = options.scene.load();

@@ -7,6 +7,7 @@
 #include "experiments/base/csv.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
+#include "experiments/base/signals.h"
 #include "experiments/cli/verbs.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/picture/previews.h"
@@ -76,6 +77,7 @@ RunResult run_shown(const Scene& scene, const RunRequest& request, const RunFlag
 }
 
 int render_picture(const RenderOptions& options) {
+    end_soon_after_interrupts();
     check_outputs(options.outputs);
     SceneFile file = options.scene.load();
     const RunRequest request{options.scene.file,

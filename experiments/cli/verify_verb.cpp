@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -29,16 +28,21 @@ bool is_wanted(const std::vector<std::string>& methods, const std::string& name)
     return methods.empty() || std::ranges::find(methods, name) != methods.end();
 }
 
-int verify_gallery(const VerifyOptions& options, const RunOptions& run) {
-    const std::vector<GalleryScene> scenes = gallery();
+std::size_t series_of(const std::vector<GalleryScene>& scenes,
+                      const std::vector<std::string>& methods) {
     std::size_t count = 0;
     for (const GalleryScene& scene : scenes)
-        for (const Series& series : scene.series)
-            count += is_wanted(options.methods, series.method);
-    if (count == 0)
-        throw InputError(fmt::format("--method {}: the gallery has no known answer for it",
-                                     fmt::join(options.methods, ", ")));
-    StepProgress progress(count);
+        for (const Series& series : scene.series) count += is_wanted(methods, series.method);
+    return count;
+}
+
+int verify_gallery(const VerifyOptions& options, const RunOptions& run) {
+    const std::vector<GalleryScene> scenes = gallery();
+    for (const std::string& name : options.methods)
+        if (series_of(scenes, {name}) == 0)
+            throw InputError(
+                fmt::format("--method {}: the gallery has no known answer for it", name));
+    StepProgress progress(series_of(scenes, options.methods));
     std::vector<SeriesOutcome> outcomes;
     bool holds = true;
     for (const GalleryScene& scene : scenes)

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -56,14 +57,13 @@ void add_differences(std::vector<std::string>& all, const json& a, const json& b
                 fmt::format("{}: {} against {}", visible(key), text_of(a, key), text_of(b, key)));
 }
 
-/// Of one method's parameters those that both pictures have and that say which light paths count,
-/// as "PREFIXname".
+/// Of one method's parameters those of `names` that both pictures have, as "PREFIXname".
 json path_parameters(const Film& film, const Film& other, const char* attribute_name,
-                     const char* prefix) {
+                     const char* prefix, std::initializer_list<const char*> names) {
     json counted = json::object();
     const json all = attribute(film, attribute_name);
     const json others = attribute(other, attribute_name);
-    for (const char* name : {"max_bounces", "diffuse_bounces", "shadows"})
+    for (const char* name : names)
         if (all.contains(name) && others.contains(name))
             counted[std::string(prefix) + name] = all.at(name);
     return counted;
@@ -71,10 +71,13 @@ json path_parameters(const Film& film, const Film& other, const char* attribute_
 
 /// What a picture asks of its methods in the light of `layer`.
 json asked_paths(const Film& film, const Film& other, const std::string& layer) {
-    json asked = path_parameters(film, other, "parameters", "");
+    json asked = path_parameters(film, other, "parameters", "", {"max_bounces"});
     const bool is_whole = layer.empty();
+    if (is_whole || layer == "direct")
+        asked.update(path_parameters(film, other, "parameters", "", {"shadows"}));
     if (is_whole || layer == "indirect")
-        asked.update(path_parameters(film, other, "indirect_parameters", "indirect_"));
+        asked.update(path_parameters(film, other, "indirect_parameters", "indirect_",
+                                     {"max_bounces", "diffuse_bounces"}));
     if (is_whole && film.metadata.contains("scene") && other.metadata.contains("scene"))
         asked["light between surfaces"] = film.has_layer("indirect");
     return asked;

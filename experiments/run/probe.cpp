@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "core/base/error.h"
@@ -203,6 +204,10 @@ namespace {
 template <class Estimator>
 ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, const ProbeList& list,
                       const RunOptions& options) {
+    if (describe(method).value("pixel_footprint", false))
+        throw InputError(method.facts().name +
+                         ": pixel_footprint is of a camera's pixels, and points have none: leave "
+                         "it out, or give a footprint in metres");
     const Questions asked = questions(scene, method, list);
     ProbeAnswers answers;
     answers.irradiance.resize(list.points.size());
@@ -212,10 +217,6 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
         const auto built = method.configured->build(scene, options, pass);
         answers.has_standard_errors = built->is_statistical();
         if constexpr (std::is_same_v<Estimator, CausticEstimator>) {
-            if (built->asks_for_cells())
-                throw InputError(method.facts().name +
-                                 ": pixel_footprint is of a camera's pixels, and points have none: "
-                                 "leave it out, or give a footprint in metres");
             if (pass == 0) {
                 answers.notes = notes(scene, method, built->build_report());
                 std::ranges::copy(notes_on(scene), std::back_inserter(answers.notes));

@@ -19,8 +19,10 @@ class Writers {
 public:
     void add(const std::string& file, const std::string& option) {
         std::error_code unknown;
-        const fs::path place = fs::weakly_canonical(file, unknown);
-        const auto [found, is_new] = options_.emplace(unknown ? fs::path(file) : place, option);
+        const fs::path whole = fs::absolute(file, unknown);
+        const fs::path place = fs::weakly_canonical(whole, unknown);
+        const auto [found, is_new] =
+            options_.emplace(unknown ? whole.lexically_normal() : place, option);
         if (!is_new)
             throw InputError(
                 fmt::format("{}: named by {} and by {}, of which the one would take the other's "

@@ -77,10 +77,14 @@ public:
     SceneVerifier(SceneDesc desc, const std::vector<std::string>& methods,
                   const RunOptions& options)
         : desc_(made_small(std::move(desc))), scene_(desc_), options_(options) {
-        for (const MethodDescription* each : all_methods())
-            if (each->facts().has_caustic &&
-                (methods.empty() || std::ranges::count(methods, each->facts().name) > 0))
+        for (const MethodDescription* each : all_methods()) {
+            const bool is_named = std::ranges::count(methods, each->facts().name) > 0;
+            if (is_named && !each->facts().has_caustic)
+                throw InputError(
+                    fmt::format("--method {}: has no caustic to check", each->facts().name));
+            if (is_named || (methods.empty() && each->facts().has_caustic))
                 methods_.push_back(each);
+        }
         if (!methods.empty()) require_served();
     }
 
@@ -104,7 +108,6 @@ private:
     /// Methods that are asked for by name: nothing would be checked of one that cannot serve. Where no
     /// light can make a caustic, the report says why.
     void require_served() const {
-        if (methods_.empty()) throw InputError("--method none: has no caustic to check");
         if (why_nothing_is_aimed(scene_)) return;
         for (const MethodDescription* each : methods_)
             if (const auto reason = why_unsupported(scene_, with_effort(*each)))

@@ -96,10 +96,10 @@ TEST_F(Surroundings, TooLittleAddressSpaceIsOneLine) {
     constexpr int unloaded = 127;
     int failures = 0;
     for (int megabytes = 100; megabytes <= 300; megabytes += 10) {
-        const ProgramResult result =
-            run(fmt::format("ulimit -v {}; $P render $S --method beamtree -o $D/a.exr --set "
-                            "/sensor/film/width=8 --set /sensor/film/height=6",
-                            1000 * megabytes));
+        const ProgramResult result = run(fmt::format(
+            "ulimit -v {}; $P render $S --method beamtree --threads 2 -o $D/a.exr --set "
+            "/sensor/film/width=8 --set /sensor/film/height=6",
+            1000 * megabytes));
         if (result.exit_code == 0 || result.exit_code == unloaded) continue;
         ++failures;
         EXPECT_EQ(result.exit_code, 1) << megabytes << result.err;
@@ -122,6 +122,17 @@ TEST_F(Surroundings, NoLinkIsReplacedByAPicture) {
     }
     EXPECT_EQ(read_whole_file(folder_ / "link.exr"), "precious");
     EXPECT_TRUE(fs::is_symlink(folder_ / "link.exr"));
+}
+
+TEST_F(Surroundings, OneFileIsOneWhateverItsName) {
+    for (const std::string results :
+         {"-o a.exr -o ./a.exr", "-o a.exr -o $D/a.exr",
+          "--param photons=10 --param save=../$(basename $D)/a.exr -o a.exr"}) {
+        const ProgramResult result = run("cd $D; $P render $S --method photonmap " + results);
+        EXPECT_EQ(result.exit_code, 2) << results << result.err;
+        EXPECT_NE(result.err.find("take the other's place"), std::string::npos) << result.err;
+        EXPECT_FALSE(fs::exists(folder_ / "a.exr")) << results;
+    }
 }
 
 TEST_F(Surroundings, AWorkingFolderThatIsGoneIsNamed) {

@@ -19,7 +19,7 @@ from report import beam_report
 from report import beam_trials
 
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if __name__ == "__main__" else None
-IDENTITY = ("scene", "method", "seed", "photons", "nearest", "alpha", "mesh_resolution", "adaptive", "intensity", "emitted", "paths")
+IDENTITY = ("scene", "method", "seed", "photons", "nearest", "alpha", "mesh_resolution", "adaptive", "intensity", "pixel_footprint", "emitted", "paths")
 # Not map_bytes: what a tree takes is of the version that the records name.
 COUNTED = ("photons_emitted", "photons_stored", "camera_rays", "beams", "nodes")
 
@@ -134,10 +134,10 @@ class CommittedTables(unittest.TestCase):
     def test_the_quick_start(self):
         self.assert_trials_are_kept("quickstart-2026-11", (
             ("quickstart_ring", {"method": "photonmap", "photons": 10000, "nearest": 20}),
-            ("quickstart_ring", {"method": "beamtree", "mesh_resolution": 16, "intensity": "area"}),
+            ("quickstart_ring", {"method": "beamtree", "mesh_resolution": 16, "intensity": "area", "pixel_footprint": "true"}),
             ("quickstart_ring", {"method": "causticpolygons", "mesh_resolution": 16}),
             ("quickstart_ring", {"method": "illuminationmap", "emitted": 100000}),
-            ("quickstart_pool", {"method": "beamtree", "intensity": "refined"}),
+            ("quickstart_pool", {"method": "beamtree", "intensity": "refined", "pixel_footprint": "true"}),
             ("quickstart_ball", {"method": "lighttrace", "paths": 100000})))
 
 

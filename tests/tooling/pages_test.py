@@ -55,6 +55,10 @@ class Pages(unittest.TestCase):
         text = "[a](no/such/file.md) [b](PAPERS.md#symbols) [c](PAPERS.md#no-such-part) [d](#methods) [e](https://example.org)"
         self.assertEqual(list(broken(readme, text)), ["no/such/file.md", "PAPERS.md#no-such-part"])
 
+    def test_no_page_holds_the_marks_of_a_merge(self):
+        for page, text in self.pages.items():
+            self.assertNotRegex(text, r"(?m)^(<<<<<<<|>>>>>>>)( |$)", self.name(page))
+
     def test_tests_that_are_named_are_there(self):
         files = [path.relative_to(ROOT / "tests").with_suffix("").as_posix() for path in (ROOT / "tests").rglob("*_test.*")]
         for page, text in self.pages.items():

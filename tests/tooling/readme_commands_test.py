@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if __name__ == "__main__" else None
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 # What takes long in README, and what is asked instead.
-SHORTER = {"photons=300000": "photons=3000", "paths=20000000": "paths=20000", "--gallery": "--gallery --method none"}
+SHORTER = {"photons=300000": "photons=3000", "paths=20000000": "paths=20000", "--gallery": "--gallery --method pathtrace"}
 POINTS = "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n"
 
 

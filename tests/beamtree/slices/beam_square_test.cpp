@@ -93,6 +93,49 @@ TEST(BeamSquare, GetsTheFluxOfAFocusWhereItIsRefined) {
     EXPECT_NEAR(landed(Intensity::refined) / landed(Intensity::area), 1, 0.01);
 }
 
+/// The ring 0.6 <= r <= 1 of the paraboloid with its focus at (0, 0, 1), which sends light that falls along its axis there.
+TriangleMesh paraboloid(std::uint32_t rings, std::uint32_t sectors) {
+    TriangleMesh mesh;
+    for (std::uint32_t j = 0; j <= rings; ++j)
+        for (std::uint32_t i = 0; i < sectors; ++i) {
+            const double r = 0.6 + 0.4 * j / rings;
+            const double angle = 2 * pi_d * i / sectors;
+            const Vec3d p(r * std::cos(angle), r * std::sin(angle), r * r / 4);
+            mesh.positions.push_back(p.cast<float>());
+            mesh.normals.push_back(Vec3d(-p.x() / 2, -p.y() / 2, 1).normalized().cast<float>());
+        }
+    for (std::uint32_t j = 0; j < rings; ++j)
+        for (std::uint32_t i = 0; i < sectors; ++i) {
+            const std::uint32_t a = j * sectors + i;
+            const std::uint32_t b = j * sectors + (i + 1) % sectors;
+            mesh.triangles.push_back({a, a + sectors, b});
+            mesh.triangles.push_back({b, a + sectors, b + sectors});
+        }
+    return mesh;
+}
+
+// Where caustic polygons are no larger than the rounding of their corners, a square has their light all the same.
+TEST(BeamSquare, GetsTheFluxOfAPerfectFocus) {
+    SceneDesc desc;
+    desc.shapes = {
+        support::mesh("mirror", paraboloid(16, 64), Transform::Identity(), support::mirror()),
+        support::horizontal("screen", 1, 0.3, false, support::diffuse(0.5F))};
+    desc.lights = {support::directional_light(-Vec3d::UnitZ(), 1)};
+    const Scene scene(std::move(desc));
+    double sent = 0;
+    for (const BeamSet& set : trace_all_beams(scene, caster_meshes(scene, 2, PolygonKind::triangle),
+                                              sample_lights(scene, 1, 1), {}))
+        for (const Beam& beam : set.beams) sent += static_cast<double>(beam.flux.mean());
+    EXPECT_NEAR(sent, pi_d * 0.64, 0.01);
+    const std::vector<ReceiverPoint> middle = {
+        support::probe(scene, 1, {0, 0, 1}, -Vec3d::UnitZ(), 0)};
+    for (const Intensity intensity : {Intensity::area, Intensity::refined}) {
+        const auto estimator = build(scene, averaged(0.1F, intensity), {});
+        const auto found = support::irradiance(*estimator, middle);
+        EXPECT_NEAR(static_cast<double>(found[0].value.mean()) * 0.01 / sent, 1, 1e-3);
+    }
+}
+
 // Near folds the light runs steeply within a polygon: its value in the middle is below its mean.
 TEST(BeamSquare, GetsTheFluxOfFoldsWhereItIsRefined) {
     const Scene scene(folded_pool());

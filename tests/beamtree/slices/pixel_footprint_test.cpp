@@ -135,6 +135,35 @@ TEST(PixelFootprint, IsTheSameWithAnyNumberOfSamples) {
     }
 }
 
+// A floor's edge cuts pixels, and a ball shows its silhouette: light that is even over them is so in the picture, but for the share
+// of a pixel's samples that see it.
+TEST(PixelFootprint, KeepsEvenLightAtEdges) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("mirror", -3, 4, true, support::mirror()),
+                   support::horizontal("floor", 0, 0.5, false, support::diffuse(0.5F)),
+                   support::sphere("ball", {0.1, 0.9, 0.2}, 0.35, support::diffuse(0.5F))};
+    desc.lights = {support::directional_light(Vec3d(0.6, 0, -0.8), 1)};
+    desc.camera = support::camera({0.2, -0.3, -2}, {0, 0.1, 0}, {0, 1, 0}, 55, 20, 20);
+    desc.sampling.stratified = true;
+    const Scene scene(std::move(desc));
+    const auto total = [&](bool by_pixel, int samples) {
+        BeamTreeParams params = by_pixels();
+        params.pixel_footprint = by_pixel;
+        params.mesh_resolution = 64;
+        RunOptions options;
+        options.samples_per_pixel = samples;
+        const Film film = render(scene, *build(scene, params, options), options).film;
+        double sum = 0;
+        for (std::size_t i = 0; i < film.pixel_count(); ++i)
+            sum += static_cast<double>(film.rgb("caustic", i).mean());
+        return sum;
+    };
+    const double points = total(false, 900);
+    EXPECT_GT(points, 1);
+    EXPECT_NEAR(total(true, 16) / points, 1, 0.01);
+    EXPECT_NEAR(total(true, 100) / points, 1, 0.005);
+}
+
 TEST(PixelFootprint, HasTheSameBitsEverywhere) {
     RunOptions plain;
     plain.isa = Isa::plain;
