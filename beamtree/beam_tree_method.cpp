@@ -114,6 +114,9 @@ void settle_footprint(const JsonNode& node, const P& params) {
     for (const char* key : {"footprint", "pixel_footprint"})
         if (const auto given = node.find(key); given && params.bound != Bound::two_slice)
             given->fail("only the bound \"two_slice\" averages over squares of its planes");
+    constexpr float least = 1e-15F;  // beyond it floats between a square and its beams hold nothing
+    if (params.footprint > 0 && params.footprint < least)
+        node.at("footprint").fail("must be 1e-15 m or more (leave it out to ask at points)");
     if (params.pixel_footprint && params.footprint > 0)
         node.at("pixel_footprint")
             .fail("footprint asks for squares of its own (leave one of the two out)");

@@ -13,7 +13,7 @@ import sys
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 from report.records import RecordsError
-from report.report_files import Progress, end_on_interrupt, report, write
+from report.report_files import Progress, end_on_interrupt, report, require_place, write
 
 end_on_interrupt("report")  # what follows may take a while to load
 
@@ -42,9 +42,13 @@ def positive(text):
 
 def write_report(chosen):
     tables.check_columns(chosen.columns)
-    if os.path.islink(chosen.output):
-        raise RecordsError(f"{chosen.output}: is a symbolic link, which a new file would replace; name the file it leads to")
+    require_place(chosen.output)
+    if not chosen.output.endswith(".html"):
+        raise RecordsError(f"{chosen.output}: pages are written as .html")
+    if chosen.tables and os.path.exists(chosen.tables) and not os.path.isdir(chosen.tables):
+        raise RecordsError(f"{chosen.tables}: is no folder for tables")
     sweeps = [scenes.Sweep(directory) for directory in chosen.directories]
+    scenes.require_each_once(sweeps)
     found = scenes.scenes_of(sweeps)
     from report_page import page  # here, so that a broken table is named even without NumPy
 

@@ -23,34 +23,38 @@ PathPoint Path::between(const PathPoint& a, const PathPoint& b, float t) const {
         return point;
     }
     return go((1 - t) * a.origin.position + t * b.origin.position,
-              (1 - t) * a.origin.normal + t * b.origin.normal);
+              (1 - t) * a.origin.normal + t * b.origin.normal,
+              std::max(a.origin.offset, b.origin.offset));
 }
 
 PathPoint Path::inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const {
     Vec3 position = Vec3::Zero();
     Vec3 normal = Vec3::Zero();
+    float offset = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         const float weight = weights[static_cast<Eigen::Index>(i)];
         position += weight * corners[i]->position;
         normal += weight * corners[i]->normal;
+        offset = std::max(offset, corners[i]->offset);
     }
-    return go(position, normal);
+    return go(position, normal, offset);
 }
 
 PathPoint Path::middle(const Piece& piece) const {
     return inside({&piece[0].origin, &piece[1].origin, &piece[2].origin}, Vec3::Constant(1.0F / 3));
 }
 
-PathPoint Path::go(const Vec3& position, const Vec3& normal) const {
+// Of what the triangle itself says nothing goes into the way: its neighbour goes it too, from their common edge.
+PathPoint Path::go(const Vec3& position, const Vec3& normal, float offset) const {
     PathPoint point;
     const MeshPoint first = surface_.bender().at(position, normal);
     point.origin = {first.position, first.normal, first.bent.weight[first_event_]};
+    point.origin.offset = offset;
     point.from = {
-        facing_.normal, surface_.offset(triangle_),
+        first.normal, offset,
         surface_.bender().medium_after(facing_.normal, first.bent.direction[first_event_])};
     if (!sends_on(first, facing_, first_event_)) return point;
-    if (!sees(scene_, {position, facing_.normal, point.from.offset}, surface_.light()))
-        return point;
+    if (!sees(scene_, {position, first.normal, offset}, surface_.light())) return point;
     point.ray = {position, first.bent.direction[first_event_]};
     for (const Step& step : steps_) {
         const RayArrival arrival = land(scene_, point.ray, point.from, surface_.light().bin.nm);

@@ -56,10 +56,12 @@ public:
     PathPoint inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const;
     PathPoint middle(const Piece& piece) const;
     /// The place that a ray has come from.
-    PathPoint from(const RayOrigin& origin) const { return go(origin.position, origin.normal); }
+    PathPoint from(const RayOrigin& origin) const {
+        return go(origin.position, origin.normal, origin.offset);
+    }
 
 private:
-    PathPoint go(const Vec3& position, const Vec3& normal) const;
+    PathPoint go(const Vec3& position, const Vec3& normal, float offset) const;
 
     const Scene& scene_;
     const LitCaster& surface_;

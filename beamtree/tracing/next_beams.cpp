@@ -118,11 +118,15 @@ NextBeams::NextBeams(const Scene& scene, const LitCaster& surface, const Level& 
       rest_(rest),
       balance_(balance) {}
 
+double NextBeams::size(const Piece& piece) const {
+    const auto& [a, b, c] = piece;
+    return measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
+}
+
 double NextBeams::flux(const Piece& piece) const {
     const auto& [a, b, c] = piece;
     const Spectrum weight = (a.origin.weight + b.origin.weight + c.origin.weight) / 3;
-    return static_cast<double>(weight.mean()) *
-           measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
+    return static_cast<double>(weight.mean()) * size(piece);
 }
 
 // Its corners' light is a bound to a few times: between them a surface may reflect less.
@@ -132,9 +136,7 @@ double NextBeams::most_light(const Piece& piece) const {
     for (const PathPoint& corner : piece)
         strength = std::max(strength, static_cast<double>(corner.origin.weight.mean()) /
                                           static_cast<double>(corner.origin.left));
-    const auto& [a, b, c] = piece;
-    return slack * strength *
-           measure(set_.light, a.origin.position, b.origin.position, c.origin.position);
+    return slack * strength * size(piece);
 }
 
 bool NextBeams::is_too_weak(const Piece& piece) const {
@@ -180,14 +182,16 @@ Spectrum NextBeams::flux(std::uint32_t parent, const BeamCorners& corners, Event
     return sum * (whole / (parts_of_side * parts_of_side));
 }
 
-void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event event, float share) {
+void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event event, float share,
+                    float part) {
     const RayArrival& first = *corners[0].arrival;
     Beam beam;
     beam.flux = flux(parent, corners, event);
     const auto mean = static_cast<double>(beam.flux.mean());
     if (!(mean > 0)) return;
     const double clear = mean / left_of(corners);
-    const double worth = clear / static_cast<double>(share);
+    const float own_share = share * part;
+    const double worth = clear / static_cast<double>(own_share);
     if (worth < least_.of_polygon || clear < least_.budget.least()) {
         leave_out({parent, {corners[0].origin, corners[1].origin, corners[2].origin}, event, mean},
                   mean, worth < least_.of_polygon ? balance_.pruned : balance_.over_budget);
@@ -205,8 +209,8 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
     beam.corners.fill(Beam::none);
     for (std::size_t i = 0; i < 3; ++i) beam.corners[i] = ray_of(chunk.beams, corners[i], event);
     chunk.beams.traced.set.beams.push_back(beam);
-    chunk.worth += worth;
-    chunk.shares.push_back(share);
+    chunk.worth += clear / static_cast<double>(share);
+    chunk.shares.push_back(own_share);
     chunk.parents.push_back(parent);
     chunk.places.push_back(first);
 }

@@ -49,11 +49,15 @@ public:
     NextBeams(const Scene& scene, const LitCaster& surface, const Level& level,
               const LeastLight& least, const RestPhotons& rest, FluxBalance& balance);
 
-    /// A beam between corners that meet one piece of a surface and leave it by an event. It has `share` of its
-    /// polygon, a beam of the level's set.
-    void add(std::uint32_t parent, const BeamCorners& corners, Event event, float share);
+    /// A beam between corners that meet one piece of a surface and leave it by an event. It has `part` of a piece that has
+    /// `share` of its polygon, a beam of the level's set: thin parts are judged by how bright they are, or lines of them
+    /// would be dark.
+    void add(std::uint32_t parent, const BeamCorners& corners, Event event, float share,
+             float part = 1);
     /// Of the level's light over a part of a polygon [W].
     double flux(const Piece& piece) const;
+    /// Of a part of a polygon, as its light counts it (measure).
+    double size(const Piece& piece) const;
     /// Whether a part of a polygon has too little light for the budget, whatever it meets.
     bool is_too_weak(const Piece& piece) const;
     /// Whether it has enough to be divided to see what it meets.

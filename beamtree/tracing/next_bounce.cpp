@@ -319,15 +319,21 @@ private:
             if (here) part[count++] = &edges[i].last;
             if (alike(piece[(i + 1) % 3], like)) part[count++] = &edges[i].first;
         }
+        const double whole = next_.size(piece);
         double taken = 0;
         for (std::size_t i = 1; i + 1 < count; ++i) {
             const std::array<const PathPoint*, 3> points = {part[0], part[i], part[i + 1]};
+            const Piece triangle = {*points[0], *points[1], *points[2]};
+            const double size = next_.size(triangle);
+            if (!(size > 0)) continue;
             BeamCorners corners;
             for (std::size_t k = 0; k < 3; ++k)
                 corners[k] = {&points[k]->origin, &points[k]->next, Beam::none};
+            const auto of_piece = static_cast<float>(std::min(1.0, size / whole));
             for (const Event event : events)
-                if (!is_black(like.next.weight[event])) next_.add(beam, corners, event, share);
-            taken += next_.flux({*points[0], *points[1], *points[2]});
+                if (!is_black(like.next.weight[event]))
+                    next_.add(beam, corners, event, share, of_piece);
+            taken += next_.flux(triangle);
         }
         return taken;
     }

@@ -57,6 +57,7 @@ private:
     }
 
     bool leaves(const SurfacePoint& hit) {
+        arriving_ = flight_.flux.sum();
         if (is_caster(bsdf(hit))) {
             if (flight_.bounces < settings_.max_bounces) {
                 if (is_reflected(hit)) return true;
@@ -105,7 +106,8 @@ private:
         }
         const Spectrum after =
             flight_.flux * evaluate(bsdf(hit), hit.uv, n, here_->wi, *out) * (cosine / pdf);
-        const float kept = std::min(1.0F, after.sum() / flight_.flux.sum());
+        // Of what arrived: a mirror that was asked first and passed the flux on has made it larger.
+        const float kept = std::min(1.0F, after.sum() / arriving_);
         if (!(u3 < kept)) {
             ++counts_.absorbed;
             return false;
@@ -124,6 +126,7 @@ private:
     Flight flight_;
     int diffuse_ = 0;
     std::optional<Deposit> here_;
+    float arriving_ = 0;  ///< sum of the flux at the hit
 };
 
 }  // namespace

@@ -132,7 +132,7 @@ std::vector<WavelengthBin> wavelength_bins(int count) {
         const SpectrumSum to_here = table().cumulative_at(to);
         bins.push_back({static_cast<float>(mean),
                         bins.empty() ? float{shortest_wavelength} : bins.back().to,
-                        static_cast<float>(to), (to_here - before).cast<float>()});
+                        static_cast<float>(to), (to_here - before).max(0).cast<float>()});
         before = to_here;
     }
     return bins;

@@ -67,6 +67,7 @@ std::optional<WeightedPoint> receiver_ahead(const Scene& scene, BackwardChain& c
         if (!point) return {};
         point->nm = chain.wavelength.nm;
         point->medium = chain.start_absorption;
+        chain.specular = specular;
         return WeightedPoint{*point, chain.weight / (1 - specular)};
     }
     return {};

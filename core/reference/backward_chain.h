@@ -18,6 +18,7 @@ struct BackwardChain {
     PathWavelength wavelength = {};
     const Spectrum* start_absorption = nullptr;  ///< where the ray starts, if in a medium
     int bounces = 0;
+    float specular = 0;  ///< at the receiver that it ends at: the chance of another event there
 
     /// Beer's law up to a hit of the ray.
     void arrive(const SurfacePoint& hit, const Bsdf& bsdf);

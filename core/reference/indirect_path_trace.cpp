@@ -81,7 +81,8 @@ private:
         if (!(cosine > 0) || !(path.pdf > 0)) return false;
         const Spectrum after = path.weight * (cosine / path.pdf) *
                                evaluate(*at.bsdf, at.uv, at.shading_normal, at.wo, *wi);
-        path.share = after.mean() / path.weight.mean();
+        // Of the light before a mirror was asked for it.
+        path.share = after.mean() / (path.weight.mean() * (1 - path.chain.specular));
         path.weight = after;
         path.chain = {.ray = spawn_ray({at.position, at.geometric_normal, at.offset}, *wi),
                       .wavelength = path.chain.wavelength,

@@ -220,7 +220,7 @@ private:
             if (radii.back() <= 0)
                 throw InputError(
                     "lighttrace gathers over a disc at each point: give a column `radius` or "
-                    "--param radius=metres");
+                    "the parameter radius");
         }
         const GatherGrid grid(points, radii);
         const auto collect = [&](const Deposit& d, std::vector<Arrival>& arrivals) {

@@ -84,7 +84,7 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
     if (const auto fov = node.find("fov")) {
         camera.fov_degrees = fov->as_number_in(0, 180);
         if (camera.fov_degrees < 1e-6 || camera.fov_degrees > 179.9999)
-            fov->fail("must lie between 0 and 180 degrees");
+            fov->fail("must lie between 1e-6 and 179.9999 degrees");
     }
     if (const auto axis = node.find("fov_axis"))
         camera.fov_axis = static_cast<Camera::FovAxis>(
@@ -210,8 +210,10 @@ SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrid
     SceneFile scene;
     scene.desc = placed(draft);
     scene.canonical = root.canonical();
+    scene.files = root.files();
     std::uint64_t state = fnv1a(scene.canonical);
     for (const auto& [path, name] : draft.assets) {
+        scene.files.push_back(path);
         scene.assets.emplace_back(name, hex(fnv1a(read_whole_file(path))));
         state = fnv1a(name + scene.assets.back().second, state);
     }

@@ -15,6 +15,7 @@ struct SceneFile {
     std::string canonical;  ///< JSON after `$include` and `--set`, sorted keys
     /// Meshes and pictures it refers to: name as written -> hash of the file's bytes.
     std::vector<std::pair<std::string, std::string>> assets;
+    std::vector<std::filesystem::path> files;  ///< all that was read: it, what it includes, assets
     /// Hash of canonical text and assets: names the scene in records and reference keys.
     std::string hash;
 };

@@ -64,13 +64,16 @@ std::uint64_t transport_hash(const Scene& scene) {
 std::uint64_t whole_transport_hash(const Scene& scene) {
     ValueHash hash;
     hash.add(transport_hash(scene));
-    for (const Shape& shape : scene.shapes())
+    for (const Shape& shape : scene.shapes()) {
         std::visit(
             [&](const auto& model) {
                 if constexpr (requires { model.add_scattering_to(hash); })
                     model.add_scattering_to(hash);
             },
             shape.bsdf.model);
+        // Where textures lie.
+        if (is_receiver(shape.bsdf) && !shape.mesh.uvs.empty()) hash.add(shape.mesh.uvs);
+    }
     return hash.value();
 }
 

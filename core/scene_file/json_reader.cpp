@@ -255,6 +255,12 @@ std::filesystem::path JsonNode::file() const {
     return document_->written_in.empty() ? document_->file : document_->written_in;
 }
 
+std::vector<std::filesystem::path> JsonNode::files() const {
+    std::vector<std::filesystem::path> all{document_->file};
+    for (const auto& [pointer, file] : document_->included) all.push_back(file);
+    return all;
+}
+
 std::string JsonNode::canonical() const { return canonical_json(document_->value(pointer_)); }
 
 }  // namespace caustics

@@ -64,6 +64,8 @@ public:
     std::string place() const;
     /// The file this value was written in; relative names inside are relative to its folder.
     std::filesystem::path file() const;
+    /// The document's file and all that it includes.
+    std::vector<std::filesystem::path> files() const;
     /// Canonical text: sorted keys, shortest round-trip numbers.
     std::string canonical() const;
 

@@ -123,6 +123,10 @@ struct Comparison {
 };
 
 Comparison compared(const CompareOptions& options, const Film& picture, const Film& reference) {
+    if (picture.width() != reference.width() || picture.height() != reference.height())
+        throw InputError(fmt::format("{} has {}x{} pixels, {} has {}x{}", options.picture,
+                                     picture.width(), picture.height(), options.reference,
+                                     reference.width(), reference.height()));
     Comparison result;
     const std::string& layer = result.layer = judged_layer(options, picture, reference);
     if (layer.empty()) {

@@ -41,9 +41,10 @@ std::string find_trial(const PlanFile& plan, const std::string& name, const fs::
         throw InputError(fmt::format("{}: no trial \"{}\" (sweep --list names them; say {})",
                                      folder.string(), name,
                                      plan.trials.empty() ? "-" : plan.trials[0].id));
-    if (found.size() > 3) found.resize(3);
-    throw InputError(fmt::format("{}: several trials begin with \"{}\": {}, ...", folder.string(),
-                                 name, fmt::join(found, ", ")));
+    const bool are_all = found.size() <= 3;
+    if (!are_all) found.resize(3);
+    throw InputError(fmt::format("{}: several trials begin with \"{}\": {}{}", folder.string(),
+                                 name, fmt::join(found, ", "), are_all ? "" : ", ..."));
 }
 
 /// A file named relative to where the sweep was started, seen from here.
@@ -97,21 +98,30 @@ std::string picture_remark(const json& record) {
     return remark("picture " + hash);
 }
 
+/// The parameters of a trial's method; files that it read, which the record lists with the prefix, seen from here.
+JsonNode parameters_of(const json& record, const char* method, const std::string& prefix,
+                       const PlanFile& plan) {
+    json parameters = record.at(method).at("parameters");
+    for (auto& [key, value] : parameters.items())
+        if (record.at("method").contains("files") &&
+            record.at("method").at("files").contains(prefix + key))
+            value = from_here(value.get<std::string>(), plan).string();
+    return JsonNode::parse_text(parameters.dump(), method);
+}
+
 RunRequest request_of(const json& record, const PlanFile& plan) {
     RunRequest request;
     request.scene_file = from_here(record.at("scene").at("file").get<std::string>(), plan);
     if (record.at("scene").contains("set"))
         for (const auto& [pointer, value] : record.at("scene").at("set").items())
             request.overrides.emplace_back(pointer, value.get<std::string>());
-    const json& method = record.at("method");
-    request.method = parse_method(method.at("name").get<std::string>(),
-                                  JsonNode::parse_text(method.at("parameters").dump(), "/method"));
+    request.method = parse_method(record.at("method").at("name").get<std::string>(),
+                                  parameters_of(record, "method", "", plan));
     if (!request.method.configured->files_written().empty())
         throw InputError("/method/parameters: names a file to write, which no trial does");
     if (record.contains("indirect"))
-        request.indirect = parse_indirect(
-            record.at("indirect").at("name").get<std::string>(),
-            JsonNode::parse_text(record.at("indirect").at("parameters").dump(), "/indirect"));
+        request.indirect = parse_indirect(record.at("indirect").at("name").get<std::string>(),
+                                          parameters_of(record, "indirect", "indirect_", plan));
     if (request.indirect && !request.indirect->configured->files_written().empty())
         throw InputError("/indirect/parameters: names a file to write, which no trial does");
     request.seed = record.at("seed").get<std::uint64_t>();
@@ -127,6 +137,17 @@ std::string scene_warning(const RunRequest& request, const json& record) {
         });
         if (hash == record.at("scene").at("hash").get<std::string>()) return {};
         return fmt::format("{} has changed since", request.scene_file.string());
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+/// Empty when the files that the methods read are those of the trial.
+std::string files_warning(const RunRequest& request, const json& record) {
+    try {
+        const json now = files_read(request.method, request.indirect);
+        if (now == record.at("method").value("files", json::object())) return {};
+        return "a file that its method reads has changed since";
     } catch (const InputError& error) {
         return error.what();
     }
@@ -148,8 +169,9 @@ std::string explanation(const json& record, const std::string& id, const PlanFil
     text += remark("code " + code +
                    (code == code_version() ? "" : ", this program is " + code_version()));
     const RunRequest request = request_of(record, plan);
-    if (const std::string warning = scene_warning(request, record); !warning.empty())
-        text += remark("the command below gives another picture: " + warning);
+    for (const std::string& warning :
+         {scene_warning(request, record), files_warning(request, record)})
+        if (!warning.empty()) text += remark("the command below gives another picture: " + warning);
     const std::string machine = machine_options(record);
     text += this_program(command("render", request)) + machine + fmt::format(" -o {}.exr\n", id);
     std::string sweeps;

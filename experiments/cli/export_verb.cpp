@@ -8,6 +8,7 @@
 #include "experiments/base/atomic_folder.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
+#include "experiments/base/signals.h"
 #include "experiments/cli/verbs.h"
 #include "experiments/export/exported_scene.h"
 #include "experiments/run/cli_options.h"
@@ -36,6 +37,7 @@ ExportedScene exported_scene(const SceneDesc& scene, const ExportOptions& option
 }
 
 int export_scene(ExportOptions options) {
+    end_soon_after_interrupts();
     const SceneFile file = options.scene.load();
     options.settings.scene_file = options.scene.file;
     ExportedScene exported = exported_scene(file.desc, options);
@@ -48,6 +50,7 @@ int export_scene(ExportOptions options) {
     if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
         throw InputError(
             fmt::format("-o {}: is no folder (a file of that name is there)", options.folder));
+    end_in_own_time();  // the folder is taken away again
     AtomicFolder whole(folder);
     for (const ExportedScene::File& each : exported.files) {
         throw_if_interrupted();

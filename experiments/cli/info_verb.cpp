@@ -44,9 +44,9 @@ std::string judged_by(const BuildReport& report) {
 }
 
 std::string describe_scene(const SceneOptions& options, const SceneFile& file, const Scene& scene) {
-    std::string text = fmt::format("scene    {}\nhash     {}\n", options.file, file.hash);
+    std::string text = fmt::format("scene    {}\nhash     {}\n", one_line(options.file), file.hash);
     for (const auto& [name, hash] : file.assets)
-        text += fmt::format("asset    {} ({})\n", name, hash);
+        text += fmt::format("asset    {} ({})\n", one_line(name), hash);
     text += fmt::format("photons  of maps with transport {}, of global maps with {}\n",
                         hex(transport_hash(scene)), hex(whole_transport_hash(scene)));
     text += fmt::format("diameter {:.6g} m\n", scene.diameter());

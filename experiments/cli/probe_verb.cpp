@@ -64,8 +64,10 @@ int probe_points(const ProbeOptions& options) {
     if (to_file) require_writable_place(options.output);
     SceneFile file = options.scene.load();
     const RunRequest request = request_of(options);
-    require_files_apart(to_file ? std::vector{options.output} : std::vector<std::string>(),
-                        request);
+    std::vector<std::filesystem::path> read = file.files;
+    if (options.points != "-") read.emplace_back(options.points);
+    require_files_apart(to_file ? std::vector{options.output} : std::vector<std::string>(), request,
+                        read);
     const ProbeList list = read_probe_list(options.points);
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     RunOptions run = options.run.options(1);

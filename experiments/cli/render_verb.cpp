@@ -86,7 +86,7 @@ int render_picture(const RenderOptions& options) {
                              options.run.seed,
                              samples_per_pixel(file.desc.sampling, options.spp),
                              options.indirect.parse()};
-    require_files_apart(options.outputs, request);
+    require_files_apart(options.outputs, request, file.files);
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     Stopwatch stopwatch;
     RunResult result = run_shown(scene, request, options.run, stopwatch);

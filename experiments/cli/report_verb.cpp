@@ -7,6 +7,7 @@
 #include <optional>
 #include <system_error>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "experiments/base/csv.h"
 #include "experiments/base/number_option.h"
@@ -22,7 +23,8 @@ constexpr const char* python = "/usr/bin/python3";  // Debian's, which sees Debi
 
 struct ReportOptions {
     std::vector<std::string> folders;
-    std::vector<std::string> values;  ///< "--option", "value", ...
+    std::string output;               ///< empty: in the folder
+    std::vector<std::string> values;  ///< "--option=value", ...
     std::optional<double> megabytes;
 };
 
@@ -42,13 +44,30 @@ fs::path report_tool() {
                     program.string()));
 }
 
+/// The page: as it is named, in a folder that is named, or in the only folder of results. A report takes the place of an earlier
+/// one alone.
+std::string page_of(const ReportOptions& options) {
+    fs::path page = options.output;
+    if (options.output.empty()) {
+        if (options.folders.size() != 1)
+            throw InputError("-o: name the page to write for several folders: -o report.html");
+        page = options.folders[0];
+    }
+    std::error_code none;
+    if (fs::is_directory(page, none)) page /= "report.html";
+    if (page.extension() != ".html")
+        throw InputError(fmt::format("-o {}: pages are written as .html", page.string()));
+    require_writable_place(page);
+    return page.string();
+}
+
 /// Becomes the tool; returns only by throwing.
 int run_tool(const ReportOptions& options) {
-    std::vector<std::string> words = {python, report_tool().string()};
+    std::vector<std::string> words = {python, report_tool().string(),
+                                      "--output=" + page_of(options)};
     words.insert(words.end(), options.values.begin(), options.values.end());
     if (options.megabytes) {
-        words.emplace_back("--megabytes");
-        words.push_back(shortest(*options.megabytes));
+        words.push_back("--megabytes=" + shortest(*options.megabytes));
     }
     words.emplace_back("--");
     words.insert(words.end(), options.folders.begin(), options.folders.end());
@@ -75,12 +94,14 @@ Verb add_report(CLI::App& app) {
             ->add_option_function<std::string>(
                 flags,
                 [options, flag](const std::string& value) {
-                    options->values.insert(options->values.end(), {flag, value});
+                    options->values.push_back(flag + "=" + value);
                 },
                 what)
             ->type_name(type);
     };
-    handed_on("-o,--output", "FILE", "The page to write: report.html")->required();
+    verb->add_option("-o,--output", options->output,
+                     "The page to write, .html, or a folder for it (default: DIR/report.html)")
+        ->type_name("FILE");
     handed_on("--tables", "FOLDER", "Writes every table there, as CSV and LaTeX (booktabs)");
     handed_on("--columns", "NAMES", "Columns of the LaTeX tables (default: rmse,work_s)");
     handed_on("--references", "FOLDER", "Where references are kept as well");

@@ -23,8 +23,9 @@ std::string layer_name(const std::string& layer) { return layer.empty() ? "beaut
 
 void require_comparable(const Film& film, const Film& reference, const std::string& layer) {
     if (film.width() != reference.width() || film.height() != reference.height())
-        throw InputError(fmt::format("sizes differ: {}x{} against {}x{} pixels", film.width(),
-                                     film.height(), reference.width(), reference.height()));
+        throw InputError(fmt::format("the picture has {}x{} pixels, the reference {}x{}",
+                                     film.width(), film.height(), reference.width(),
+                                     reference.height()));
     for (const Film* each : {&film, &reference})
         if (!each->has_layer(layer))
             throw InputError(fmt::format("no layer \"{}\" in the {}", layer_name(layer),

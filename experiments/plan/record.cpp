@@ -32,6 +32,16 @@ const std::map<std::string, json::json_pointer>& places() {
     return all;
 }
 
+/// Before the name of a parameter that is another column's, too.
+constexpr std::string_view of_method = "method_";
+
+json::json_pointer place_of(const std::string& column, const json& record) {
+    if (const auto known = places().find(column); known != places().end()) return known->second;
+    const json::json_pointer own("/swept/" + column);
+    if (record.contains(own) || !column.starts_with(of_method)) return own;
+    return json::json_pointer("/swept/" + column.substr(of_method.size()));
+}
+
 bool is_of_kind(const json& value, Kind kind) {
     switch (kind) {
         case Kind::number: return value.is_number();
@@ -107,20 +117,26 @@ bool is_swept_column(const std::string& name) {
     return name == "alpha" || name == "mesh_resolution";
 }
 
+std::string column_of_swept(const std::string& key) {
+    const auto known = places().find(key);
+    const bool is_taken = known != places().end() && !is_swept_column(key) &&
+                          known->second != json::json_pointer("/method/parameters/" + key);
+    return is_taken ? std::string(of_method) + key : key;
+}
+
 std::vector<std::string> record_columns(const std::vector<std::string>& swept) {
     std::vector<std::string> names;
     for (const RecordColumn& column : record_columns_of_all()) names.emplace_back(column.name);
-    for (const std::string& name : swept)
-        if (std::ranges::count(names, name) == 0) names.push_back(name);
+    for (const std::string& key : swept)
+        if (std::ranges::count(names, column_of_swept(key)) == 0)
+            names.push_back(column_of_swept(key));
     return names;
 }
 
 std::vector<json> record_row(const json& record, const std::vector<std::string>& columns) {
     std::vector<json> row;
     for (const std::string& name : columns) {
-        const auto known = places().find(name);
-        const json::json_pointer place =
-            known == places().end() ? json::json_pointer("/swept/" + name) : known->second;
+        const json::json_pointer place = place_of(name, record);
         row.push_back(record.contains(place) ? record.at(place) : json());
     }
     return row;

@@ -23,7 +23,11 @@ bool is_record_column(const std::string& name);
 /// Whether a swept scene value may fill that column (alpha, mesh_resolution).
 bool is_swept_column(const std::string& name);
 
-/// The columns of records.csv: those of every trial, then the swept keys that are not among them.
+/// The column of a swept key: of a method's parameter whose name is that of another column of every trial (`spp` of
+/// `pathtrace`, `polygons` of `beamtree`) "method_KEY".
+std::string column_of_swept(const std::string& key);
+
+/// The columns of records.csv: those of every trial, then those of the swept keys that are not among them.
 std::vector<std::string> record_columns(const std::vector<std::string>& swept);
 
 /// One row: the values of a record under those columns; null = not applicable.

@@ -119,6 +119,11 @@ std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& req
     if (last_ && last_->key == request.key) return last_;
     const std::filesystem::path file = file_of(request);
     auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), {}, {}});
+    const auto key = reference->film.metadata.find("reference_key");
+    if (key != reference->film.metadata.end() && key->second != request.key)
+        throw InputError(
+            fmt::format("{}: is the reference {}, renamed (remake it with --references rebuild)",
+                        file.string(), key->second));
     for (const char* layer : {"", "caustic"})
         if (!reference->film.has_layer(layer))
             throw InputError(

@@ -14,7 +14,8 @@ namespace caustics::experiments {
 namespace {
 
 constexpr std::int64_t most = 1'000'000'000;
-constexpr std::size_t most_trials = 1'000'000;  ///< a plan is held in memory
+constexpr std::int64_t most_samples = 1'000'000;  ///< as `render --spp`
+constexpr std::size_t most_trials = 1'000'000;    ///< a plan is held in memory
 
 /// Of a product of lists, before it is formed.
 void require_few(double trials, const JsonNode& node) {
@@ -163,7 +164,7 @@ SweepFile::Reference read_reference(const JsonNode& node, int sweep_spp) {
             indirect_of_trials(read_name(*indirect, indirect_names()), single_params(*indirect));
         indirect->finish();
     }
-    reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp));
+    reference.spp = integer(node, "spp", 1, std::max(64, sweep_spp), most_samples);
     reference.seed = static_cast<std::uint64_t>(integer(node, "seed", 0, 1));
     node.finish();
     return reference;
@@ -177,19 +178,6 @@ double count_trials(const SweepFile& sweep) {
          {sweep.scenes.size(), sweep.methods.size(), sweep.indirect.size(), sweep.seeds.size()})
         trials *= static_cast<double>(factor);
     return trials;
-}
-
-/// An axis's column would hold the parameter's value in place of its own.
-void require_own_columns(const SweepFile& sweep, const JsonNode& node) {
-    std::set<std::string> parameters;
-    for (const SweepFile::MethodCase& each : sweep.methods)
-        for (const auto& [key, value] : each.params) parameters.insert(key);
-    for (const SweepFile::IndirectCase& each : sweep.indirect)
-        for (const auto& [key, value] : each.params) parameters.insert("indirect_" + key);
-    for (const SweepFile::Axis& axis : sweep.axes)
-        if (parameters.contains(axis.name))
-            node.at("set").at(axis.name).fail(fmt::format(
-                "\"{}\" is the column of a method's parameter: choose another name", axis.name));
 }
 
 /// Pictures with light between surfaces are scored against one that has it.
@@ -234,12 +222,11 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
         sweep.seeds = {1};
     }
     sweep.repeats = integer(node, "repeats", 1, 1);
-    sweep.spp = integer(node, "spp", 1, 16);
+    sweep.spp = integer(node, "spp", 1, 16, most_samples);
     sweep.threads = integer(node, "threads", 1, 1, most_threads);
     if (const std::optional<JsonNode> reference = node.find("reference"))
         sweep.reference = read_reference(*reference, sweep.spp);
     require_same_layers(sweep, node);
-    require_own_columns(sweep, node);
     node.finish();
     require_few(count_trials(sweep), node);
     return sweep;

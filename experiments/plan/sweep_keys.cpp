@@ -32,7 +32,7 @@ ObjectText sweep() {
              list("indirect", "What makes the light between diffuse surfaces.", "methods", "none"),
              list("seeds", "Of all random numbers, each from 0 to 1e15.", "whole numbers", "[1]"),
              whole("repeats", "The same picture again, for its times.", "1", "1 to 1000000000"),
-             whole("spp", "Camera samples a pixel.", "16", "1 to 1000000000"),
+             whole("spp", "Camera samples a pixel.", "16", "1 to 1000000"),
              whole("threads", "Of a trial.", "1", fmt::format("1 to {}", most_threads)),
              {.key = "reference",
               .meaning = "What errors are measured against; without one there are none.",
@@ -77,7 +77,7 @@ ObjectText reference() {
               .type = "object",
               .usual = "none"},
              whole("spp", "Camera samples a pixel.", "64, or the sweep's where that is more",
-                   "1 to 1000000000"),
+                   "1 to 1000000"),
              whole("seed", "Of its random numbers.", "1", "0 to 1000000000")}};
 }
 

@@ -215,6 +215,38 @@ void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {
             if (std::ranges::count(columns, key) == 0) columns.push_back(key);
 }
 
+/// All files make one table. An axis's column would hold a parameter's value in place of its own.
+void require_own_columns(const std::vector<SweepFile>& sweeps) {
+    std::set<std::string> parameters;
+    for (const SweepFile& sweep : sweeps) {
+        for (const SweepFile::MethodCase& each : sweep.methods)
+            for (const auto& [key, value] : each.params) parameters.insert(column_of_swept(key));
+        for (const SweepFile::IndirectCase& each : sweep.indirect)
+            for (const auto& [key, value] : each.params) parameters.insert("indirect_" + key);
+    }
+    for (const SweepFile& sweep : sweeps)
+        for (const SweepFile::Axis& axis : sweep.axes)
+            if (parameters.contains(axis.name))
+                throw InputError(
+                    fmt::format("{}: /set/{}: \"{}\" is the column of a method's parameter: choose "
+                                "another name",
+                                sweep.file.string(), axis.name, axis.name));
+}
+
+/// A table knows scenes by the names of their files.
+void require_own_names(const std::vector<SweepFile>& sweeps) {
+    std::map<std::string, std::filesystem::path> files;
+    for (const SweepFile& sweep : sweeps)
+        for (const std::filesystem::path& scene : sweep.scenes) {
+            const auto [first, is_new] = files.emplace(scene.stem().string(), scene);
+            std::error_code unknown;
+            if (!is_new && !std::filesystem::equivalent(first->second, scene, unknown) && !unknown)
+                throw InputError(fmt::format(
+                    "{}: /scenes: {} and {} have one name, by which tables know them: rename one",
+                    sweep.file.string(), first->second.string(), scene.string()));
+        }
+}
+
 }  // namespace
 
 std::filesystem::path kept_references(const std::filesystem::path& sweep_file) {
@@ -225,9 +257,12 @@ std::filesystem::path kept_references(const std::filesystem::path& sweep_file) {
 SweepPlan read_plan(const std::vector<std::filesystem::path>& files, const Isolation& isolation) {
     SweepPlan plan;
     plan.files = files;
+    std::vector<SweepFile> sweeps;
+    for (const std::filesystem::path& file : files) sweeps.push_back(read_sweep_file(file));
+    require_own_columns(sweeps);
+    require_own_names(sweeps);
     std::set<std::string> known;
-    for (const std::filesystem::path& file : files)
-        add_trials(read_sweep_file(file), plan, known, isolation);
+    for (const SweepFile& sweep : sweeps) add_trials(sweep, plan, known, isolation);
     add_columns(plan, plan.swept);
     return plan;
 }

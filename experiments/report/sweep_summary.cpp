@@ -6,9 +6,14 @@
 #include <algorithm>
 
 #include "experiments/base/progress.h"
+#include "experiments/plan/record.h"
 #include "experiments/run/method.h"
 
 namespace caustics::experiments {
+
+SweepSummary::SweepSummary(const std::vector<std::string>& swept) {
+    for (const std::string& key : swept) swept_.push_back(column_of_swept(key));
+}
 
 SweepSummary::Values SweepSummary::values_of(const TableRow& row) const {
     Values values;
@@ -42,8 +47,9 @@ void SweepSummary::add(const TableRow& row) {
     const std::optional<double> rmse = row.number("rmse");
     if (!rmse) return;
     const Values values = values_of(row);
+    const std::string judge = row.text("reference") + " " + row.text("unreached_fraction");
     const auto [place, is_first] =
-        scenes_[row.text("scene")].try_emplace(row.text("reference"), Judged{{}, values});
+        scenes_[row.text("scene")].try_emplace(judge, Judged{{}, values});
     Judged& judged = place->second;
     std::erase_if(judged.common, [&](const auto& item) {
         const auto found = values.find(item.first);

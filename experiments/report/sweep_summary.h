@@ -14,8 +14,8 @@ namespace caustics::experiments {
 /// What the table of a sweep has to say in some lines, gathered one row at a time.
 class SweepSummary {
 public:
-    /// `swept`: the columns by which trials differ.
-    explicit SweepSummary(const std::vector<std::string>& swept) : swept_(swept) {}
+    /// `swept`: the keys by which trials differ.
+    explicit SweepSummary(const std::vector<std::string>& swept);
 
     void add(const TableRow& row);
 
@@ -35,7 +35,8 @@ private:
         std::string method;
         Values values;
     };
-    /// A scene as it was set, which is what has one reference: errors of two are not comparable.
+    /// A scene as it was set, which is what has one reference, and one share of pixels that are not counted: errors of two are
+    /// not comparable.
     struct Judged {
         Best best;
         Values common;  ///< what all its rows have in common
@@ -46,9 +47,10 @@ private:
     std::string best_text() const;
     std::string best_line(const std::string& scene, const Judged& judged) const;
 
-    std::vector<std::string> swept_;
+    std::vector<std::string> swept_;  ///< columns
     std::map<std::string, std::size_t> statuses_;
-    std::map<std::string, std::map<std::string, Judged>> scenes_;  ///< by name, then reference
+    std::map<std::string, std::map<std::string, Judged>>
+        scenes_;  ///< by name, then reference and share
     Range energy_;
     Range seconds_;
     Range memory_;

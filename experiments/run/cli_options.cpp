@@ -32,7 +32,13 @@ Overrides SceneOptions::overrides() const {
         const std::size_t equals = set.find('=');
         if (equals == std::string::npos || equals == 0)
             throw InputError(fmt::format("--set \"{}\": expected /json/pointer=value", set));
-        all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+        const std::string pointer = set.substr(0, equals);
+        for (const auto& [earlier, value] : all)
+            if (earlier == pointer || earlier.starts_with(pointer + "/"))
+                throw InputError(
+                    fmt::format("--set \"{}\": takes the place of --set \"{}={}\"; leave that out",
+                                set, earlier, value));
+        all.emplace_back(pointer, set.substr(equals + 1));
     }
     return all;
 }

@@ -95,9 +95,11 @@ Questions questions(const Scene& scene, const MethodOf<Estimator>& method, const
         const ProbePoint& point = list.points[row];
         if (needs_radius && point.radius == 0)
             fail(list, row,
-                 fmt::format("{} gathers over a disc round the point: give a column radius or "
-                             "--param radius=metres",
-                             method.name));
+                 fmt::format(
+                     "{} gathers over a disc round the point: give a column radius or {} "
+                     "radius=metres",
+                     method.name,
+                     std::is_same_v<Estimator, CausticEstimator> ? "--param" : "--indirect-param"));
         const std::optional<SurfacePoint> surface = find_receiver(scene, point);
         if (!surface)
             fail(list, row,
@@ -216,11 +218,10 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
     for (int pass = 0; pass < passes; ++pass) {
         const auto built = method.configured->build(scene, options, pass);
         answers.has_standard_errors = built->is_statistical();
-        if constexpr (std::is_same_v<Estimator, CausticEstimator>) {
-            if (pass == 0) {
+        if (pass == 0) {
+            if constexpr (std::is_same_v<Estimator, CausticEstimator>)
                 answers.notes = notes(scene, method, built->build_report());
-                std::ranges::copy(notes_on(scene), std::back_inserter(answers.notes));
-            }
+            std::ranges::copy(notes_on(scene), std::back_inserter(answers.notes));
         }
         const Ask ask{*built, asked, method.facts().gathers_over_discs, options.threads};
         ask.add(&PointEstimator::irradiance, answers.irradiance);

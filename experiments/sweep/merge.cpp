@@ -135,6 +135,25 @@ void copy_plain(const fs::path& from, const fs::path& to) {
     }
 }
 
+/// References of one name that two folders have are one picture: `--references extend` makes others of the same name.
+void require_same_references(const std::vector<fs::path>& folders) {
+    std::map<std::string, fs::path> first;
+    for (const fs::path& folder : folders) {
+        if (!fs::is_directory(folder / "references")) continue;
+        for (const fs::directory_entry& file : fs::directory_iterator(folder / "references")) {
+            throw_if_interrupted();
+            if (file.path().extension() != ".exr" || !fs::is_regular_file(file.symlink_status()))
+                continue;
+            const auto [same, is_new] = first.emplace(file.path().filename().string(), file.path());
+            if (!is_new && read_whole_file(same->second) != read_whole_file(file.path()))
+                throw InputError(fmt::format(
+                    "{} and {} are different pictures: errors against them do not compare (run the "
+                    "shards with the same references, by --references rebuild in one of them)",
+                    same->second.string(), file.path().string()));
+        }
+    }
+}
+
 /// Files of a folder inside each of the folders, the first of each name.
 void copy_files(const std::vector<fs::path>& folders, const fs::path& inside,
                 const fs::path& target, const std::function<bool(const fs::path&)>& wanted) {
@@ -216,6 +235,7 @@ std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
     Survey survey;
     for (const fs::path& folder : folders) take_in(survey, plans[0], folder);
     require_whole(survey, plans[0], folders[0]);
+    require_same_references(folders);
 
     std::vector<std::string> warnings = write_whole(folders, plans[0], survey, target);
     if (survey.cpu.size() > 1)

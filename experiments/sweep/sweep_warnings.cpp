@@ -30,6 +30,22 @@ std::string earlier_sweep(const SweepPlan& plan, const SweepOptions& options) {
     }
 }
 
+/// Trials by the reference's method and seed: they may be made of its very light paths, which then err alike.
+std::string shared_paths(const SweepPlan& plan) {
+    for (const Trial& trial : plan.trials) {
+        if (!trial.reference) continue;
+        const RunRequest& reference = trial.reference->request;
+        if (trial.request.seed == reference.seed &&
+            trial.request.method.name == reference.method.name && reference.method.name != "none")
+            return fmt::format(
+                "warning: trials of {} with seed {} share light paths with their reference and "
+                "look "
+                "better than they are: give \"reference\" a \"seed\" that no trial has",
+                reference.method.name, reference.seed);
+    }
+    return {};
+}
+
 bool shares_processors(const SweepOptions& options, const SweepStatus& status) {
     if (options.trials.jobs == 1) return false;
     const std::size_t processors = own_processors().size();
@@ -60,6 +76,8 @@ std::vector<std::string> sweep_warnings(const SweepPlan& plan, const SweepOption
         lines.push_back(fmt::format(
             "note: {} trials failed or took too long before (--rerun failed runs them again)",
             failed));
+    if (std::string shared = shared_paths(plan); !shared.empty())
+        lines.push_back(std::move(shared));
     if (shares_processors(options, status))
         lines.push_back(fmt::format(
             "warning: {} trials at a time share {} processors: their times are no measurement",

@@ -21,9 +21,9 @@ constexpr std::size_t large_page = std::size_t{2} << 20U;
 constexpr int collapse_now = 25;
 
 [[noreturn]] void fail_to_reserve(std::uint64_t capacity, int error) {
-    throw InputError("photonmap: cannot reserve memory for " + std::to_string(capacity) +
+    throw InputError("no memory to reserve for " + std::to_string(capacity) +
                      " photons of 20 bytes: " + std::generic_category().message(error) +
-                     " (ask for fewer photons or emitted)");
+                     " (ask for fewer photons)");
 }
 
 std::size_t round_up(std::size_t bytes, std::size_t unit) {
@@ -62,8 +62,8 @@ std::unique_ptr<Photon[], PhotonStore::Unmap> PhotonStore::reserve(std::uint64_t
 
 std::span<Photon> PhotonStore::extend(std::uint64_t count) {
     if (count > capacity_ - size_)
-        throw InputError("photonmap: more than " + std::to_string(capacity_) +
-                         " photons to store (ask for fewer photons or emitted)");
+        throw InputError("more than " + std::to_string(capacity_) +
+                         " photons to store (ask for fewer photons)");
     const std::span<Photon> room(memory_.get() + size_, count);
     size_ += count;
     return room;

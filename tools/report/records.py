@@ -155,7 +155,7 @@ def read_rows(path):
                                        f"the header has {len(header)}")
                 if any("\0" in field for field in fields):
                     raise RecordsError(f"{path}: line {reader.line_num} holds a NUL")
-                rows.append((reader.line_num, dict(zip(header, fields))))
+                rows.append((reader.line_num, dict(zip(header, map(plain, fields)))))
     except OSError as error:
         raise RecordsError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -165,6 +165,11 @@ def read_rows(path):
     if not rows:
         raise RecordsError(f"{path}: a header without rows, expected one row per trial")
     return header, rows
+
+
+def plain(field):
+    """Without the apostrophe that keeps a spreadsheet from taking text for a formula."""
+    return field[1:] if field[:1] == "'" and field[1:2] in ("=", "+", "-", "@", "\t", "\r") else field
 
 
 def check_header(path, header):

@@ -31,6 +31,17 @@ def write(path, content):
         os.close(folder)
 
 
+def require_place(path):
+    """A new file would replace a link, a pipe or a device."""
+    if os.path.islink(path):
+        raise records.RecordsError(f"{path}: is a symbolic link, which a new file would replace; name the file it leads to")
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise records.RecordsError(f"{path}: is no regular file, which a new file would replace")
+    folder = os.path.dirname(path) or "."
+    if not os.path.isdir(folder):
+        raise records.RecordsError(f"{path}: its folder is not there")
+
+
 def end_on_interrupt(tool):
     """From now on Ctrl-C ends the program with exit code 130 and one line, wherever it is."""
     def end(*_):

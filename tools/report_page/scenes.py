@@ -42,6 +42,16 @@ class Sweep:
                     raise RecordsError(f'{self.path}: "{name}" is no plain name (of a trial, or of a reference)')
 
 
+def require_each_once(sweeps):
+    """The same trial in two folders would be two cells that nothing tells apart."""
+    place = {}
+    for sweep in sweeps:
+        for row in sweep.rows:
+            first = place.setdefault(row["trial"], sweep.folder)
+            if first is not sweep.folder:
+                raise RecordsError(f"{row['trial']}: is in {first} and in {sweep.folder}; name one of the two")
+
+
 def check_plan(folder):
     """Refuses a folder that is none, or whose plan is of another version of the program."""
     if not os.path.isdir(folder):
