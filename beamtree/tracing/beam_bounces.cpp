@@ -184,7 +184,7 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
     }
 }
 
-std::vector<Departure> BeamBounces::first_departures(TracedSet& first) const {
+std::vector<Departure> BeamBounces::first_departures(const TracedSet& first) const {
     std::vector<Departure> departures;
     for (std::size_t i = 0; i < first.origins.size(); ++i) {
         const Vec3& normal = first.origins[i].normal;
@@ -204,8 +204,6 @@ std::vector<Departure> BeamBounces::first_departures(TracedSet& first) const {
             const bool between = first.origins[corner].vertex == RayOrigin::no_vertex;
             float& offset = departures[corner].offset;
             offset = std::max(offset, between ? beams[i].offset : at_vertices[i]);
-            float& about = first.origins[corner].offset;
-            about = std::max(about, beams[i].offset);
         }
     return departures;
 }

@@ -63,7 +63,7 @@ public:
     TracedBeams take() { return std::move(traced_); }
 
 private:
-    std::vector<Departure> first_departures(TracedSet& first) const;
+    std::vector<Departure> first_departures(const TracedSet& first) const;
 
     const Scene& scene_;
     const SceneBoxes& boxes_;

@@ -245,6 +245,15 @@ BeamSet set_of(const LitCaster& surface, Event event) {
     return set;
 }
 
+// Of each place the most of the beams about it.
+void set_offsets(TracedSet& traced) {
+    for (const Beam& beam : traced.set.beams)
+        for (const std::uint32_t corner : beam.corners)
+            if (corner != Beam::none)
+                traced.origins[corner].offset =
+                    std::max(traced.origins[corner].offset, beam.offset);
+}
+
 // The first events of a caster's light, on all threads.
 std::array<TracedSet, 2> first_sets(const LitCaster& surface, int threads,
                                     const ProgressPart& part) {
@@ -263,6 +272,7 @@ std::array<TracedSet, 2> first_sets(const LitCaster& surface, int threads,
         for (auto& chunk : chunks) of_event.push_back(&chunk[event]);
         std::vector<Departure> no_departures;
         join(of_event, vertices.size(), threads, sets[event], no_departures);
+        set_offsets(sets[event]);
     }
     return sets;
 }

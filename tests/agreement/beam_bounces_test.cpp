@@ -89,14 +89,14 @@ TEST(BeamBounces, CaptureTheFluxThroughABall) {
     }
 }
 
-// Neighbours on the first surface share their rays after every event, to the bit.
+// Neighbours on the first surface share their rays after every event, to the bit; corners where parts are cut have their own.
 TEST(BeamBounces, NeighboursShareTheirRays) {
     const beamtree::TracedBeams traced =
         beams_of(Scene(over_a_floor({ball_mesh(32)}, ball_lamp)), 2, 3);
     for (const beamtree::BeamSet& set : traced.sets) {
         std::size_t corners = 0;
         for (const beamtree::Beam& beam : set.beams) corners += beam.triangle_count() + 2;
-        EXPECT_LT(set.rays.size(), corners / 3) << set.path.size();
+        EXPECT_LT(set.rays.size(), corners / 2) << set.path.size();
         for (const beamtree::VertexRay& ray : set.rays) {
             ASSERT_TRUE(ray.position.allFinite() && ray.direction.allFinite());
             ASSERT_NEAR(ray.direction.norm(), 1, 1e-5);
@@ -239,6 +239,50 @@ TEST(BeamBounces, AddUpToTheSeriesOfASlab) {
     }
 }
 
+// Where facets cut polygons along lines of symmetry, thin parts are left over: as bright as those beside them.
+TEST(BeamBounces, LeaveNoDarkLinesBehindFlatGlass) {
+    const Transform place(Eigen::Translation3d(0, 0, 1) * Eigen::Scaling(3.0, 3.0, 0.25));
+    SceneDesc desc;
+    desc.shapes = {floor_of(4),
+                   support::mesh("pane", tessellate_cube(1), place, support::glass(1.5F))};
+    desc.lights = {support::directional_light(Vec3d(0, 0.5, -1).normalized(), 1)};
+    const Scene scene(std::move(desc));
+    std::vector<ReceiverPoint> points;
+    for (int i = -18; i <= 18; ++i)
+        for (const Vec3d& line : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(1, 1, 0)})
+            points.push_back(
+                support::probe(scene, 0, 0.05 * i * line, Vec3d::UnitZ(), points.size()));
+    const double cosine = 1 / std::sqrt(1.25);
+    const double expected = cosine * support::slab(support::fresnel(cosine, 1.5), 1).transmitted;
+    for (const Estimate& found :
+         support::irradiance(*build(scene, beamtree::BeamTreeParams(), {}), points))
+        EXPECT_NEAR(static_cast<double>(found.value.mean()) / expected, 1, 0.005);
+}
+
+// Behind a ball under a lamp on its axis, at places that are alike by symmetry: on the planes of the mesh's edges, where
+// beams that run sideways change the planes on which they are tested, and beside them.
+TEST(BeamBounces, AreAlikeAllRoundABall) {
+    SceneDesc desc;
+    desc.shapes = {floor_of(1), support::sphere("ball", {0, 0, 0.6}, 0.3, support::glass(1.5F))};
+    desc.lights = {support::point_light({0, 0, 2}, 1)};
+    const Scene scene(std::move(desc));
+    const auto method = build(scene, beamtree::BeamTreeParams(), {});
+    for (const double radius : {0.37, 0.3818, 0.39, 0.396, 0.41, 0.42}) {
+        std::vector<ReceiverPoint> points;
+        for (int i = 0; i < 16; ++i) {
+            const double angle = i * pi_d / 8;
+            points.push_back(support::probe(scene, 0,
+                                            {radius * std::cos(angle), radius * std::sin(angle), 0},
+                                            Vec3d::UnitZ(), points.size()));
+        }
+        support::Moments all;
+        const auto found = support::irradiance(*method, points);
+        for (const Estimate& one : found) all.add(static_cast<double>(one.value.mean()));
+        for (const Estimate& one : found)
+            EXPECT_NEAR(static_cast<double>(one.value.mean()) / all.mean(), 1, 0.05) << radius;
+    }
+}
+
 // Panes of glass thrown about, each of a few polygons: what the corners of one meet is seldom one pane.
 TEST(BeamBounces, SayWhatTheyLose) {
     Rng rng(5, Stage::test, 0);
@@ -255,7 +299,7 @@ TEST(BeamBounces, SayWhatTheyLose) {
     }
     const Scene scene(over_a_floor(std::move(panes), {0, 0, 3}));
     const beamtree::TracedBeams traced = beams_of(scene, 2, 4);
-    EXPECT_LT(traced.balance.captured(), 0.99);
+    EXPECT_LT(traced.balance.captured(), 0.995);
     EXPECT_GT(traced.balance.captured(), 0.5);
     EXPECT_LT(traced.balance.pruned, traced.balance.lost);
     EXPECT_EQ(beams_of(scene, 2, 1).balance.captured(), 1);

@@ -52,6 +52,7 @@ Level first_level(const LitCaster& surface) {
         const MeshPoint point = surface.bender().at(place, Vec3::UnitZ());
         level.traced.set.rays.push_back({place, point.bent.direction[refraction]});
         level.traced.origins.push_back({place, Vec3::UnitZ()});
+        level.traced.origins.back().offset = surface.offset(0);
     }
     return level;
 }

@@ -65,6 +65,7 @@ TEST(Wavelength, BinsAreOfEqualPowerAndAddUpToWhite) {
         for (const WavelengthBin& bin : wavelength_bins(count)) {
             EXPECT_GT(bin.nm, before);
             before = bin.nm;
+            EXPECT_GE(bin.weight.minCoeff(), 0);
             EXPECT_NEAR(static_cast<double>(bin.weight.mean()) * count, 1, 1e-4);
             sum += bin.weight.cast<double>();
         }
