@@ -135,7 +135,8 @@ def write_tables(directory, found):
     writer.writeheader()
     for _, row in rows:
         value = found.get(row["trial"])
-        writer.writerow({**row, "flip": "" if value is None else repr(value)})
+        fields = {name: records.marked(field) for name, field in row.items()}
+        writer.writerow({**fields, "flip": "" if value is None else repr(value)})
     write(directory / "records.csv", text.getvalue())
     lines = directory / "records.jsonl"
     if lines.is_file():

@@ -40,13 +40,22 @@ def positive(text):
     return number
 
 
+def require_folder(path):
+    """The folder, or the first above it that is there, must be one."""
+    above = os.path.abspath(path)
+    while not os.path.lexists(above):
+        above = os.path.dirname(above)
+    if not os.path.isdir(above):
+        raise RecordsError(f"{path}: no folder for tables ({above} is none)")
+
+
 def write_report(chosen):
     tables.check_columns(chosen.columns)
     require_place(chosen.output)
     if not chosen.output.endswith(".html"):
         raise RecordsError(f"{chosen.output}: pages are written as .html")
-    if chosen.tables and os.path.exists(chosen.tables) and not os.path.isdir(chosen.tables):
-        raise RecordsError(f"{chosen.tables}: is no folder for tables")
+    if chosen.tables:
+        require_folder(chosen.tables)
     sweeps = [scenes.Sweep(directory) for directory in chosen.directories]
     scenes.require_each_once(sweeps)
     found = scenes.scenes_of(sweeps)

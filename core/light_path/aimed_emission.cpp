@@ -85,6 +85,17 @@ Spectrum AimedEmission::total_power() const {
     return total;
 }
 
+double AimedEmission::least_carried() const {
+    SpectrumSum squares = SpectrumSum::Zero();
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+        squares += sources_[i].power.cast<double>() * flux_[i].cast<double>();
+    const SpectrumSum total = total_power().cast<double>();
+    double least = 1;
+    for (Eigen::Index c = 0; c < 3; ++c)
+        if (total[c] > 0) least = std::min(least, total[c] * total[c] / squares[c]);
+    return least;
+}
+
 // Picks a source and one of its regions; x becomes what is left of it.
 std::uint32_t AimedEmission::choose(double& x, std::uint32_t& cone) const {
     const std::size_t source = pick_and_stretch(cumulative_, x);

@@ -39,6 +39,9 @@ public:
     const EmissionKernels& kernels() const { return kernels_; }
     /// Sum over lights of the power sent into the aimed sets, before thinning [W].
     Spectrum total_power() const;
+    /// Of the channel that is served worst, the share of particles with which it would be as noisy if they carried it
+    /// evenly: 1 where all lights have one colour, near 0 where the only light of a colour is far weaker than others.
+    double least_carried() const;
     /// No light or no caster, or they cannot see each other.
     bool empty() const { return sources_.empty(); }
 

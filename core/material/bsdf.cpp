@@ -41,6 +41,17 @@ bool is_receiver(const Bsdf& bsdf) {
     return ask_receiver<bool>(bsdf, [](const auto&) { return true; }, false);
 }
 
+std::optional<float> lobe_half_width(const Bsdf& bsdf) {
+    return std::visit(
+        [](const auto& model) -> std::optional<float> {
+            if constexpr (requires { model.lobe_half_width(); })
+                return model.lobe_half_width();
+            else
+                return {};
+        },
+        bsdf.model);
+}
+
 bool is_dispersive(const Bsdf& bsdf) {
     return std::visit(
         [](const auto& model) {

@@ -21,7 +21,7 @@ struct MirrorPart {
 /// `twosided`, as in Mitsuba. A new model is a file of its own and a place in the list below. What is asked of
 /// it: `text` and `read`, its keys in a scene file and itself; `to_mitsuba` and `to_povray`, where those know it;
 /// of a receiver's, four functions that those below ask for, f_r, albedo, sample and pdf, and
-/// `add_scattering_to`, what a map of all photons depends on; of a caster's, `split` (specular_split.h) and
+/// `add_scattering_to`, what a map of all photons depends on, and `lobe_half_width` where it has a lobe; of a caster's, `split` (specular_split.h) and
 /// `add_to`, what every photon map depends on; `medium` where it bounds two, and
 /// `is_dispersive` where wavelengths part.
 struct Bsdf {
@@ -38,6 +38,10 @@ bool is_receiver(const Bsdf& bsdf);
 bool is_dispersive(const Bsdf& bsdf);
 /// Whether light arriving from the front (or the back) of the surface is scattered at all.
 bool scatters_from(const Bsdf& bsdf, bool front);
+
+/// The angle from the mirror direction at which a receiver's glossy lobe, seen straight on, has fallen to half [rad]; none
+/// where it has no lobe, or one that never falls so far.
+std::optional<float> lobe_half_width(const Bsdf& bsdf);
 
 /// f_r [1/sr] of a receiver, without the cosine. `n` is the unit shading normal on the viewer's
 /// side; `wo`, `wi` are unit and point away from the surface. 0 when either is below n.

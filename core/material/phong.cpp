@@ -118,6 +118,12 @@ PovraySurface Phong::to_povray() const {
     return surface;
 }
 
+std::optional<float> Phong::lobe_half_width() const {
+    if (!(lobe_share > 0)) return {};
+    const float cosine = std::pow(0.5F, 1 / exponent);
+    return cosine > 0 ? std::optional(std::acos(cosine)) : std::nullopt;
+}
+
 void Phong::add_scattering_to(ValueHash& hash) const {
     caustics::add_to(hash, diffuse_reflectance);
     caustics::add_to(hash, specular_reflectance);

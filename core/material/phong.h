@@ -33,6 +33,7 @@ struct Phong {
     static ObjectText text();
     static Phong read(const JsonNode& node, scene_file::Assets& assets);
     void add_scattering_to(ValueHash& hash) const;
+    std::optional<float> lobe_half_width() const;
     /// Of the model "classic": POV-Ray's highlight is the lamp's colour times cos^e a. With lamps of pi times
     /// our irradiance beneath a pigment of 1, its `phong` is pi k_s for the same light.
     PovraySurface to_povray() const;

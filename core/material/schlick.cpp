@@ -89,6 +89,13 @@ Schlick Schlick::read(const JsonNode& node, Assets& assets) {
     return schlick;
 }
 
+// Z falls to half where 1 - (1 - alpha) t^2 has grown by the root of 2; h turns by half of what wi does.
+std::optional<float> Schlick::lobe_half_width() const {
+    const float grown = std::sqrt(2.0F) * alpha;
+    if (grown >= 1) return {};
+    return 2 * std::acos(std::sqrt((1 - grown) / (1 - alpha)));
+}
+
 void Schlick::add_scattering_to(ValueHash& hash) const {
     caustics::add_to(hash, reflectance);
     hash.add(alpha);

@@ -27,6 +27,7 @@ struct Schlick {
     static ObjectText text();
     static Schlick read(const JsonNode& node, scene_file::Assets& assets);
     void add_scattering_to(ValueHash& hash) const;
+    std::optional<float> lobe_half_width() const;
 };
 
 }  // namespace caustics

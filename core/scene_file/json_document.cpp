@@ -100,8 +100,7 @@ std::string numeral(double value) {
 
 class IncludeResolver {
 public:
-    explicit IncludeResolver(std::map<std::string, std::filesystem::path>& included)
-        : included_(included) {}
+    explicit IncludeResolver(JsonDocument& document) : document_(document) {}
 
     void resolve(json& value, const std::string& pointer, const std::string& local_pointer,
                  const std::filesystem::path& file) {
@@ -162,13 +161,14 @@ private:
             throw InputError(std::string(e.what()) + " (included by " +
                              place.substr(0, place.size() - 2) + ")");
         }
-        included_[pointer] = target;
+        document_.included[pointer] = target;
+        document_.files_included.push_back(target);
         open_.push_back(identity(target));
         resolve(value, pointer, "", target);
         open_.pop_back();
     }
 
-    std::map<std::string, std::filesystem::path>& included_;
+    JsonDocument& document_;
     std::vector<std::filesystem::path> open_;
     std::size_t inclusions_ = 0;
     std::size_t bytes_ = 0;
@@ -248,8 +248,8 @@ json parse_json(const std::string& text, const std::string& origin) {
 }
 
 void resolve_includes(json& value, const std::string& pointer, const std::filesystem::path& file,
-                      std::map<std::string, std::filesystem::path>& included) {
-    IncludeResolver resolver(included);
+                      JsonDocument& document) {
+    IncludeResolver resolver(document);
     resolver.enter(file);
     resolver.resolve(value, pointer, pointer, file);
 }

@@ -23,7 +23,8 @@ struct JsonDocument {
     std::filesystem::path written_in;  ///< the file, where `file` names a place in it
     /// Where a value came from another file: its pointer -> that file.
     std::map<std::string, std::filesystem::path> included;
-    mutable std::map<std::string, Keys> keys;  ///< by the pointer of the object
+    std::vector<std::filesystem::path> files_included;  ///< all, also where others took their place
+    mutable std::map<std::string, Keys> keys;           ///< by the pointer of the object
 
     const nlohmann::json& value(const std::string& pointer) const {
         return root.at(nlohmann::json::json_pointer(pointer));
@@ -48,10 +49,9 @@ std::string join(const std::vector<std::string>& words);
 /// `origin` and the line and column or the pointer.
 nlohmann::json parse_json(const std::string& text, const std::string& origin);
 /// Replaces every `{"$include": ...}` in `value`, which stands at `pointer` of the document and was
-/// written in `file`, and notes where the replacements came from.
+/// written in `file`, and notes in the document where the replacements came from.
 void resolve_includes(nlohmann::json& value, const std::string& pointer,
-                      const std::filesystem::path& file,
-                      std::map<std::string, std::filesystem::path>& included);
+                      const std::filesystem::path& file, JsonDocument& document);
 /// Text that is the same for the same values: sorted keys, shortest round-trip numbers, 1.0 as 1.
 std::string canonical_json(const nlohmann::json& value);
 

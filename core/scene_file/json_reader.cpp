@@ -69,7 +69,7 @@ JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
     const auto document = std::make_shared<JsonDocument>();
     document->file = file;
     document->root = parse_json(read_whole_file(file), file.string());
-    resolve_includes(document->root, "", file, document->included);
+    resolve_includes(document->root, "", file, *document);
     return {document, ""};
 }
 
@@ -105,7 +105,7 @@ void JsonNode::set(const std::string& pointer, const std::string& value) {
     erase_at_or_below(document_->included, reached);
     erase_at_or_below(document_->keys, reached);
     *target = value_or_string(value, what);
-    resolve_includes(*target, reached, JsonNode(document_, reached).file(), document_->included);
+    resolve_includes(*target, reached, JsonNode(document_, reached).file(), *document_);
 }
 
 bool JsonNode::is_object() const { return document_->value(pointer_).is_object(); }
@@ -257,7 +257,7 @@ std::filesystem::path JsonNode::file() const {
 
 std::vector<std::filesystem::path> JsonNode::files() const {
     std::vector<std::filesystem::path> all{document_->file};
-    for (const auto& [pointer, file] : document_->included) all.push_back(file);
+    all.insert(all.end(), document_->files_included.begin(), document_->files_included.end());
     return all;
 }
 

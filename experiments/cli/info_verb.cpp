@@ -22,6 +22,7 @@
 #include "experiments/run/cli_options.h"
 #include "experiments/run/notes.h"
 #include "experiments/run/run_progress.h"
+#include "experiments/run/written_files.h"
 
 namespace caustics::experiments {
 
@@ -116,10 +117,12 @@ void info_on_scene(const InfoOptions& options) {
     if (options.beams) require_png(options.output, "beams");
     SceneFile file = options.scene.load();
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
-    if (options.beams)
+    if (options.beams) {
+        require_files_apart({options.output}, {}, file.files);
         write_drawing(scene, options.output, [&](const RunOptions& run) {
             return draw_beams(scene, parameters_node(options.params), run);
         });
+    }
     write_stdout(describe_scene(options.scene, file, scene));
 }
 
@@ -128,6 +131,8 @@ void draw(const InfoOptions& options, photonmap::SavedPhotons saved) {
     const Scene scene(std::move(file.desc));
     photonmap::require_transport(saved.origin, scene, options.scene.file);
     if (options.output.empty()) return;
+    file.files.emplace_back(options.scene.file);
+    require_files_apart({options.output}, {}, file.files);
     write_drawing(scene, options.output, [&](const RunOptions& run) {
         return draw_photons(scene, std::move(saved.photons), options.dot.value_or(1), run);
     });

@@ -62,10 +62,13 @@ const char* name_of(Kind kind) {
     return "anything";
 }
 
-/// Text that a spreadsheet takes for a formula, which may run commands and read files.
+/// Text that a spreadsheet takes for a formula, which may run commands and read files; or that looks like such a text after it
+/// was marked.
 bool is_formula(const std::string& text) {
-    return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos &&
-           !decimal<double>(text);
+    const std::size_t start = text.find_first_not_of('\'');
+    return start != std::string::npos &&
+           std::string_view("=+-@\t\r").find(text[start]) != std::string_view::npos &&
+           (start > 0 || !decimal<double>(text));
 }
 
 std::string cell(const json& value) {

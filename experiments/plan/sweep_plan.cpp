@@ -215,22 +215,31 @@ void add_columns(const SweepPlan& plan, std::vector<std::string>& columns) {
             if (std::ranges::count(columns, key) == 0) columns.push_back(key);
 }
 
-/// All files make one table. An axis's column would hold a parameter's value in place of its own.
+/// The columns of a sweep's parameters.
+std::set<std::string> parameter_columns(const SweepFile& sweep) {
+    std::set<std::string> columns;
+    for (const SweepFile::MethodCase& each : sweep.methods)
+        for (const auto& [key, value] : each.params) columns.insert(column_of_swept(key));
+    for (const SweepFile::IndirectCase& each : sweep.indirect)
+        for (const auto& [key, value] : each.params) columns.insert("indirect_" + key);
+    return columns;
+}
+
+/// All files make one table: an axis of a scene would have the column of a parameter that its methods are given, here or in
+/// another file.
 void require_own_columns(const std::vector<SweepFile>& sweeps) {
-    std::set<std::string> parameters;
-    for (const SweepFile& sweep : sweeps) {
-        for (const SweepFile::MethodCase& each : sweep.methods)
-            for (const auto& [key, value] : each.params) parameters.insert(column_of_swept(key));
-        for (const SweepFile::IndirectCase& each : sweep.indirect)
-            for (const auto& [key, value] : each.params) parameters.insert("indirect_" + key);
-    }
+    std::map<std::string, std::set<std::string>> parameters;  // of a scene's trials
+    for (const SweepFile& sweep : sweeps)
+        for (const std::filesystem::path& scene : sweep.scenes)
+            parameters[scene.stem().string()].merge(parameter_columns(sweep));
     for (const SweepFile& sweep : sweeps)
         for (const SweepFile::Axis& axis : sweep.axes)
-            if (parameters.contains(axis.name))
-                throw InputError(
-                    fmt::format("{}: /set/{}: \"{}\" is the column of a method's parameter: choose "
-                                "another name",
-                                sweep.file.string(), axis.name, axis.name));
+            for (const std::filesystem::path& scene : sweep.scenes)
+                if (parameters[scene.stem().string()].contains(axis.name))
+                    throw InputError(fmt::format(
+                        "{}: /set/{}: \"{}\" is the column of a method's parameter: choose another "
+                        "name",
+                        sweep.file.string(), axis.name, axis.name));
 }
 
 /// A table knows scenes by the names of their files.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <variant>
 
+#include "core/light_path/aimed_emission.h"
 #include "core/light_path/light_path.h"
 #include "core/material/optics.h"
 #include "core/mesh/vertex_normals.h"
@@ -158,12 +159,33 @@ void note_photons(const BuildReport& report, std::vector<std::string>& all) {
             "channel is below 1/128 of the greatest: they hold it in whole units, at random, so "
             "that its mean is right and its noise larger than that of the other channels",
             100 * *faint));
+    if (const auto lobe = resolved(report, "blurred_lobe_degrees"))
+        all.push_back(fmt::format(
+            "photons hold their directions in steps of 1.4 degrees, and a receiver's lobe falls to "
+            "half within {:.2g}: its caustic is blurred, darker by 10 % and more in the lobe's "
+            "middle (beamtree and lighttrace keep directions whole)",
+            *lobe));
     if (const auto version = resolved(report, "photon_map_version"))
         all.push_back(fmt::format(
             "the photon map's file has version {}: it does not say where the photons' surfaces "
             "face, so that photons of a floor count at the foot of its walls (trace and save it "
             "again)",
             *version));
+}
+
+/// Light of one colour that few particles carry, since lights share these by their power. Methods of particles have a
+/// number of them.
+void note_colours(const Scene& scene, const Method& method, std::vector<std::string>& all) {
+    const json parameters = describe(method);
+    const auto has = [&](const char* name) { return parameters.contains(name); };
+    if (scene.lights().size() < 2 || !(has("photons") || has("emitted") || has("paths"))) return;
+    const double share = AimedEmission(scene).least_carried();
+    if (share >= least_share_told) return;
+    all.push_back(fmt::format(
+        "light of one colour is carried by {:.2g} % of the particles, because lights share them by "
+        "their power: it is far noisier than the rest, or missing (render weak lights of a colour "
+        "of their own apart; pictures add up)",
+        100 * share));
 }
 
 std::string lost_light(const Method& method, const BuildReport& report, double lost) {
@@ -233,6 +255,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     std::vector<std::string> all;
     note_misdirected(scene, report, all);
     note_photons(report, all);
+    note_colours(scene, method, all);
     const std::optional<double> captured = resolved(report, "flux_share_captured");
     if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
         all.push_back(*far);

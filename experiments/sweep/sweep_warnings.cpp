@@ -30,18 +30,26 @@ std::string earlier_sweep(const SweepPlan& plan, const SweepOptions& options) {
     }
 }
 
+template <typename SomeMethod>
+bool is_alike(const SomeMethod& one, const SomeMethod& other) {
+    return one.name == other.name && one.name != "none";
+}
+
 /// Trials by the reference's method and seed: they may be made of its very light paths, which then err alike.
 std::string shared_paths(const SweepPlan& plan) {
     for (const Trial& trial : plan.trials) {
-        if (!trial.reference) continue;
+        if (!trial.chosen || !trial.reference) continue;
+        const RunRequest& own = trial.request;
         const RunRequest& reference = trial.reference->request;
-        if (trial.request.seed == reference.seed &&
-            trial.request.method.name == reference.method.name && reference.method.name != "none")
+        if (own.seed != reference.seed) continue;
+        const bool in_indirect =
+            own.indirect && reference.indirect && is_alike(*own.indirect, *reference.indirect);
+        if (in_indirect || is_alike(own.method, reference.method))
             return fmt::format(
                 "warning: trials of {} with seed {} share light paths with their reference and "
                 "look "
                 "better than they are: give \"reference\" a \"seed\" that no trial has",
-                reference.method.name, reference.seed);
+                in_indirect ? own.indirect->name : own.method.name, reference.seed);
     }
     return {};
 }

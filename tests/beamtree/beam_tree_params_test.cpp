@@ -80,6 +80,8 @@ TEST(BeamTreeParams, AveragesOverSquaresOfTheSlicesPlanes) {
                       .find("above 0"),
                   std::string::npos)
             << value;
+    EXPECT_NE(error(R"({"footprint": 9e-16})").find("1e-15 m or more"), std::string::npos);
+    EXPECT_EQ(params(R"({"footprint": 1e-15})").footprint, 1e-15F);
 }
 
 TEST(BeamTreeParams, AverageOverPixels) {

@@ -93,6 +93,15 @@ TEST_F(Compare, NamesAPictureOfLuminanceAlone) {
     }
 }
 
+TEST_F(Compare, NamesBothPicturesWhoseSizesDiffer) {
+    const std::string picture = render("a.exr");
+    const std::string reference = render("b.exr", {"--set", "/sensor/film/width=8"});
+    const ProgramResult result = causticbench({"compare", picture, reference});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, fmt::format("causticbench: error: {} has 16x12 pixels, {} has 8x12\n",
+                                      picture, reference));
+}
+
 TEST_F(Compare, RefusesToneMappedPictures) {
     const std::string tone_mapped = render("a.png");
     const std::string picture = render("a.exr");

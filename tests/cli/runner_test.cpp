@@ -268,5 +268,44 @@ TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
     EXPECT_EQ(causticbench({"explain", out_, "absent"}).exit_code, 2);
 }
 
+TEST_F(Runner, ExplainsTrialsThatLoadPhotonMapsFromWhereverItIsAsked) {
+    const auto run = [&](const std::string& line) {
+        return support::shell(
+            fmt::format("cd '{}'; S='{}'; {}", folder_.path().string(), scene, line));
+    };
+    for (const std::string seed : {"1", "2"})
+        ASSERT_EQ(run("$P render $S --spp 1 --method photonmap --param photons=100 --param "
+                      "save=caustic" +
+                      seed +
+                      " --indirect globalphotonmap --indirect-param "
+                      "photons=100 --indirect-param save=all" +
+                      seed + " --seed " + seed + " -o a.exr")
+                      .exit_code,
+                  0);
+    write_atomic_file(folder_ / "sweep.json",
+                      fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+        "methods": [{{"method": "photonmap", "param": {{"load": "caustic1"}}}}],
+        "indirect": [{{"method": "globalphotonmap", "param": {{"load": "all1"}}}}]}})",
+                                  scene));
+    ASSERT_EQ(run("$P sweep sweep.json -o out; mkdir elsewhere").exit_code, 0);
+    const ProgramResult again = run("cd elsewhere; $P explain ../out ball > line && sh line");
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    const std::string id = rows().at(0).at("trial");
+    const Film first = read_exr(fs::path(out_) / "trials" / id / "image.exr");
+    const Film second = read_exr(folder_ / ("elsewhere/" + id + ".exr"));
+    for (const Plane& plane : first.planes()) EXPECT_EQ(*second.find(plane.channel), plane.values);
+
+    const std::string same = read_whole_file(folder_ / "elsewhere/line");
+    EXPECT_EQ(same.find("gives another picture"), std::string::npos) << same;
+    for (const std::string map : {"caustic", "all"}) {
+        const ProgramResult changed = run("cp " + map + "1 kept; cp " + map + "2 " + map +
+                                          "1; $P explain out ball; mv kept " + map + "1");
+        EXPECT_NE(changed.out.find("# the command below gives another picture: a file that its "
+                                   "method reads has changed since\n"),
+                  std::string::npos)
+            << map << changed.out << changed.err;
+    }
+}
+
 }  // namespace
 }  // namespace caustics::experiments

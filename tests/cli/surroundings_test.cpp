@@ -135,6 +135,54 @@ TEST_F(Surroundings, OneFileIsOneWhateverItsName) {
     }
 }
 
+TEST_F(Surroundings, NoFileThatIsReadIsReplaced) {
+    nlohmann::json content = nlohmann::json::parse(read_whole_file(scene));
+    content["floor"]["bsdf"] = {{"$include", "bsdf.json"}};
+    content["gem"] = {{"type", "obj"}, {"filename", "gem.obj"}};
+    content["gem"]["bsdf"] = {{"type", "dielectric"}};
+    write_atomic_file(folder_ / "scene.json", content.dump());
+    write_atomic_file(folder_ / "bsdf.json", R"({"type": "diffuse", "reflectance":
+        {"type": "bitmap", "filename": "wood.png"}})");
+    write_atomic_file(folder_ / "gem.obj",
+                      "v 0 0 1.5\nv 0.1 0 1.5\nv 0 0.1 1.5\nv 0 0 1.6\n"
+                      "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    write_atomic_file(folder_ / "points.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n");
+    ASSERT_EQ(run("cd $D; $P render $S --method none -o wood.png").exit_code, 0);
+    const std::string methods =
+        "--method photonmap --param photons=100 --param save={} --indirect globalphotonmap "
+        "--indirect-param photons=100 --indirect-param save={} --spp 1 -o {}";
+    const auto render = [&](const std::string& map, const std::string& global_map,
+                            const std::string& picture) {
+        return "render scene.json " + fmt::format(fmt::runtime(methods), map, global_map, picture);
+    };
+    const std::string load = " --param load=map.exr",
+                      load_global = " --indirect-param load=global.exr";
+    ASSERT_EQ(run("cd $D; $P " + render("map.exr", "global.exr", "a.exr")).exit_code, 0);
+    const std::string probe = "probe scene.json --points points.csv --method ";
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"scene.json", probe + "none -o ./scene.json"},
+        {"scene.json", render("$D/scene.json", "b", "b.exr")},
+        {"bsdf.json", probe + "none -o ../$(basename $D)/bsdf.json"},
+        {"bsdf.json", render("b", "bsdf.json", "b.exr")},
+        {"gem.obj", probe + "none -o gem.obj"},
+        {"gem.obj", render("gem.obj", "b", "b.exr")},
+        {"wood.png", "render scene.json --method none -o b.exr -o wood.png"},
+        {"points.csv", probe + "none -o points.csv"},
+        {"map.exr", probe + "photonmap -o map.exr" + load},
+        {"map.exr", "render scene.json --method photonmap -o map.exr" + load},
+        {"global.exr",
+         "render scene.json --method none --indirect globalphotonmap -o global.exr" + load_global}};
+    for (const auto& [file, line] : cases) {
+        const std::string before = read_whole_file(folder_ / file);
+        const ProgramResult result = run("cd $D; $P " + line);
+        EXPECT_EQ(result.exit_code, 2) << line << result.err;
+        EXPECT_NE(result.err.find(file + ": is read, and "), std::string::npos)
+            << line << result.err;
+        EXPECT_EQ(read_whole_file(folder_ / file), before) << line;
+    }
+    for (const char* made : {"b", "b.exr"}) EXPECT_FALSE(fs::exists(folder_ / made)) << made;
+}
+
 TEST_F(Surroundings, AWorkingFolderThatIsGoneIsNamed) {
     const std::string gone = "mkdir $D/gone; cd $D/gone; rmdir $D/gone; ";
     const ProgramResult sweep = run(gone + "$P sweep $D/sweep.json -o $D/out");

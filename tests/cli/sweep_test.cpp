@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "experiments/base/file_io.h"
@@ -143,6 +144,20 @@ TEST_F(Sweeps, LeaveATableAndPicturesBehind) {
     EXPECT_EQ(figures, 2U * 3) << "one a cell";
     EXPECT_TRUE(fs::exists(fs::path(out_) / "environment.json"));
     EXPECT_EQ(std::ranges::count(result.out, '\n'), 8) << result.out;
+}
+
+TEST_F(Sweeps, RecordParametersWhoseNamesAreOtherColumns) {
+    const std::string file =
+        write_sweep(R"([{"method": "beamtree", "param": {"polygons": ["triangles", "quads"],
+                                                        "mesh_resolution": 4}}])");
+    ASSERT_EQ(sweep(file, {"--filter", "seed=1", "--filter", "glass=1.5"}).exit_code, 0);
+    std::set<std::string> kinds, counts;
+    for (const Row& row : rows()) {
+        kinds.insert(row.at("method_polygons"));
+        counts.insert(row.at("polygons"));
+    }
+    EXPECT_EQ(kinds, (std::set<std::string>{"triangles", "quads"}));
+    EXPECT_EQ(counts.size(), 1U) << "triangles of the casters";
 }
 
 TEST_F(Sweeps, SkipWhatIsDone) {

@@ -111,6 +111,20 @@ TEST(Probe, AnswersTheIndirectLayer) {
               2);
 }
 
+TEST(Probe, OfTheIndirectLayerNotesWhatIsAmissWithTheScene) {
+    const support::TemporaryFolder folder;
+    write_atomic_file(folder / "points.csv", "x,y,z,nx,ny,nz\n0.3,0.2,0,0,0,1\n");
+    const ProgramResult answer =
+        causticbench({"probe", scene, "--set",
+                      R"(/second={"type": "sphere", "center": [0.3, 0, 0.6], "radius": 0.4,
+                                    "bsdf": {"type": "dielectric"}})",
+                      "--layer", "indirect", "--indirect", "globalphotonmap", "--indirect-param",
+                      "photons=100", "--points", folder / "points.csv"});
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    EXPECT_NE(answer.err.find("note: the dielectrics ball and second cross"), std::string::npos)
+        << answer.err;
+}
+
 TEST(Render, WritesTheWholeConfigurationIntoThePicture) {
     const support::TemporaryFolder folder;
     const std::string file = folder / "a.exr";

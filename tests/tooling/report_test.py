@@ -4,6 +4,7 @@ Exits with 77 where NumPy or SciPy is missing.
 """
 import csv
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -27,7 +28,7 @@ except ImportError as error:
     sys.exit(77)
 
 import report_sweep as sweep
-from report import exr
+from report import exr, records
 from report_page import pictures, scenes
 
 TOOL = ROOT / "tools" / "make_report.py"
@@ -338,6 +339,44 @@ class Page(unittest.TestCase):
         self.output.symlink_to(self.folder / "page")
         self.refuses("report.html: is a symbolic link")
         self.assertTrue(self.output.is_symlink())
+
+    def test_no_pipe_is_replaced_by_the_page(self):
+        os.mkfifo(self.output)
+        done = self.run_tool(self.sweep)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertIn("report.html: is no regular file", done.stderr)
+        self.assertTrue(self.output.is_fifo())
+
+    def test_pages_are_html(self):
+        self.output = self.folder / "report.csv"
+        self.refuses("report.csv: pages are written as .html")
+
+    def test_a_file_in_the_place_of_the_tables_is_refused_before_the_page_is_written(self):
+        done = self.run_tool(self.sweep, "--tables", self.sweep / "records.csv")
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertIn("records.csv: is no folder for tables", done.stderr)
+        self.assertFalse(self.output.exists())
+
+    def test_a_trial_in_two_folders_is_refused_by_name(self):
+        other = self.folder / "other"
+        shutil.copytree(self.sweep, other)
+        for second in (other, self.sweep):
+            done = self.run_tool(self.sweep, second)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+            self.assertIn(f"{self.rows[0]['trial']}: is in {self.sweep} and in {second}", done.stderr)
+            self.assertFalse(self.output.exists())
+
+    def test_the_apostrophe_before_a_formula_is_no_part_of_the_text(self):
+        for row in self.rows:
+            row["scene"] = "'=ring"
+        self.rows[0]["message"] = "'plain'"
+        sweep.write_table(self.sweep, self.rows)
+        data = self.page()
+        self.assertEqual([scene["name"] for scene in data["scenes"]], ["=ring"])
+        row = dict(zip(data["tables"][0]["header"], data["tables"][0]["rows"][0]))
+        self.assertEqual((row["scene"], row["message"]), ("=ring", "'plain'"))
+        self.assertEqual([records.plain(text) for text in ("'-a", "'+a", "'@a", "'\t", "'\r", "'", "''=", "-1")],
+                         ["-a", "+a", "@a", "\t", "\r", "'", "''=", "-1"])
 
     def test_broken_records_are_refused(self):
         self.rows[3]["rmse"] = "nan"

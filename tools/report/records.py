@@ -7,6 +7,7 @@ something else; an empty field means that a quantity does not apply to its row.
 import csv
 import dataclasses
 import math
+import re
 import statistics
 
 STATUSES = ("done", "failed", "timeout", "interrupted", "unsupported")
@@ -169,7 +170,13 @@ def read_rows(path):
 
 def plain(field):
     """Without the apostrophe that keeps a spreadsheet from taking text for a formula."""
-    return field[1:] if field[:1] == "'" and field[1:2] in ("=", "+", "-", "@", "\t", "\r") else field
+    return field[1:] if re.match(r"'+[=+\-@\t\r]", field) else field
+
+
+def marked(field):
+    """With it, where it is needed: what is read plainly is written so."""
+    needs = re.match(r"'*[=+\-@\t\r]", field) and (field.startswith("'") or as_number(field) is None)
+    return "'" + field if needs else field
 
 
 def check_header(path, header):

@@ -47,9 +47,9 @@ def require_each_once(sweeps):
     place = {}
     for sweep in sweeps:
         for row in sweep.rows:
-            first = place.setdefault(row["trial"], sweep.folder)
-            if first is not sweep.folder:
-                raise RecordsError(f"{row['trial']}: is in {first} and in {sweep.folder}; name one of the two")
+            first = place.setdefault(row["trial"], sweep)
+            if first is not sweep:
+                raise RecordsError(f"{row['trial']}: is in {first.folder} and in {sweep.folder}; name one of the two")
 
 
 def check_plan(folder):

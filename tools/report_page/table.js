@@ -97,6 +97,7 @@ function drawColumnChoice(columns) {
 
 /** The shown rows and columns as CSV. */
 function tableCsv() {
+  const mark = (text) => (/^'*[=+\-@\t\r]/.test(text) && (text.startsWith("'") || Number.isNaN(Number(text))) ? `'${text}` : text);
   const quote = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-  return [...byId("table").querySelectorAll("tr")].map((row) => [...row.children].slice(0, -1).map((each) => quote(each.textContent)).join(",")).join("\n") + "\n";
+  return [...byId("table").querySelectorAll("tr")].map((row) => [...row.children].slice(0, -1).map((each) => quote(mark(each.textContent))).join(",")).join("\n") + "\n";
 }

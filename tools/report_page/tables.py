@@ -5,7 +5,7 @@ import math
 import re
 
 from report.record_tables import tex
-from report.records import RecordsError
+from report.records import RecordsError, marked
 from report_page.scenes import COSTS, ERRORS, rank
 
 KNOWN = ERRORS + COSTS
@@ -35,7 +35,7 @@ def all_of(scenes, columns):
 
 def csv_text(rows):
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
+    csv.writer(text, lineterminator="\n").writerows([[marked(each) if isinstance(each, str) else each for each in row] for row in rows])
     return text.getvalue()
 
 

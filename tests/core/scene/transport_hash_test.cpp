@@ -46,6 +46,23 @@ TEST(TransportHash, SeesEverythingThatALightPathMeets) {
         EXPECT_NE(digest(still_life()), digest(others[i])) << i;
 }
 
+TEST(TransportHash, OfAllPhotonsSeesWhereTexturesLie) {
+    const auto with_uvs = [](float scale) {
+        SceneDesc desc = still_life();
+        TriangleMesh triangle;
+        triangle.positions = {{-3, -3, 0}, {3, -3, 0}, {0, 3, 0}};
+        triangle.uvs = {{0, 0}, {scale, 0}, {0, 1}};
+        triangle.triangles = {{0, 1, 2}};
+        desc.shapes[0] =
+            support::mesh("floor", triangle, Transform::Identity(), support::diffuse(0.5F));
+        return Scene(std::move(desc));
+    };
+    const Scene first = with_uvs(1), other = with_uvs(2);
+    EXPECT_NE(whole_transport_hash(first), whole_transport_hash(other));
+    EXPECT_EQ(whole_transport_hash(first), whole_transport_hash(with_uvs(1)));
+    EXPECT_EQ(transport_hash(first), transport_hash(other));
+}
+
 TEST(TransportHash, OfAllPhotonsSeesHowReceiversScatter) {
     const auto whole = [](const Bsdf& floor) {
         SceneDesc desc = still_life();

@@ -30,6 +30,19 @@ TEST(RecordsCsv, FillsTwoOfItsColumnsFromSweptKeys) {
         EXPECT_EQ(is_swept_column(name), name == "alpha" || name == "mesh_resolution") << name;
 }
 
+TEST(RecordsCsv, GivesParametersColumnsOfTheirOwnWhereTheirNamesAreTaken) {
+    const std::vector<std::string> swept = {"spp", "polygons", "nearest", "alpha", "photons"};
+    const std::string header = csv_line(record_columns(swept));
+    const std::string own = ",method_spp,method_polygons,photons\n";
+    EXPECT_TRUE(header.ends_with(own)) << header;
+    const nlohmann::json record = {{"spp", 4},
+                                   {"scene", {{"polygons", 12}}},
+                                   {"swept", {{"spp", 64}, {"polygons", "quads"}, {"photons", 5}}}};
+    const std::vector<std::string> columns = {"spp", "polygons", "method_spp", "method_polygons",
+                                              "photons"};
+    EXPECT_EQ(csv_line(csv_cells(record_row(record, columns))), "4,12,64,quads,5\n");
+}
+
 TEST(RecordsCsv, HasTheColumnsThatTheManualTells) {
     std::ifstream manual(CAUSTICS_SOURCE_DIR "/results/records.md");
     std::vector<std::string> told;
@@ -43,9 +56,10 @@ TEST(RecordsCsv, HoldsNoFormulas) {
     const auto cells = [&](const std::string& text) {
         return csv_cells(record_row({{"trial", "a"}, {"scene", {{"name", text}}}}, columns));
     };
-    for (const std::string text : {"=1+1", "+cmd", "-2+3", "@SUM(A1)", "\t=1", "\r=1"})
+    for (const std::string text :
+         {"=1+1", "+cmd", "-2+3", "@SUM(A1)", "\t=1", "\r=1", "'=1", "'-1"})
         EXPECT_EQ(cells(text)[1], "'" + text);
-    for (const std::string text : {"ring", "-0.5", "-1e-5", "", "a=b", "'=1"})
+    for (const std::string text : {"ring", "-0.5", "-1e-5", "", "a=b", "'a"})
         EXPECT_EQ(cells(text)[1], text);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/scene/scene_reader.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/plan/reference_cache.h"
@@ -94,6 +95,25 @@ TEST(ReferenceKeys, DifferWhereTheEyeIsInAMediumThatAbsorbs) {
     EXPECT_EQ(version("pool.json"), 2);
     EXPECT_EQ(version("pool_overhead.json"), 1);
     EXPECT_EQ(version("ball.json"), 1);
+}
+
+TEST(ReferenceKeys, NameTheirPictureAndNoOther) {
+    const support::TemporaryFolder folder;
+    const std::filesystem::path references = folder / "references";
+    ReferenceCache cache(references, ReferencePolicy::keep);
+    const Reference own = rendered(cache, request(1'000));
+    const ReferenceRequest other = request(2'000);
+    const std::filesystem::path renamed = references / (other.key + ".exr");
+    std::filesystem::copy_file(references / (own.key + ".exr"), renamed);
+    try {
+        cache.get(other);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what())
+                      .find(renamed.string() + ": is the reference " + own.key + ", renamed"),
+                  0U)
+            << error.what();
+    }
 }
 
 // Of caustics and of light between surfaces: what pictures of other seeds scatter.

@@ -25,10 +25,19 @@ protected:
                                             scene, members));
         return file;
     }
+    /// A second sweep file.
+    std::filesystem::path write_second(const std::filesystem::path& of_scene,
+                                       const std::string& members) {
+        const std::filesystem::path file = folder_ / "second.json";
+        write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 4, {}}})",
+                                            of_scene.string(), members));
+        return file;
+    }
     SweepPlan plan(const std::string& members) { return read_plan({sweep(members)}); }
-    std::string error(const std::string& members) {
+    std::string error(const std::string& members) { return error_of({sweep(members)}); }
+    static std::string error_of(const std::vector<std::filesystem::path>& files) {
         try {
-            plan(members);
+            read_plan(files);
         } catch (const InputError& error) {
             return error.what();
         }
@@ -200,13 +209,60 @@ TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
                              "b": {"pointer": "/ball/radius", "values": [0.4]}})",
          R"(/set/b/pointer: /ball/radius is what "a" sets already)"},
         {none + R"(, "set": {"A b": {"pointer": "/x", "values": [1]}})", "small letters"},
-        {none + R"(, "spp": 5)", "spp"}};
+        {none + R"(, "spp": 5)", "spp"},
+        {none + R"(, "reference": {"method": "lighttrace", "spp": 1002001})",
+         "/reference/spp: 1002001 is out of range"}};
     for (const auto& [members, word] : cases) {
         const std::string message = error(members);
         EXPECT_NE(message.find(word), std::string::npos) << members << ": " << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
     EXPECT_THROW(plan(none + R"(, "reference": {"method": "pathtrace"})"), UnsupportedScene);
+}
+
+TEST_F(SweepPlans, TakeAsManySamplesAsARenderedPicture) {
+    const std::filesystem::path file = folder_ / "samples.json";
+    const auto error_with = [&](int samples) {
+        write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": {}, {}}})",
+                                            scene, samples, none));
+        return error_of({file});
+    };
+    EXPECT_EQ(error_with(1'000'000), "no error");
+    EXPECT_NE(error_with(1'002'001).find("/spp: 1002001 is out of range"), std::string::npos)
+        << error_with(1'002'001);
+}
+
+// All files of a command make one table.
+TEST_F(SweepPlans, RefuseAnAxisNamedAsAParameterOfAnotherFile) {
+    const std::filesystem::path params =
+        sweep(R"("methods": [{"method": "photonmap", "param": {"photons": 5}},
+                            {"method": "beamtree", "param": {"polygons": "quads"}}])");
+    for (const std::string name : {"photons", "method_polygons"}) {
+        const std::filesystem::path axis =
+            write_second(scene, none + R"(, "set": {")" + name +
+                                    R"(": {"pointer": "/ball/radius", "values": [0.3]}})");
+        EXPECT_EQ(error_of({axis}), "no error") << name;
+        for (const auto& both : {std::vector{params, axis}, std::vector{axis, params}})
+            EXPECT_EQ(
+                error_of(both),
+                fmt::format("{}: /set/{}: \"{}\" is the column of a method's parameter: choose "
+                            "another name",
+                            axis.string(), name, name));
+    }
+}
+
+TEST_F(SweepPlans, RefuseTwoScenesOfOneName) {
+    const std::filesystem::path other = folder_ / "other/ball.json";
+    std::filesystem::create_directory(other.parent_path());
+    std::filesystem::copy_file(scene, other);
+    const std::vector<std::filesystem::path> both = {sweep(none), write_second(other, none)};
+    const std::string reason = error_of(both);
+    for (const std::string& name : {both[1].string(), scene, other.string()})
+        EXPECT_NE(reason.find(name), std::string::npos) << reason;
+    EXPECT_NE(reason.find("have one name"), std::string::npos) << reason;
+    std::filesystem::remove(other);
+    std::filesystem::create_symlink(scene, other);
+    EXPECT_EQ(error_of(both), "no error") << "one file by two names is one scene";
 }
 
 TEST_F(SweepPlans, NameThePlaceOfAMistakeInTheSweepFileToo) {

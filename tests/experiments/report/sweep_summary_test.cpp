@@ -5,16 +5,27 @@
 namespace caustics::experiments {
 namespace {
 
-const std::vector<std::string> columns = {
-    "scene",   "method",         "status",           "alpha",      "photons",  "width", "rmse",
-    "total_s", "peak_rss_bytes", "reference_stderr", "mean_ratio", "reference"};
+const std::vector<std::string> columns = {"scene",
+                                          "method",
+                                          "status",
+                                          "alpha",
+                                          "photons",
+                                          "width",
+                                          "rmse",
+                                          "total_s",
+                                          "peak_rss_bytes",
+                                          "reference_stderr",
+                                          "mean_ratio",
+                                          "reference",
+                                          "unreached_fraction"};
 const std::vector<std::string> swept = {"alpha", "width", "photons"};
 
-/// A row of the scene ring with one film size, judged by the reference of its alpha.
-TableRow row(const std::string& alpha, const std::string& photons, const std::string& rmse) {
+/// A row of the scene ring with one film size, judged by the reference of its alpha where that is reached.
+TableRow row(const std::string& alpha, const std::string& photons, const std::string& rmse,
+             const std::string& unreached = "0") {
     return {columns,
             {"ring", "photonmap", "done", alpha, photons, "64", rmse, "1.5", "72740864", "0.01",
-             "1", "lighttrace:" + alpha}};
+             "1", "lighttrace:" + alpha, unreached}};
 }
 
 std::string text(const std::vector<TableRow>& rows) {
@@ -30,6 +41,15 @@ TEST(SweepSummary, ErrorsOfOneReferenceAloneAreComparedForTheBest) {
         << told;
     EXPECT_NE(told.find("ring, alpha 0.1: 0.7 (photonmap, photons 10000)\n"), std::string::npos)
         << told;
+}
+
+TEST(SweepSummary, ErrorsOverOtherPixelsAreNotCompared) {
+    const std::string told =
+        text({row("1", "1000", "0.2"), row("1", "10000", "0.1"), row("1", "1000", "0.09", "0.25"),
+              row("1", "10000", "0.05", "0.25")});
+    for (const char* best :
+         {"ring: 0.1 (photonmap, photons 10000)\n", "ring: 0.05 (photonmap, photons 10000)\n"})
+        EXPECT_NE(told.find(best), std::string::npos) << told;
 }
 
 TEST(SweepSummary, WhatIsTheSameEverywhereIsLeftOut) {

@@ -55,6 +55,17 @@ TEST(LightDifferences, AreOneLineWhateverTheKeys) {
               Lines{"/a\\nb: 1 against absent"});
 }
 
+TEST(LightDifferences, CountShadowsWhereDirectLightIsJudged) {
+    const Film a = film_with(R"({"shadows": "opaque"})");
+    const Film b = film_with(R"({"shadows": "transparent"})");
+    for (const char* layer : {"", "direct"})
+        EXPECT_EQ(light_differences(a, b, layer),
+                  Lines{R"(shadows: "opaque" against "transparent")"})
+            << layer;
+    for (const char* layer : {"caustic", "indirect"})
+        EXPECT_EQ(light_differences(a, b, layer), Lines()) << layer;
+}
+
 TEST(LightDifferences, CountTheLightBetweenSurfacesWhereItIsJudged) {
     Film a = film_with(R"({"max_bounces": 3})");
     Film b = a;

@@ -153,7 +153,7 @@ TEST(Notes, NameDielectricsThatCross) {
 
 TEST(Notes, NameTheLightThatBeamsLose) {
     for (const std::string method : {"beamtree", "causticpolygons"}) {
-        const std::vector<std::string> coarse = {"mesh_resolution=2", "max_bounces=4"};
+        const std::vector<std::string> coarse = {"mesh_resolution=2", "max_bounces=4", "prune=0.1"};
         const std::vector<std::string> all = notes_of(panes(), method, coarse);
         ASSERT_EQ(all.size(), 1U);
         for (const std::string part :

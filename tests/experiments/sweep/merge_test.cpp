@@ -108,6 +108,21 @@ TEST_F(Merges, RefuseOtherCodeAndInstructionSets) {
     EXPECT_NE(error().find("instruction sets: \"avx2\" in"), std::string::npos) << error();
 }
 
+TEST_F(Merges, RefuseReferencesThatDiffer) {
+    const fs::path first = one_ / "references/key.exr";
+    const fs::path second = two_ / "references/key.exr";
+    for (const fs::path& file : {first, second}) {
+        fs::create_directories(file.parent_path());
+        write_atomic_file(file, "picture of " + file.string());
+    }
+    EXPECT_NE(error().find(first.string() + " and " + second.string() + " are different pictures"),
+              std::string::npos)
+        << error();
+    write_atomic_file(second, read_whole_file(first));
+    EXPECT_TRUE(merge().empty());
+    EXPECT_EQ(read_whole_file(whole_ / "references/key.exr"), read_whole_file(first));
+}
+
 TEST_F(Merges, WarnOfMixedProcessors) {
     add(two_, "b", "1", "avx2", "slow");
     const std::vector<std::string> warnings = merge();
