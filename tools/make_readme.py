@@ -68,6 +68,15 @@ def field(scene, contest, method):
     return "does not serve it"
 
 
+def at_its_best(scene, method):
+    """The least error of all that the method was asked for, and what it takes."""
+    cells = [cell for cell in scene.scored() if cell.method == method]
+    if not cells:
+        return "–"
+    cell = min(cells, key=lambda each: each.error("rmse")[0])
+    return f"{with_interval(*cell.error('rmse'))} ({seconds(cell)})"
+
+
 def table(folder):
     """The table in Markdown, and a line on where its times were measured."""
     sweep = scenes.Sweep(str(folder))
@@ -81,6 +90,8 @@ def table(folder):
     lines = ["| method | " + " | ".join(heads) + " |", "|---|" + "---|" * len(heads)]
     for method in methods:
         lines.append(f"| `{method}` | " + " | ".join(field(*pair, method) for pair in zip(found, contests)) + " |")
+    for method in SHOWN:
+        lines.append(f"| `{method}`, in whatever time | " + " | ".join(at_its_best(scene, method) for scene in found) + " |")
     lines.append("| standard error of the reference | " + " | ".join(
         number(reference_error(scene.cells[0].rows[0])) for scene in found) + " |")
     return "\n".join(lines) + f"\n\n{machine(sweep)}\n{strip_line(folder)}\n"

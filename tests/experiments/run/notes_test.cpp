@@ -38,6 +38,13 @@ std::vector<std::string> notes_of(const SceneDesc& desc, const std::string& name
     return notes(scene, method, build(scene, method, RunOptions{})->build_report());
 }
 
+bool any_holds(const std::vector<std::string>& notes, const std::vector<std::string>& words) {
+    return std::ranges::any_of(notes, [&](const std::string& note) {
+        return std::ranges::all_of(
+            words, [&](const std::string& word) { return note.find(word) != std::string::npos; });
+    });
+}
+
 TEST(Notes, NameALightThatLiesOnACaster) {
     SceneDesc desc = flat_mirror();
     EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
@@ -46,6 +53,35 @@ TEST(Notes, NameALightThatLiesOnACaster) {
     ASSERT_EQ(all.size(), 1U);
     EXPECT_TRUE(all[0].starts_with("the light at (0.1, 0.2, 1) lies on mirror: on which of its "))
         << all[0];
+}
+
+TEST(Notes, NameLobesThatPhotonsBlur) {
+    const auto notes_of_lobe = [](float exponent, const std::string& method) {
+        SceneDesc desc = flat_mirror();
+        Phong phong;
+        phong.exponent = exponent;
+        desc.shapes[1].bsdf.model = phong;
+        return notes_of(desc, method, {});
+    };
+    EXPECT_TRUE(any_holds(notes_of_lobe(1000, "photonmap"), {"1.4 degrees", "within 2.1"}));
+    EXPECT_TRUE(notes_of_lobe(30, "photonmap").empty());
+    EXPECT_TRUE(notes_of_lobe(1000, "beamtree").empty());
+}
+
+TEST(Notes, NameAColourThatFewParticlesCarry) {
+    const auto notes_of_green = [](float green, const std::string& method) {
+        SceneDesc desc = flat_mirror();
+        PointLight red = support::point_light({0, 0, 0.5}, 0);
+        red.intensity[0] = 1;
+        PointLight weak = red;
+        weak.intensity = {0, green, 0};
+        desc.lights = {red, weak};
+        return notes_of(desc, method, {});
+    };
+    EXPECT_TRUE(any_holds(notes_of_green(1e-4F, "photonmap"), {"one colour", "0.01 %"}));
+    EXPECT_TRUE(any_holds(notes_of_green(1e-4F, "lighttrace"), {"one colour", "0.01 %"}));
+    EXPECT_TRUE(notes_of_green(0.1F, "photonmap").empty());
+    EXPECT_TRUE(notes_of_green(1e-4F, "beamtree").empty());
 }
 
 TEST(Notes, NameACasterThatIsTooFarAway) {
@@ -75,13 +111,6 @@ SceneDesc panes() {
     }
     desc.lights = {support::point_light({0, 0, 3}, 1)};
     return desc;
-}
-
-bool any_holds(const std::vector<std::string>& notes, const std::vector<std::string>& words) {
-    return std::ranges::any_of(notes, [&](const std::string& note) {
-        return std::ranges::all_of(
-            words, [&](const std::string& word) { return note.find(word) != std::string::npos; });
-    });
 }
 
 TEST(Notes, NameTheShapeWhoseSmoothNormalsLoseLight) {
