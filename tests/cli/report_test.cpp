@@ -84,7 +84,7 @@ TEST_F(Report, ReplacesNoPipeAndNoLink) {
 
 TEST_F(Report, RefusesWhatItCannotUseBeforeThePageIsWritten) {
     write_atomic_file(folder_ / "tables", "precious");
-    is_refused("out -o a.html --tables tables", "tables: is no folder for tables");
+    is_refused("out -o a.html --tables tables", "tables: no folder for tables");
     EXPECT_EQ(read_whole_file(folder_ / "tables"), "precious");
     is_refused("out -o a.html --columns=-rmse", "unknown column -rmse");
     is_refused("-o a.html -- -out", "-out: no such folder");

@@ -23,7 +23,7 @@ except ImportError as error:
 import make_readme as tool
 
 
-SETTINGS = ("photons", "nearest", "adaptive", "mesh_resolution", "intensity", "light_samples", "emitted", "paths")
+SETTINGS = ("photons", "nearest", "adaptive", "mesh_resolution", "intensity", "light_samples", "emitted", "paths", "pixel_footprint")
 
 
 def rows_of_readme():
@@ -48,7 +48,8 @@ class Readme(unittest.TestCase):
         for i, head in enumerate(heads):
             place, _, limit = head.rpartition(", ")
             own = [row for row in records if row["scene"] == names[place]]
-            for method, fields in table.items():
+            for name, fields in table.items():
+                method, _, whenever = name.replace("`", "").partition(", ")
                 found = re.match(r"\**([0-9.e-]+)(?: ± [0-9.e-]+)?\** \(<?([0-9.e-]+) \+ ([0-9.e-]+) s\)", fields[i])
                 if not found:
                     continue
@@ -61,7 +62,7 @@ class Readme(unittest.TestCase):
                 for rows in groups.values():
                     work = statistics.median(float(row["precompute_cpu_s"] or 0) + float(row["balance_cpu_s"] or 0)
                                              + float(row["render_cpu_s"]) for row in rows)
-                    if work <= float(limit.removesuffix(" s")) * 1.006:
+                    if whenever or work <= float(limit.removesuffix(" s")) * 1.006:
                         means[f"{statistics.mean(float(row['rmse']) for row in rows):.3g}"] = work
                 self.assertIn(found[1], means, f"{place}, {method}")
                 self.assertEqual(found[1], min(means, key=float))

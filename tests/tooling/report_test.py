@@ -354,7 +354,7 @@ class Page(unittest.TestCase):
     def test_a_file_in_the_place_of_the_tables_is_refused_before_the_page_is_written(self):
         done = self.run_tool(self.sweep, "--tables", self.sweep / "records.csv")
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
-        self.assertIn("records.csv: is no folder for tables", done.stderr)
+        self.assertIn("records.csv: no folder for tables", done.stderr)
         self.assertFalse(self.output.exists())
 
     def test_a_trial_in_two_folders_is_refused_by_name(self):
@@ -376,7 +376,9 @@ class Page(unittest.TestCase):
         row = dict(zip(data["tables"][0]["header"], data["tables"][0]["rows"][0]))
         self.assertEqual((row["scene"], row["message"]), ("=ring", "'plain'"))
         self.assertEqual([records.plain(text) for text in ("'-a", "'+a", "'@a", "'\t", "'\r", "'", "''=", "-1")],
-                         ["-a", "+a", "@a", "\t", "\r", "'", "''=", "-1"])
+                         ["-a", "+a", "@a", "\t", "\r", "'", "'=", "-1"])
+        for text in ("-a", "=1+1", "'=1", "''@a", "'plain'", "-1.5", "ring", ""):
+            self.assertEqual(records.plain(records.marked(text)), text)
 
     def test_broken_records_are_refused(self):
         self.rows[3]["rmse"] = "nan"

@@ -48,7 +48,8 @@ class Waiting(unittest.TestCase):
     def test_render_in_each_phase(self):
         render = ["render", *POOL, "--spp", "100", "-o", "a.exr", "--method"]
         self.interrupt([*render, "photonmap", "--param", "photons=30000000"], r"^trace \[.* %, ETA at least \d")
-        self.interrupt([*render, "beamtree", "--set", "/water/resolution=512"], r"^beams \[.* %, ETA at least \d")
+        fine = ["/water/resolution=512" if word == POOL[-1] else word for word in render]
+        self.interrupt([*fine, "beamtree"], r"^beams \[.* %, ETA at least \d")
         self.interrupt([*render, "none"], r"^render \[.* %, ETA \d")
         self.interrupt([*render, "lighttrace", "--param", "paths=100000000000"], r" %, ETA ")
 

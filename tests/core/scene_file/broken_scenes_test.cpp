@@ -133,7 +133,7 @@ std::vector<Broken> broken_scenes() {
          with_sensor(R"("f": {"type": "hdrfilm", "r": {"type": "gaussian"}})"),
          {"/sensor/f/r", "gaussian", "not supported (yet)", "box"}},
         // Sensors.
-        {"fov_0", with_sensor(R"("fov": 0)"), {"/sensor/fov", "between 0 and 180"}},
+        {"fov_0", with_sensor(R"("fov": 0)"), {"/sensor/fov", "between 1e-6 and 179.9999"}},
         {"fov_axis", with_sensor(R"("fov_axis": "z")"), {"/sensor/fov_axis", "x, y, diagonal"}},
         {"focal",
          with_sensor(R"("focal_length": "50mm")"),
