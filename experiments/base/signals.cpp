@@ -25,7 +25,8 @@ std::int64_t now() {
     return std::int64_t{time.tv_sec} * 1000 + time.tv_nsec / 1'000'000;
 }
 
-constexpr long patience = 500'000'000;  // ns; ending a process of many gigabytes takes its time, too
+constexpr long patience =
+    500'000'000;  // ns; ending a process of many gigabytes takes its time, too
 timer_t last_moment{};
 std::atomic<bool> has_last_moment{false};
 bool is_on_terminal = false;

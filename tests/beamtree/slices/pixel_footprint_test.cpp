@@ -135,6 +135,17 @@ TEST(PixelFootprint, IsTheSameWithAnyNumberOfSamples) {
     }
 }
 
+/// The sum of a picture's caustic.
+double light_of(const Scene& scene, const BeamTreeParams& params, int samples) {
+    RunOptions options;
+    options.samples_per_pixel = samples;
+    const Film film = render(scene, *build(scene, params, options), options).film;
+    double sum = 0;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i)
+        sum += static_cast<double>(film.rgb("caustic", i).mean());
+    return sum;
+}
+
 // A floor's edge cuts pixels, and a ball shows its silhouette: light that is even over them is so in the picture, but for the share
 // of a pixel's samples that see it.
 TEST(PixelFootprint, KeepsEvenLightAtEdges) {
@@ -150,13 +161,7 @@ TEST(PixelFootprint, KeepsEvenLightAtEdges) {
         BeamTreeParams params = by_pixels();
         params.pixel_footprint = by_pixel;
         params.mesh_resolution = 64;
-        RunOptions options;
-        options.samples_per_pixel = samples;
-        const Film film = render(scene, *build(scene, params, options), options).film;
-        double sum = 0;
-        for (std::size_t i = 0; i < film.pixel_count(); ++i)
-            sum += static_cast<double>(film.rgb("caustic", i).mean());
-        return sum;
+        return light_of(scene, params, samples);
     };
     const double points = total(false, 900);
     EXPECT_GT(points, 1);
@@ -189,13 +194,7 @@ TEST(PixelFootprint, HoldsAFocus) {
         params.max_bounces = 2;
         params.mesh_resolution = 96;
         params.pixel_footprint = by_pixel;
-        RunOptions options;
-        options.samples_per_pixel = samples;
-        const Film film = render(scene, *build(scene, params, options), options).film;
-        double sum = 0;
-        for (std::size_t i = 0; i < film.pixel_count(); ++i)
-            sum += static_cast<double>(film.rgb("caustic", i).mean());
-        return sum;
+        return light_of(scene, params, samples);
     };
     const double points = flux(false, 1600);
     EXPECT_NEAR(flux(true, 1) / points, 1, 0.02);
