@@ -7,8 +7,7 @@ namespace caustics::beamtree {
 Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam)
     : scene_(scene),
       surface_(surface),
-      triangle_(level.traced.set.beams[beam].triangle),
-      facing_(surface.facing(triangle_)) {
+      facing_(surface.facing(level.traced.set.beams[beam].triangle)) {
     const Level* at = &level;
     for (; at->parent != nullptr; beam = at->parents[beam], at = at->parent)
         steps_.push_back({&at->places[beam], at->event});

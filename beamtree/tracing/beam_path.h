@@ -65,7 +65,6 @@ private:
 
     const Scene& scene_;
     const LitCaster& surface_;
-    std::uint32_t triangle_;
     Facing facing_;
     Event first_event_;
     std::vector<Step> steps_;
