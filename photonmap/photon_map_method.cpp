@@ -225,6 +225,7 @@ const DescribedMethod<PhotonMapParams>& photonmap_method() {
                    .summary =
                        "Jensen 1996: photons aimed at the casters, balanced kd-tree, N nearest",
                    .serves = "every scene; without light on casters by `emitted` alone",
+                   .work = {.parameter = "photons", .first = 1000, .most = 1'000'000'000},
                    .effort = {"photons=60000", "nearest=60"},
                    .more_effort = {"photons=480000", "nearest=60"}},
          .parameters = joined(photon_parameters(), estimate_parameters()),

@@ -167,6 +167,7 @@ const DescribedMethod<IlluminationMapParams>& illuminationmap_method() {
                               "coordinates (`resolution` squared), read bilinearly",
                    .serves = "diffuse receivers without overlapping texture coordinates: any "
                              "exact shape, meshes with an atlas",
+                   .work = {.parameter = "emitted", .first = 1000, .most = 1'000'000'000'000},
                    .effort = {"emitted=1000000", "resolution=64"},
                    .more_effort = {"emitted=4000000", "resolution=128"}},
          .parameters = {parameter::whole_number<P>(

@@ -20,6 +20,14 @@ struct SampleCount {
     bool of_a_pixel = false;
 };
 
+/// The whole number that a method's time grows with.
+struct WorkParameter {
+    std::string parameter = {};  ///< empty: the method has no such number
+    int power = 1;               ///< of it, in which time grows, but for a constant
+    std::int64_t first = 1;      ///< that costs next to nothing
+    std::int64_t most = 1;
+};
+
 /// What is known of a method whatever its parameters.
 struct MethodFacts {
     std::string name;
@@ -28,6 +36,7 @@ struct MethodFacts {
     bool has_caustic = true;
     bool is_unbiased = false;  ///< so that it may serve as a reference
     SampleCount samples = {};
+    WorkParameter work = {};
     bool gathers_over_discs = false;  ///< answers a probe over a disc round each point, all at once
     /// Parameters ("key=value") with which `verify SCENE` tries it, and where that does not do, once more.
     std::vector<std::string> effort = {};

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -14,6 +16,7 @@
 #include "experiments/run/cli_options.h"
 #include "experiments/run/render_and_score.h"
 #include "experiments/run/run_progress.h"
+#include "experiments/run/time_budget.h"
 #include "experiments/run/written_files.h"
 
 namespace caustics::experiments {
@@ -30,6 +33,8 @@ struct RenderOptions {
     RunFlags run;
     int spp = 0;
     std::optional<double> exposure;
+    std::optional<double> seconds;  ///< that the picture is to take
+    std::string work;               ///< the scene's number that takes them; empty: the method's
     std::vector<std::string> outputs;
 };
 
@@ -69,27 +74,97 @@ std::string told_counts(const Counters& counters) {
     return text;
 }
 
-RunResult run_shown(const Scene& scene, const RunRequest& request, const RunFlags& flags,
-                    Stopwatch& stopwatch) {
-    RunOptions options = flags.options(request.samples_per_pixel);
-    const RunProgress progress(options, pass_count(request.method));
-    return run(scene, request, options, stopwatch);
+/// A picture with all that is told of it.
+struct Picture {
+    RunRequest request;
+    SceneFile file;  ///< without its shapes
+    RunResult result;
+    Seconds took;  ///< building and rendering
+};
+
+Picture picture_of(const RenderOptions& options) {
+    SceneFile file = options.scene.load();
+    RunRequest request{options.scene.file,
+                       options.scene.overrides(),
+                       options.method.parse(),
+                       options.run.seed,
+                       samples_per_pixel(file.desc.sampling, options.spp),
+                       options.indirect.parse()};
+    require_files_apart(options.outputs, request, file.files);
+    const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
+    Stopwatch stopwatch;
+    RunOptions run_options = options.run.options(request.samples_per_pixel);
+    const RunProgress progress(run_options, pass_count(request.method));
+    RunResult result = run(scene, request, run_options, stopwatch);
+    return {std::move(request), std::move(file), std::move(result), stopwatch.total()};
+}
+
+/// What the time of --seconds goes into.
+WorkParameter work_of(const RenderOptions& options) {
+    constexpr std::int64_t most_of_scene = 4096;
+    if (!options.work.empty())
+        return {.parameter = options.work, .power = 2, .first = 8, .most = most_of_scene};
+    const WorkParameter work = options.method.parse().facts().work;
+    if (work.parameter.empty())
+        throw InputError(fmt::format(
+            "--seconds: {} has no parameter that could take them (take another method, or name a "
+            "number of the scene by --work)",
+            options.method.name));
+    for (const std::string& param : options.method.params)
+        if (param.starts_with(work.parameter + "="))
+            throw InputError(
+                fmt::format("--seconds chooses {}: leave --param {} out", work.parameter, param));
+    return work;
+}
+
+/// Whether more work made no difference: neither in the picture nor in what was counted.
+bool are_same(const RunResult& a, const RunResult& b) {
+    return a.counters == b.counters &&
+           std::ranges::equal(a.film.planes(), b.film.planes(), {}, &Plane::values, &Plane::values);
+}
+
+/// Says where a picture that has the work to fit its time does not.
+Picture told_of_misfit(Picture picture, double seconds) {
+    constexpr double most_misfit = 0.25;
+    if (std::abs(picture.took.wall / seconds - 1) > most_misfit)
+        picture.result.notes.push_back(
+            fmt::format("the picture takes {:.3g} s in place of the {} s of --seconds",
+                        picture.took.wall, shortest(seconds)));
+    return picture;
+}
+
+/// The picture that takes the wanted time.
+Picture picture_in_time(const RenderOptions& options) {
+    const WorkParameter work = work_of(options);
+    TimeBudget budget(*options.seconds, work);
+    std::optional<Picture> last;
+    while (true) {
+        const std::string chosen = fmt::format("{}={}", work.parameter, budget.work());
+        RenderOptions trial = options;
+        (options.work.empty() ? trial.method.params : trial.scene.sets).push_back(chosen);
+        Picture picture = picture_of(trial);
+        write_stderr(fmt::format("{}: {:.3g} s, {:.3g} CPU s of the {} s of --seconds\n", chosen,
+                                 picture.took.wall, picture.took.cpu, shortest(*options.seconds)));
+        if (last && are_same(last->result, picture.result)) {
+            picture.result.notes.push_back(fmt::format(
+                "{} makes no difference here, so that the picture does not take the {} s of "
+                "--seconds{}",
+                work.parameter, shortest(*options.seconds),
+                options.work.empty() ? " (name a number of the scene by --work)" : ""));
+            return picture;
+        }
+        if (!budget.goes_on_after(picture.took.wall))
+            return told_of_misfit(std::move(picture), *options.seconds);
+        last = std::move(picture);
+    }
 }
 
 int render_picture(const RenderOptions& options) {
     end_soon_after_interrupts();
     check_outputs(options.outputs);
-    SceneFile file = options.scene.load();
-    const RunRequest request{options.scene.file,
-                             options.scene.overrides(),
-                             options.method.parse(),
-                             options.run.seed,
-                             samples_per_pixel(file.desc.sampling, options.spp),
-                             options.indirect.parse()};
-    require_files_apart(options.outputs, request, file.files);
-    const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
-    Stopwatch stopwatch;
-    RunResult result = run_shown(scene, request, options.run, stopwatch);
+    if (!options.work.empty() && !options.seconds) throw InputError("--work: belongs to --seconds");
+    auto [request, file, result, took] =
+        options.seconds ? picture_in_time(options) : picture_of(options);
 
     require_finite(result.film, "the picture");
     write_stderr(told_counts(result.counters) + "\n");
@@ -109,8 +184,10 @@ int render_picture(const RenderOptions& options) {
         write_stderr(
             fmt::format("{}: {}x{} pixels, {} samples a pixel, exposure {:.2f} stops, {:.1f} s\n",
                         output, result.film.width(), result.film.height(),
-                        request.samples_per_pixel, exposure, stopwatch.total().wall));
+                        request.samples_per_pixel, exposure, took.wall));
     }
+    if (options.seconds)
+        write_stderr("the same picture again: " + command("render", request) + "\n");
     return 0;
 }
 
@@ -127,6 +204,13 @@ Verb add_render(CLI::App& app) {
                "Samples a pixel (default: the scene's)");
     add_number(*verb, "--exposure", options->exposure, -most_stops, most_stops,
                std::string("Exposure of a .png in stops: ") + tone_mapping_rule);
+    add_number(*verb, "--seconds", options->seconds, 0.01, 1e7,
+               "Chooses the method's work (photons, paths, mesh_resolution, ...) so that building "
+               "and rendering take so many seconds on the clock; smaller trials come before");
+    verb->add_option("--work", options->work,
+                     "With --seconds: the whole number of the scene that takes them, in place of "
+                     "the method's parameter, such as /water/resolution")
+        ->type_name("/POINTER");
     add_repeatable(*verb, "-o,--output", options->outputs,
                    "Picture to write: .exr (float32, all layers) or .png (tone-mapped). Repeatable")
         ->required()

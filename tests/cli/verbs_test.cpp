@@ -164,6 +164,64 @@ TEST(Render, TellsItsCountsAndWhyACausticIsEmpty) {
     EXPECT_EQ(read_exr(file).metadata.at("why_empty").find("no shape is a caster"), 0U);
 }
 
+TEST(Render, MakesThePictureOfATimeAgainByTheCommandThatItTells) {
+    const support::TemporaryFolder folder;
+    const std::string timed = folder / "timed.exr", again = folder / "again.exr";
+    for (const std::string method : {"photonmap", "lighttrace", "beamtree", "causticpolygons"}) {
+        const ProgramResult result =
+            causticbench({"render", scene, "--method", method, "--seconds", "0.05", "-o", timed});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        const std::string words = "the same picture again: causticbench render ";
+        const std::size_t told = result.err.find(words);
+        ASSERT_NE(told, std::string::npos) << result.err;
+        const std::string command = result.err.substr(told + words.size());
+        const ProgramResult second = support::shell(
+            "$P render " + command.substr(0, command.find('\n')) + " -o '" + again + "' 2>&1");
+        ASSERT_EQ(second.exit_code, 0) << second.out;
+        EXPECT_EQ(read_input(timed), read_input(again)) << method;
+    }
+}
+
+TEST(Render, GivesTheTimeToANumberOfTheScene) {
+    const support::TemporaryFolder folder;
+    const std::string pool = CAUSTICS_SOURCE_DIR "/experiments/scenes/pool.json";
+    const ProgramResult by_mesh = causticbench(
+        {"render", pool, "--method", "beamtree", "--seconds", "1e4", "-o", folder / "a.exr"});
+    EXPECT_EQ(by_mesh.exit_code, 0) << by_mesh.err;
+    EXPECT_NE(by_mesh.err.find("note: mesh_resolution makes no difference here, so that the "
+                               "picture does not take the 10000 s of --seconds"),
+              std::string::npos)
+        << by_mesh.err;
+    const ProgramResult by_scene =
+        causticbench({"render", pool, "--method", "beamtree", "--seconds", "0.1", "--work",
+                      "/water/resolution", "-o", folder / "b.exr"});
+    EXPECT_EQ(by_scene.exit_code, 0) << by_scene.err;
+    EXPECT_EQ(by_scene.err.find("/water/resolution=8: "), 0U) << by_scene.err;
+    EXPECT_NE(read_exr(folder / "b.exr").metadata.at("command").find("--set /water/resolution="),
+              std::string::npos);
+}
+
+TEST(Render, RefusesATimeThatNothingCouldTake) {
+    const support::TemporaryFolder folder;
+    const auto error = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"render", scene, "-o", folder / "a.exr"});
+        const ProgramResult result = causticbench(arguments);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        return result.err;
+    };
+    EXPECT_NE(error({"--method", "none", "--seconds", "1"}).find("none has no parameter"),
+              std::string::npos);
+    EXPECT_NE(error({"--method", "photonmap", "--param", "photons=9", "--seconds", "1"})
+                  .find("--seconds chooses photons: leave --param photons=9 out"),
+              std::string::npos);
+    EXPECT_NE(error({"--method", "photonmap", "--work", "/ball/radius"})
+                  .find("--work: belongs to --seconds"),
+              std::string::npos);
+    EXPECT_NE(error({"--method", "photonmap", "--seconds", "0"}).find("--seconds \"0\""),
+              std::string::npos);
+    EXPECT_FALSE(fs::exists(folder / "a.exr"));
+}
+
 TEST(Info, TellsWhatTheSceneHolds) {
     const ProgramResult result = causticbench({"info", scene});
     EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -1,6 +1,7 @@
 #include "experiments/run/methods.h"
 #include "experiments/run/method.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -23,6 +24,17 @@ std::string error(const std::string& name, const std::vector<std::string>& param
         return error.what();
     }
     return "no error";
+}
+
+TEST(Methods, GrowWithOneOfTheirParameters) {
+    for (const MethodDescription* each : all_methods()) {
+        const MethodFacts& facts = each->facts();
+        const WorkParameter& work = facts.work;
+        EXPECT_EQ(work.parameter.empty(), !facts.has_caustic) << facts.name;
+        if (work.parameter.empty()) continue;
+        for (const std::int64_t value : {work.first, work.most})
+            EXPECT_EQ(error(facts.name, {fmt::format("{}={}", work.parameter, value)}), "no error");
+    }
 }
 
 TEST(Methods, AreDescribedByParametersThatReadBack) {
