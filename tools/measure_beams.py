@@ -4,7 +4,7 @@
 Runs the sweeps experiments/sweeps/beam_*.json on one thread, one after another; their trials stay in
 results/beamtree/trials (not in git). Counts are exact on any machine; times are CPU times of one
 thread, so run it where nothing else runs. With --rest it measures beams of several events that photons complete
-instead (experiments/sweeps/rest_photons.json), and writes rest.md. Needs build/release (tools/build.sh release causticbench).
+instead (experiments/sweeps/rest_*.json), and writes rest.md. Needs build/release (tools/build.sh release causticbench).
 Exit codes: 0 done, 1 a sweep failed, 2 bad input or usage.
 """
 import argparse
@@ -24,7 +24,7 @@ from report.program import BENCH, Program, machine
 from report.report_files import write
 
 SWEEPS = ("counts", "counts_quads", "bounds_pool", "bounds_ring", "height", "watt_ns", "watt_nd", "watt_nl")
-REST = ("rest_photons",)
+REST = ("rest_ball", "rest_bowl", "rest_cognac")
 BLOCK = "<!-- {0} -->\n{1}<!-- end of {0} -->"
 
 

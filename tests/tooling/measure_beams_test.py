@@ -77,12 +77,12 @@ class Page(unittest.TestCase):
 
 
 def map_trial(count, seconds, rmse):
-    return {"method": "photonmap", "photons": count, "precompute_cpu_s": seconds, "rmse": rmse, "relmse": float(rmse) ** 2, "mean_ratio": "1.0",
-            "reference_stderr": "0.01"}
+    return {"method": "photonmap", "photons": count, "nearest": "60", "seed": "1", "precompute_cpu_s": seconds, "rmse": rmse, "relmse": float(rmse) ** 2, "mean_ratio": "1.0",
+            "reference_stderr": "0.01", "scene": "bowl"}
 
 
 def beam_trial(rest, seconds, rmse):
-    return {"method": "beamtree", "rest": rest, "rest_photons": "300", "max_beams": "50", "precompute_cpu_s": seconds / 2,
+    return {"method": "beamtree", "rest": rest, "seed": "1", "rest_photons": "300", "max_beams": "50", "precompute_cpu_s": seconds / 2,
             "render_cpu_s": seconds / 2, "rmse": rmse, "relmse": 0.2, "mean_ratio": "0.9", "flux_share_captured": "0.7",
             "flux_share_pruned": "0.1", "flux_share_over_budget": "0.15"}
 
@@ -95,11 +95,21 @@ class CompletedBeams(unittest.TestCase):
     def test_ratio_is_the_photon_maps_time_for_the_error(self):
         # 0.2 lies in the middle of 0.4 and 0.1 as powers go: 3 s.
         [line] = self.lines(beam_trial("photons", 6.0, "0.2"))
-        self.assertIn("rest: photons | 50 | 300 | 0.900 | 0.250 | 0.300 | 6.00 | 0.2 | 0.2 | 0.5 |", line)
+        self.assertIn("rest: photons | points | 50 | 300 | 0.900 | 0.250 | 0.300 | 6.00 | 0.2 | 0.2 | 0.5 |", line)
 
     def test_an_error_that_the_photon_map_never_had_gives_a_bound(self):
         [line] = self.lines(beam_trial("none", 3.0, "0.05"))
         self.assertIn("| ≥ 3 |", line)
+
+    def test_seeds_of_one_setting_are_one_row(self):
+        first, second = beam_trial("photons", 2.0, "0.3"), dict(beam_trial("photons", 4.0, "0.4"), seed="2")
+        [line] = self.lines(dict(first, pixel_footprint="true"), dict(second, pixel_footprint="true"))
+        self.assertIn("| averaged | 50 | 300 | 0.900 | 0.250 | 0.300 | 3.00 | 0.3536 |", line)
+
+    def test_the_page_tells_seeds_and_rows(self):
+        text = rest_report.page([map_trial("1000", 1, "0.4"), map_trial("2000", 2, "0.3")], "a machine")
+        self.assertIn("Each row is of\n1 seeds", text)
+        self.assertIn("the best of its 2 rows", text)
 
     def test_scene_and_noise_are_named(self):
         text = rest_report.table("bowl", [map_trial("1000", 1, "0.4")])
