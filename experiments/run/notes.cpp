@@ -65,6 +65,29 @@ bool has_exact_receiver(const Scene& scene) {
     });
 }
 
+bool has_dispersive_caster(const Scene& scene) {
+    return std::ranges::any_of(scene.casters(), [&](std::uint32_t caster) {
+        return is_dispersive(scene.shapes()[caster].bsdf);
+    });
+}
+
+/// Beams of parts of the wavelengths draw a rainbow as so many pictures beside each other.
+std::optional<std::string> steps_of_colour(const Scene& scene, const Method& method) {
+    const std::vector<KeyText> texts = method.description->parameters();
+    const auto parts = std::ranges::find(texts, "wavelengths", &KeyText::key);
+    const json given = describe(method);
+    if (parts == texts.end() || given.contains("dispersion") || !has_dispersive_caster(scene))
+        return {};
+    return fmt::format(
+        "{} parts of the wavelengths stand for all: where colours spread, the edges of the "
+        "parts are steps, and points beside them are off by tens of per cent (a larger wavelengths "
+        "makes them smaller{})",
+        given.contains("wavelengths") ? given.at("wavelengths").dump() : parts->usual,
+        std::ranges::find(texts, "dispersion", &KeyText::key) == texts.end()
+            ? ""
+            : "; dispersion=intervals has none");
+}
+
 std::optional<std::string> what_crosses(const Scene& scene) {
     const auto pairs = crossing_dielectrics(scene);
     if (pairs.empty()) return {};
@@ -260,6 +283,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
         all.push_back(*far);
     if (!captured) return all;
+    if (const auto steps = steps_of_colour(scene, method)) all.push_back(*steps);
     if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));
 
     const SetParameters parameters(method);
@@ -271,6 +295,8 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     add("light_samples", !has_area_light(scene), "it has no area light");
     add("mesh_resolution", resolved(report, "casters_tessellated") == 0,
         "every caster is a mesh, which is taken as it is");
+    add("wavelengths", !has_dispersive_caster(scene), "no caster is dispersive");
+    add("dispersion", !has_dispersive_caster(scene), "no caster is dispersive");
     add("receiver_resolution", !has_exact_receiver(scene),
         "every receiver is a mesh, which is taken as it is");
     return all;

@@ -55,6 +55,30 @@ TEST(Notes, NameALightThatLiesOnACaster) {
         << all[0];
 }
 
+TEST(Notes, TellThatPartsOfTheWavelengthsDrawSteps) {
+    const auto notes_of_glass = [](bool disperses, const std::string& method,
+                                   const std::vector<std::string>& parameters) {
+        SceneDesc desc = flat_mirror();
+        Dielectric dielectric;
+        dielectric.int_ior = disperses ? Ior::abbe(1.6, 30) : Ior(1.6F);
+        dielectric.ext_ior = 1;
+        desc.shapes[0].bsdf = {dielectric, false};
+        return notes_of(desc, method, parameters);
+    };
+    for (const std::string method : {"beamtree", "causticpolygons"}) {
+        EXPECT_TRUE(any_holds(notes_of_glass(true, method, {"wavelengths=5"}),
+                              {"5 parts of the wavelengths", "a larger wavelengths"}));
+        EXPECT_FALSE(any_holds(notes_of_glass(false, method, {}), {"parts of the wavelengths"}));
+        EXPECT_TRUE(any_holds(notes_of_glass(false, method, {"wavelengths=5"}),
+                              {"wavelengths=5 makes no difference", "no caster is dispersive"}));
+    }
+    EXPECT_TRUE(any_holds(notes_of_glass(true, "beamtree", {}), {"dispersion=intervals"}));
+    EXPECT_FALSE(any_holds(notes_of_glass(true, "beamtree", {"dispersion=intervals"}),
+                           {"parts of the wavelengths"}));
+    EXPECT_TRUE(any_holds(notes_of_glass(false, "beamtree", {"dispersion=intervals"}),
+                          {"dispersion=intervals makes no difference"}));
+}
+
 TEST(Notes, NameLobesThatPhotonsBlur) {
     const auto notes_of_lobe = [](float exponent, const std::string& method) {
         SceneDesc desc = flat_mirror();
