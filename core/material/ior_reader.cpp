@@ -71,6 +71,8 @@ Ior read_ior(const JsonNode& parent, const std::string& key, const Ior& fallback
     if (!node) return fallback;
     if (node->is_object()) return read_law(*node);
     if (node->is_number()) return static_cast<float>(node->as_number_in(0.1, 10));
+    if (!node->is_string())
+        node->fail("expected a number, a name or a law of dispersion (an object with a type)");
     std::vector<std::string> names;
     for (const auto& [name, ior] : named_iors) names.emplace_back(name);
     return named_iors[node->as_choice(names)].second;

@@ -16,6 +16,7 @@ struct JsonDocument {
     struct Keys {
         std::vector<std::string> known;  ///< by name, in the order of asking
         std::set<std::string> taken;     ///< as children of any name
+        bool takes_objects = false;      ///< of any name
     };
 
     nlohmann::json root;

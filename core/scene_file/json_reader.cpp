@@ -226,6 +226,7 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {
 std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
     std::vector<std::pair<std::string, JsonNode>> nodes = others();
     JsonDocument::Keys& keys = document_->keys[pointer_];
+    keys.takes_objects = true;
     std::erase_if(nodes, [&](const auto& entry) {
         if (entry.second.is_object()) return false;
         keys.taken.erase(entry.first);
@@ -241,7 +242,11 @@ void JsonNode::finish() const {
     for (const auto& [key, child] : value.items()) {
         const bool known = std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end();
         if (!known && !keys.taken.contains(key))
-            fail(fmt::format("unknown key {} (known: {})", shown(key), join(keys.known)));
+            fail(fmt::format(
+                "unknown key {} (known: {}{})", shown(key), join(keys.known),
+                keys.takes_objects && !child.is_number() && !child.is_boolean()
+                    ? "; with a name of its own: an object with a type, not " + shown(child)
+                    : ""));
     }
 }
 
