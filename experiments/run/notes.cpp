@@ -88,6 +88,21 @@ std::optional<std::string> steps_of_colour(const Scene& scene, const Method& met
             : "; dispersion=intervals has none");
 }
 
+/// Flat polygons stand for a curved receiver.
+std::optional<std::string> flat_pieces(const Scene& scene, const Method& method) {
+    const json given = describe(method);
+    const auto pieces = given.find("receiver_resolution");
+    if (pieces == given.end()) return {};
+    for (const Shape& shape : scene.shapes())
+        if (is_receiver(shape.bsdf) && !shape.radiance &&
+            (shape.primitive == Primitive::sphere || shape.primitive == Primitive::cylinder))
+            return fmt::format(
+                "{} x {} flat polygons stand for the curved receiver {}: its light is that of "
+                "their planes, off by 10 % and more where they are few (receiver_resolution)",
+                pieces->dump(), pieces->dump(), shape.name);
+    return {};
+}
+
 std::optional<std::string> what_crosses(const Scene& scene) {
     const auto pairs = crossing_dielectrics(scene);
     if (pairs.empty()) return {};
@@ -283,6 +298,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
         all.push_back(*far);
     if (!captured) return all;
+    if (const auto pieces = flat_pieces(scene, method)) all.push_back(*pieces);
     if (const auto steps = steps_of_colour(scene, method)) all.push_back(*steps);
     if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));
 

@@ -55,6 +55,15 @@ TEST(Notes, NameALightThatLiesOnACaster) {
         << all[0];
 }
 
+TEST(Notes, TellThatFlatPolygonsStandForACurvedReceiver) {
+    SceneDesc desc = flat_mirror();
+    const std::vector<std::string> words = {"5 x 5 flat polygons", "receiver ball"};
+    EXPECT_FALSE(any_holds(notes_of(desc, "causticpolygons", {"receiver_resolution=5"}), words));
+    desc.shapes.push_back(support::sphere("ball", {0, 0, 0.2}, 0.1, support::diffuse(0.5F)));
+    EXPECT_TRUE(any_holds(notes_of(desc, "causticpolygons", {"receiver_resolution=5"}), words));
+    EXPECT_FALSE(any_holds(notes_of(desc, "beamtree", {}), {"flat polygons"}));
+}
+
 TEST(Notes, TellThatPartsOfTheWavelengthsDrawSteps) {
     const auto notes_of_glass = [](bool disperses, const std::string& method,
                                    const std::vector<std::string>& parameters) {
