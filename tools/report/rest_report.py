@@ -8,7 +8,7 @@ PAGE = """# Beams completed by photons
 
 Made by `tools/measure_beams.py --rest` on {machine}
 
-80 × 60 pixels of 4 samples against `lighttrace` (20 million paths); an rmse holds the reference's own error too. Each row is of
+80 × 60 pixels of 16 samples against `lighttrace` (20 million paths); an rmse holds the reference's own error too. Each row is of
 {seeds} seeds: errors are their root mean square, seconds (one thread) and shares their mean. Light: the
 mean of the caustic layer over the reference's, so 1 is the whole light. Pixels: the irradiance is asked at the points that the samples see, or averaged
 over the pixel (`pixel_footprint` of beams; `footprint` of the photon map, a square as wide as a pixel in the middle of the picture). Of the light on casters, `left out` is what `prune` and
@@ -26,7 +26,7 @@ Standard error of a pixel of the reference over its mean: {noise:.3g}.
 {lines}"""
 
 
-SETTINGS = ("method", "rest", "max_beams", "rest_photons", "photons", "nearest", "footprint", "pixel_footprint")
+SETTINGS = ("method", "rest", "max_beams", "photons", "nearest", "footprint", "pixel_footprint")
 
 
 def number(row, column):
@@ -41,7 +41,7 @@ def averaged(rows):
     return {"method": rows[0]["method"] + (", rest: photons" if beams and rows[0]["rest"] == "photons" else ""),
             "pixels": "averaged" if rows[0].get("pixel_footprint") or rows[0].get("footprint") else "points",
             "max_beams": rows[0]["max_beams"] if beams else "",
-            "photons": rows[0]["rest_photons"] if beams else f"{rows[0]['photons']}, N = {rows[0]['nearest']}",
+            "photons": f"{mean('rest_photons_stored'):.0f} stored" if beams else f"{rows[0]['photons']}, N = {rows[0]['nearest']}",
             "seconds": sum(mean(phase) for phase in PHASES), "rmse": squares("rmse"), "relmse": mean("relmse"),
             "light": mean("mean_ratio"), "beams": beams, "left_out": mean("flux_share_pruned") + mean("flux_share_over_budget"),
             "lost": 1 - mean("flux_share_captured")}
