@@ -106,6 +106,11 @@ class CompletedBeams(unittest.TestCase):
         [line] = self.lines(dict(first, pixel_footprint="true"), dict(second, pixel_footprint="true"))
         self.assertIn("| averaged | 50 | 300 stored | 0.900 | 0.250 | 0.300 | 3.00 | 0.3536 |", line)
 
+    def test_the_best_rows_are_told(self):
+        text = rest_report.table("bowl", [map_trial("1000", 1, "0.4"), map_trial("9000", 9, "0.1"), beam_trial("photons", 6.0, "0.2"),
+                                          beam_trial("none", 3.0, "0.05")])
+        self.assertIn("their best rows: ≥ 3 in rmse,", text)
+
     def test_the_page_tells_seeds_and_rows(self):
         text = rest_report.page([map_trial("1000", 1, "0.4"), map_trial("2000", 2, "0.3")], "a machine")
         self.assertIn("Each row is of\n1 seeds", text)

@@ -54,11 +54,24 @@ def settings(rows):
     return [averaged(group) for group in groups.values()]
 
 
-def times(trial, photons, metric):
+def contest(trial, photons, metric):
     """The photon map's time for a trial's error over the trial's own."""
     by = lambda one: {"seconds": one["seconds"], "error": one[metric]}
     ratio, bound = against(by(trial), front(by(one) for one in photons))
-    return ratio_text({"ratio": ratio, "lower_bound": bound})
+    return {"ratio": ratio, "lower_bound": bound}
+
+
+def times(trial, photons, metric):
+    return ratio_text(contest(trial, photons, metric))
+
+
+def best(trials, photons):
+    """What the best rows of beams reach, a sentence."""
+    if not trials:
+        return ""
+    parts = [ratio_text(max((contest(trial, photons, metric) for trial in trials), key=lambda one: one["ratio"]))
+             + f" in {metric}" for metric in ("rmse", "relmse")]
+    return "\nThe photon map's time over that of beams, their best rows: " + ", ".join(parts) + ".\n"
 
 
 def line(trial, photons):
@@ -73,7 +86,8 @@ def table(scene, rows):
     trials = settings(rows)
     photons = [trial for trial in trials if not trial["beams"]]
     return TABLE.format(scene=scene, noise=number(rows[0], "reference_stderr"),
-                        lines="".join(line(trial, photons) for trial in trials))
+                        lines="".join(line(trial, photons) for trial in trials)
+                        + best([trial for trial in trials if trial["beams"]], photons))
 
 
 def page(rows, machine):
