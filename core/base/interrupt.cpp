@@ -17,6 +17,8 @@ void request_interrupt() { requested.store(true, std::memory_order_relaxed); }
 
 bool interrupt_requested() { return requested.load(std::memory_order_relaxed); }
 
+void forget_interrupt() { requested.store(false, std::memory_order_relaxed); }
+
 void throw_if_interrupted() {
     if (interrupt_requested()) throw Interrupted();
 }

@@ -132,12 +132,30 @@ std::string last_message(const ChildProcess::Work& work, const ChildLimits& limi
     }
 }
 
+/// No signal that asks to end comes while this lives: one that does comes afterwards.
+class InterruptsHeld {
+public:
+    InterruptsHeld() {
+        sigset_t held;
+        sigemptyset(&held);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, signal);
+        pthread_sigmask(SIG_BLOCK, &held, &before_);
+    }
+    ~InterruptsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    InterruptsHeld(const InterruptsHeld&) = delete;
+    InterruptsHeld& operator=(const InterruptsHeld&) = delete;
+
+private:
+    sigset_t before_{};
+};
+
 [[noreturn]] void be_child(const ChildProcess::Work& work, const ChildLimits& limits,
                            const std::filesystem::path& log, int pipe, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
-    std::signal(SIGINT, SIG_IGN);
-    std::signal(SIGTERM, SIG_IGN);
+    // The parent ends its children; what it was asked before is not for them.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
+    forget_interrupt();
     try {
         write_all(pipe, last_message(work, limits, log, pipe));
         std::fflush(nullptr);
@@ -179,6 +197,7 @@ ChildProcess::ChildProcess(const Work& work, const ChildLimits& limits,
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) fail("pipe");
     const pid_t parent = getpid();
+    const InterruptsHeld held;  // or the child would end like its parent
     process_ = fork();
     if (process_ < 0) {
         close(ends[0]);

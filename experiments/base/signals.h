@@ -2,7 +2,7 @@
 
 namespace caustics::experiments {
 
-/// From now on SIGINT or SIGTERM only asks the program to stop (request_interrupt); another, a second
+/// From now on SIGINT, SIGTERM or, where it is not ignored (nohup), SIGHUP only asks the program to stop (request_interrupt); another, a second
 /// later, ends it.
 void catch_interrupts();
 

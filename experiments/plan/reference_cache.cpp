@@ -113,6 +113,11 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
     const std::filesystem::path target = file_of(request);
     make_folders(target.parent_path());
     write_exr(film, target);
+    // The one that is kept stands for the sweep's own from now on.
+    if (target.parent_path() != own_folder_) {
+        std::error_code none;
+        std::filesystem::remove(own_folder_ / target.filename(), none);
+    }
 }
 
 std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& request) {

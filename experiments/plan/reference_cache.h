@@ -47,12 +47,17 @@ public:
     ReferenceCache(std::filesystem::path own_folder, ReferencePolicy policy)
         : own_folder_(std::move(own_folder)), policy_(policy) {}
 
+    /// Whether pictures that are there are rendered once more.
+    bool makes_anew() const { return policy_ == ReferencePolicy::rebuild; }
     /// Whether it has to be rendered before get().
     bool must_render(const ReferenceRequest& request) const;
     /// Renders it and writes its file. `options` brings threads and progress.
     void render(const ReferenceRequest& request, const RunOptions& options) const;
     /// Takes note that it was rendered, for `rebuild`; here or in another process.
-    void note_rendered(const ReferenceRequest& request) { rendered_.insert(request.key); }
+    void note_rendered(const ReferenceRequest& request) {
+        rendered_.insert(request.key);
+        last_.reset();
+    }
     /// Reads it; the last one stays in memory. Throws InputError.
     std::shared_ptr<const Reference> get(const ReferenceRequest& request);
 

@@ -66,27 +66,6 @@ void record_report(json& record, const RunResult& result) {
     if (result.why_empty) record["why_empty"] = *result.why_empty;
 }
 
-void record_errors(json& record, const Film& film, const Reference& reference) {
-    const PixelMask reached = reached_pixels(film, reference.film);
-    const PixelMask bright = bright_pixels(reference.film, "caustic", reached);
-    record["metrics"] = to_json(measure(film, reference.film, "caustic", reached));
-    record["mask_metrics"] = to_json(measure(film, reference.film, "caustic", bright));
-    record["mask_fraction"] = fraction(bright);
-    record["beauty_rmse"] = to_json(measure(film, reference.film, "", reached))["rmse"];
-    record["unreached_fraction"] = 1 - fraction(reached);
-    record["reference"]["mean"] = reference.caustic.mean;
-    if (const auto& error = reference.caustic.standard_error)
-        record["reference"]["stderr"] = *error;
-    if (film.has_layer("indirect") && reference.indirect) {
-        record["indirect_metrics"] = to_json(measure(film, reference.film, "indirect", reached));
-        record["reference"]["indirect_mean"] = reference.indirect->mean;
-        if (const auto& error = reference.indirect->standard_error)
-            record["reference"]["indirect_stderr"] = *error;
-    }
-    const auto empty = reference.film.metadata.find("why_empty");
-    if (empty != reference.film.metadata.end()) record["reference"]["why_empty"] = empty->second;
-}
-
 /// Of all planes of a picture, names included: the same picture has the same hash.
 std::string picture_hash(const Film& film) {
     std::uint64_t hash = fnv1a(fmt::format("{} {}", film.width(), film.height()));
@@ -98,6 +77,12 @@ std::string picture_hash(const Film& film) {
     }
     return hex(hash);
 }
+
+/// Not the trial's own fault: it is left to do.
+class LeftToDo : public InputError {
+public:
+    using InputError::InputError;
+};
 
 /// The trial itself; what it knows when it throws is in the record and the log.
 void execute(const Trial& trial, const Reference* reference, RunOptions options,
@@ -116,10 +101,10 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     stopwatch.begin("parse");
     SceneFile file = load_scene(trial.request.scene_file, trial.request.overrides);
     if (file.hash != trial.scene_hash)
-        throw InputError(
+        throw LeftToDo(
             fmt::format("{}: changed while the sweep runs", trial.request.scene_file.string()));
     if (files_read(trial.request.method, trial.request.indirect) != trial.method_files)
-        throw InputError("a file that a parameter names changed while the sweep runs");
+        throw LeftToDo("a file that a parameter names changed while the sweep runs");
     const Scene scene(take_shapes(file));
     record_scene(record, file, scene);
     log("precompute and render");
@@ -142,6 +127,29 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
 }
 
 }  // namespace
+
+void record_errors(json& record, const Film& film, const Reference& reference) {
+    const PixelMask reached = reached_pixels(film, reference.film);
+    const PixelMask bright = bright_pixels(reference.film, "caustic", reached);
+    for (const char* earlier : {"mean", "stderr", "indirect_mean", "indirect_stderr", "why_empty"})
+        record["reference"].erase(earlier);
+    record["metrics"] = to_json(measure(film, reference.film, "caustic", reached));
+    record["mask_metrics"] = to_json(measure(film, reference.film, "caustic", bright));
+    record["mask_fraction"] = fraction(bright);
+    record["beauty_rmse"] = to_json(measure(film, reference.film, "", reached))["rmse"];
+    record["unreached_fraction"] = 1 - fraction(reached);
+    record["reference"]["mean"] = reference.caustic.mean;
+    if (const auto& error = reference.caustic.standard_error)
+        record["reference"]["stderr"] = *error;
+    if (film.has_layer("indirect") && reference.indirect) {
+        record["indirect_metrics"] = to_json(measure(film, reference.film, "indirect", reached));
+        record["reference"]["indirect_mean"] = reference.indirect->mean;
+        if (const auto& error = reference.indirect->standard_error)
+            record["reference"]["indirect_stderr"] = *error;
+    }
+    const auto empty = reference.film.metadata.find("why_empty");
+    if (empty != reference.film.metadata.end()) record["reference"]["why_empty"] = empty->second;
+}
 
 json trial_record(const Trial& trial, const std::string& status, const RunOptions& options) {
     json record = {{"version", record_version},
@@ -190,13 +198,15 @@ TrialOutcome run_trial(const Trial& trial, ReferenceCache& references, const Run
     try {
         if (trial.reference) reference = references.get(*trial.reference);
     } catch (const std::exception& error) {
-        end_with("failed", fmt::format("reference: {}", error.what()));
+        end_with("left", fmt::format("reference: {}", error.what()));
         return outcome;
     }
     try {
         execute(trial, reference.get(), options, log, outcome);
     } catch (const UnsupportedScene& error) {
         end_with("unsupported", error.what());
+    } catch (const LeftToDo& error) {
+        end_with("left", error.what());
     } catch (const std::bad_alloc&) {
         end_with("failed", "out of memory");
     } catch (const std::exception& error) {

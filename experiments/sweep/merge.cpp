@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "core/base/interrupt.h"
 #include "experiments/base/atomic_folder.h"
 #include "experiments/base/bounded_json.h"
+#include "experiments/base/csv.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/folder_lock.h"
 #include "experiments/plan/plan_file.h"
@@ -32,9 +34,16 @@ namespace fs = std::filesystem;
 /// Where each value of something was found: value -> folder or trial of its first record.
 using Origins = std::map<std::string, std::string>;
 
+/// What trials of a folder were judged by.
+struct Judged {
+    double mean = 0;  ///< of the reference's caustics
+    fs::path folder;
+};
+
 /// Which folder has a trial, and in how many codes, instruction sets and processors they ran.
 struct Survey {
     std::map<std::string, fs::path> folder_of;
+    std::map<std::string, Judged> judged;  ///< by reference
     Origins code;
     Origins isa;
     Origins cpu;
@@ -75,6 +84,22 @@ std::vector<PlanFile> read_plans(const std::vector<fs::path>& folders) {
     return plans;
 }
 
+/// A reference's name stands for one picture: `--references rebuild` and `extend` make others of it.
+void require_same_judge(Survey& survey, const TableRow& row, const fs::path& folder) {
+    const std::optional<double> mean = row.number("reference_mean");
+    if (!mean) return;
+    const std::string reference = row.text("reference");
+    const auto [same, is_new] = survey.judged.emplace(reference, Judged{*mean, folder});
+    constexpr double rounding = 1e-9;
+    if (!is_new && std::abs(same->second.mean - *mean) > rounding * std::abs(*mean))
+        throw InputError(fmt::format(
+            "trials in {} and {} were judged by different pictures of the reference {} (means {} "
+            "and {}): put one of the pictures into the references/ of both folders and sweep each "
+            "again, which takes their errors anew",
+            same->second.folder.string(), folder.string(), reference, shortest(same->second.mean),
+            shortest(*mean)));
+}
+
 void take_in(Survey& survey, const PlanFile& plan, const fs::path& folder) {
     const TrialStore store(folder);
     const TrialRows rows(folder, store);
@@ -85,10 +110,20 @@ void take_in(Survey& survey, const PlanFile& plan, const fs::path& folder) {
         if (!is_new)
             throw InputError(fmt::format("{}: is in {} and in {}", trial.id, place->second.string(),
                                          folder.string()));
+        require_same_judge(survey, *row, folder);
         survey.code.emplace(row->text("code_version"), folder.string());
         survey.isa.emplace(row->text("isa"), folder.string());
         survey.cpu.emplace(row->text("cpu"), folder.string());
     }
+}
+
+/// A sweep's folder holds nothing but what the sweep leaves there.
+void require_outside(const fs::path& target, const fs::path& folder) {
+    const fs::path whole = fs::weakly_canonical(target), source = fs::weakly_canonical(folder);
+    if (std::mismatch(source.begin(), source.end(), whole.begin(), whole.end()).first ==
+        source.end())
+        throw InputError(fmt::format("{}: lies inside {} (name a folder outside)", target.string(),
+                                     folder.string()));
 }
 
 void require_whole(const Survey& survey, const PlanFile& plan, const fs::path& folder) {
@@ -147,8 +182,8 @@ void require_same_references(const std::vector<fs::path>& folders) {
             const auto [same, is_new] = first.emplace(file.path().filename().string(), file.path());
             if (!is_new && read_whole_file(same->second) != read_whole_file(file.path()))
                 throw InputError(fmt::format(
-                    "{} and {} are different pictures: errors against them do not compare (run the "
-                    "shards with the same references, by --references rebuild in one of them)",
+                    "{} and {} are different pictures: errors against them do not compare (put one "
+                    "of them into both folders and sweep each again, which takes errors anew)",
                     same->second.string(), file.path().string()));
         }
     }
@@ -231,6 +266,7 @@ std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
                                        const fs::path& target) {
     if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target)))
         throw InputError(fmt::format("{}: is there already (name a new folder)", target.string()));
+    for (const fs::path& folder : folders) require_outside(target, folder);
     const std::vector<PlanFile> plans = read_plans(folders);
     Survey survey;
     for (const fs::path& folder : folders) take_in(survey, plans[0], folder);

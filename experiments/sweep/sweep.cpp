@@ -20,6 +20,7 @@
 #include "experiments/report/strips.h"
 #include "experiments/report/sweep_summary.h"
 #include "experiments/run/cli_options.h"
+#include "experiments/sweep/stale_errors.h"
 #include "experiments/sweep/sweep_folder.h"
 #include "experiments/sweep/sweep_status.h"
 #include "experiments/sweep/sweep_warnings.h"
@@ -71,13 +72,14 @@ public:
             write_atomic_file(options_.folder / "environment.json", environment().dump(2) + "\n");
         try {
             render_references();
+            take_stale_errors_anew();
             if (!options_.only_references) run_trials();
         } catch (...) {
             save_table_of_the_stopped();
             throw;
         }
         progress_.reset();
-        if (options_.only_references) return broken_references_.empty() ? 0 : 1;
+        if (options_.only_references) return failed_references_ == 0 ? 0 : 1;
         SweepSummary summary(plan_.swept);
         print_notes(write_table(&summary));
         const fs::path figures = folder_.figures();
@@ -89,7 +91,7 @@ public:
             "records    {}{}\nfigures    {}\n{}", (options_.folder / "records.csv").string(),
             others_ == 0 ? "" : fmt::format(" (without {} trials of other sweeps)", others_),
             figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall)));
-        return status_.count("failed") + status_.count("timeout") == 0 ? 0 : 1;
+        return status_.count("failed") + status_.count("timeout") + left_ == 0 ? 0 : 1;
     }
 
 private:
@@ -109,13 +111,7 @@ private:
 
     /// References use every thread there is: their time is no measurement.
     void render_references() {
-        std::vector<const ReferenceRequest*> missing = status_.references(references_);
-        // With everything done, `--references rebuild` still remakes what the trials stand on.
-        if (options_.references == ReferencePolicy::rebuild && status_.todo.empty()) {
-            SweepStatus all = status_;
-            all.todo = all.share;
-            missing = all.references(references_);
-        }
+        const std::vector<const ReferenceRequest*> missing = status_.references(references_);
         missing_references_ = missing.size();
         for (const ReferenceRequest* request : missing) {
             try {
@@ -123,13 +119,49 @@ private:
                 references_.note_rendered(*request);
             } catch (const Interrupted&) {
                 throw;
+            } catch (const UnsupportedScene& error) {
+                tell_failure(*request, error.what());
+                unserved_references_[request->key] = error.what();
             } catch (const std::exception& error) {
-                broken_references_[request->key] = error.what();
-                progress_->note(
-                    fmt::format("failed: reference {}: {}", request->key, error.what()));
+                tell_failure(*request, error.what());
+                leave_trials_of(*request);
             }
             --missing_references_;
         }
+    }
+
+    void tell_failure(const ReferenceRequest& request, const std::string& why) {
+        ++failed_references_;
+        progress_->note(fmt::format("failed: reference {}: {}", request.key, why));
+    }
+
+    /// A full disk, or a process that was killed, is not the trials' fault: the same command runs them.
+    void leave_trials_of(const ReferenceRequest& request) {
+        const std::size_t left = std::erase_if(status_.todo, [&](const Trial* trial) {
+            return trial->reference && trial->reference->key == request.key;
+        });
+        left_ += left;
+        progress_->note(fmt::format("{} trials of this reference are left to do", left));
+    }
+
+    void take_stale_errors_anew() {
+        ReferenceCache references = references_;  // trials start without what this one reads
+        std::size_t anew = 0;
+        for (const Trial* trial : trials_with_stale_errors(plan_, status_, references)) {
+            throw_if_interrupted();
+            if (take_errors_anew(*trial, store_, *references.get(*trial->reference)))
+                ++anew;
+            else
+                progress_->note(fmt::format(
+                    "warning: {}: was judged by another picture of its reference, and its own is "
+                    "not there any more (--force runs it again)",
+                    trial->id));
+        }
+        if (anew > 0)
+            progress_->note(fmt::format(
+                "note: {} trials were judged by other pictures of their references: their errors "
+                "are taken anew",
+                anew));
     }
 
     void render_reference(const ReferenceRequest& request) {
@@ -167,36 +199,47 @@ private:
         TrialRunner runner(store_, references_, options_.trials);
         runner_ = &runner;
         next_ = 0;
-        bool stop = false;
+        bool stop = left_ > 0 && options_.fail_fast;
         while (!runner.running().empty() || (!stop && next_ < status_.todo.size())) {
+            end_if_interrupted(runner);
             while (!stop && next_ < status_.todo.size() && runner.has_room())
                 stop = !start(*status_.todo[next_++]) && options_.fail_fast;
             for (const TrialRunner::Finished& each : runner.wait())
                 if (!finish(*each.trial, each.record) && options_.fail_fast) stop = true;
             show();
-            if (interrupt_requested()) {
-                for (const TrialRunner::Running& each : runner.running())
-                    unfinished_[each.trial->id] = runner.unfinished_record(*each.trial);
-                throw Interrupted();
-            }
         }
+        end_if_interrupted(runner);
         runner_ = nullptr;
+    }
+
+    /// The trials at work are rows of the table that say so.
+    void end_if_interrupted(const TrialRunner& runner) {
+        if (!interrupt_requested()) return;
+        for (const TrialRunner::Running& each : runner.running())
+            unfinished_[each.trial->id] = runner.unfinished_record(*each.trial);
+        throw Interrupted();
     }
 
     /// False when the trial failed at once.
     bool start(const Trial& trial) {
-        const auto broken = trial.reference ? broken_references_.find(trial.reference->key)
-                                            : broken_references_.end();
-        if (broken == broken_references_.end()) {
+        const auto unserved = trial.reference ? unserved_references_.find(trial.reference->key)
+                                              : unserved_references_.end();
+        if (unserved == unserved_references_.end()) {
             runner_->start(trial);
             return true;
         }
-        return finish(trial, runner_->refuse(trial, "reference: " + broken->second));
+        return finish(trial, runner_->refuse(trial, "reference: " + unserved->second));
     }
 
     /// False when it failed.
     bool finish(const Trial& trial, const json& record) {
         const std::string status = status_of(record);
+        if (status == "left") {
+            ++left_;
+            progress_->end(fmt::format("{}: {}; it is left to do", trial.id, result_text(record)),
+                           true, remaining());
+            return false;
+        }
         status_.statuses[trial.id] = status;
         ++ran_;
         if (status == "done") status_.costs.add(trial, {record.at("elapsed_s").get<double>(), 0});
@@ -268,7 +311,10 @@ private:
     TrialRunner* runner_ = nullptr;
     std::size_t next_ = 0;  ///< of status_.todo
     std::map<std::string, json> unfinished_;
-    std::map<std::string, std::string> broken_references_;
+    std::map<std::string, std::string>
+        unserved_references_;  ///< and why their methods do not serve the scenes
+    std::size_t failed_references_ = 0;
+    std::size_t left_ = 0;  ///< trials that could not run, by no fault of theirs
     std::size_t ran_ = 0;
     std::size_t missing_references_ = 0;  ///< with the one at work
     std::size_t others_ = 0;              ///< trials in the folder that are not in the plan

@@ -24,6 +24,9 @@ void take_note(SweepStatus& all, const Trial& trial, const TableRow& row, const 
     const std::string& status = all.statuses[trial.id] = row.text("status");
     const std::optional<double> seconds = row.number("elapsed_s");
     if (status != "done" || !seconds) return;
+    if (const auto mean = row.number("reference_mean")) all.judged_by[trial.id] = *mean;
+    if (const auto threads = row.number("threads")) ++all.threads[static_cast<int>(*threads)];
+    ++all.isas[row.text("isa")];
     std::error_code none;
     const auto bytes = std::filesystem::file_size(store.image_of(trial.id), none);
     all.costs.add(trial, {*seconds, none ? 0 : static_cast<double>(bytes)});
@@ -41,7 +44,7 @@ std::size_t SweepStatus::count(const std::string& status) const {
 std::vector<const ReferenceRequest*> SweepStatus::references(const ReferenceCache& cache) const {
     std::vector<const ReferenceRequest*> missing;
     std::set<std::string> known;
-    for (const Trial* trial : todo)
+    for (const Trial* trial : todo.empty() && cache.makes_anew() ? share : todo)
         if (trial->reference && known.insert(trial->reference->key).second &&
             cache.must_render(*trial->reference))
             missing.push_back(&*trial->reference);
@@ -67,6 +70,26 @@ std::string SweepStatus::code_warning() const {
     return fmt::format(
         "results by other code than this program's, {}: {} (--force runs them again)",
         code_version(), fmt::join(parts, ", "));
+}
+
+std::string SweepStatus::times_warning(const SweepOptions& options) const {
+    if (todo.empty()) return {};
+    std::set<int> counts;
+    for (const auto& [count, records] : threads) counts.insert(count);
+    for (const Trial* trial : todo) counts.insert(options.trials.threads_of(*trial));
+    std::set<std::string> sets{std::string(name(options.trials.isa))};
+    for (const auto& [set, records] : isas) sets.insert(set);
+    std::string differences;
+    if (!threads.empty() && counts.size() > 1 && options.trials.threads > 0)
+        differences = fmt::format("{} threads", fmt::join(counts, " and "));
+    if (sets.size() > 1)
+        differences +=
+            fmt::format("{}{}", differences.empty() ? "" : ", ", fmt::join(sets, " and "));
+    if (differences.empty()) return {};
+    return fmt::format(
+        "trials of {} are in one table: their times do not compare, and merge refuses several "
+        "instruction sets (--threads, --isa; --force runs all again)",
+        differences);
 }
 
 SweepStatus sweep_status(const SweepPlan& plan, const SweepOptions& options,

@@ -14,21 +14,28 @@ namespace caustics::experiments {
 
 /// How far a sweep is, from its plan and what its folder holds.
 struct SweepStatus {
-    std::vector<const Trial*> share;                ///< the shard's trials, in the order to run
-    std::vector<const Trial*> todo;                 ///< those of them to run
-    std::map<std::string, std::string> statuses;    ///< by id, of the trials with a record
-    std::map<std::string, std::string> broken;      ///< ids of broken records, with what is wrong
+    std::vector<const Trial*> share;              ///< the shard's trials, in the order to run
+    std::vector<const Trial*> todo;               ///< those of them to run
+    std::map<std::string, std::string> statuses;  ///< by id, of the trials with a record
+    std::map<std::string, std::string> broken;    ///< ids of broken records, with what is wrong
+    /// Means of the references that trials were judged by, by id.
+    std::map<std::string, double> judged_by;
     std::map<std::string, std::size_t> other_code;  ///< records by another code version
+    std::map<int, std::size_t> threads;             ///< of records that are done, with their number
+    std::map<std::string, std::size_t> isas;        ///< of the same
     CostEstimate costs;                             ///< from the records
 
     /// Of the shard's trials.
     std::size_t count(const std::string& status) const;
-    /// The references of `todo` that have to be rendered, each once.
+    /// The references of `todo` that have to be rendered, each once. With everything done, a cache that makes all
+    /// anew still remakes what the trials stand on.
     std::vector<const ReferenceRequest*> references(const ReferenceCache& cache) const;
     /// Seconds and bytes of `todo`, one after the other; empty when not known.
     std::optional<Cost> cost() const;
     /// A line on results by other code; empty when there are none.
     std::string code_warning() const;
+    /// The same on threads and instruction sets, whose times do not compare.
+    std::string times_warning(const SweepOptions& options) const;
 };
 
 /// Looks at every trial once (TrialRows).

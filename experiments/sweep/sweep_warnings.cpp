@@ -76,6 +76,8 @@ std::vector<std::string> sweep_warnings(const SweepPlan& plan, const SweepOption
             earlier_sweep(plan, options)));
     const std::string code = status.code_warning();
     if (!code.empty() && !options.force) lines.push_back("warning: " + code);
+    const std::string times = status.times_warning(options);
+    if (!times.empty() && !options.force) lines.push_back("warning: " + times);
     if (plan.duplicates > 0)
         lines.push_back(fmt::format(
             "note: the sweep names {} trials more than once; each is run once", plan.duplicates));

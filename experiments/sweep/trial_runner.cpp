@@ -122,8 +122,12 @@ std::vector<TrialRunner::Finished> TrialRunner::wait() {
             ++slot;
             continue;
         }
-        finished.push_back({slot->trial, finish(*slot->trial, slot->child)});
-        store(*slot->trial, finished.back().record, slot->child.seconds());
+        json record = finish(*slot->trial, slot->child);
+        if (record.at("status") == "left")
+            store_.drop(slot->trial->id);
+        else
+            store(*slot->trial, record, slot->child.seconds());
+        finished.push_back({slot->trial, std::move(record)});
         slot = slots_.erase(slot);
     }
     return finished;

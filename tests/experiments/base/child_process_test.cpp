@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/interrupt.h"
 #include "experiments/base/file_io.h"
 #include "tests/support/temporary_folder.h"
 
@@ -46,6 +47,15 @@ TEST(ChildProcesses, ThrowHereWhatTheWorkThrewThere) {
     const ChildEnd end = end_of([](const Tell&) -> std::string { throw std::bad_alloc(); });
     EXPECT_EQ(end.how, How::threw);
     EXPECT_EQ(end.text, "out of memory");
+}
+
+TEST(ChildProcesses, DoNotHearWhatTheirParentWasAskedBefore) {
+    request_interrupt();
+    const ChildEnd end = end_of([](const Tell&) -> std::string {
+        return interrupt_requested() ? "asked to end" : "not asked";
+    });
+    forget_interrupt();
+    EXPECT_EQ(end.text, "not asked");
 }
 
 TEST(ChildProcesses, NeverReturnIntoTheWorkOfTheirParent) {

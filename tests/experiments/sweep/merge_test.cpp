@@ -123,6 +123,31 @@ TEST_F(Merges, RefuseReferencesThatDiffer) {
     EXPECT_EQ(read_whole_file(whole_ / "references/key.exr"), read_whole_file(first));
 }
 
+TEST_F(Merges, RefuseTrialsJudgedByDifferentPictures) {
+    const auto judge = [](const fs::path& folder, const std::string& id, double mean) {
+        const TrialStore store(folder);
+        nlohmann::json record = *store.record(id);
+        record["reference"] = {{"name", "lighttrace:key"}, {"key", "key"}, {"mean", mean}};
+        store.begin(id);
+        store.commit(id, record);
+    };
+    for (const char* id : {"a", "c"}) judge(one_, id, 0.125);
+    judge(two_, "b", 0.25);
+    EXPECT_NE(error().find("judged by different pictures of the reference lighttrace:key (means "
+                           "0.125 and 0.25)"),
+              std::string::npos)
+        << error();
+    judge(two_, "b", 0.125);
+    EXPECT_TRUE(merge().empty());
+}
+
+TEST_F(Merges, RefuseATargetInsideASource) {
+    for (const fs::path& target : {one_ / "trials" / "whole", one_ / "trials" / "a" / "whole"}) {
+        whole_ = target;
+        EXPECT_NE(error().find("lies inside " + one_.string()), std::string::npos) << error();
+    }
+}
+
 TEST_F(Merges, WarnOfMixedProcessors) {
     add(two_, "b", "1", "avx2", "slow");
     const std::vector<std::string> warnings = merge();

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/sweep/sweep_status.h"
+
+namespace caustics::experiments {
+
+/// The trials whose errors were taken against another picture than the one that stands for their reference now, by
+/// their references: `--references rebuild` and `extend` make others of the same name. Known by the mean of what the
+/// reference has of caustics, which records keep.
+std::vector<const Trial*> trials_with_stale_errors(const SweepPlan& plan, const SweepStatus& status,
+                                                   ReferenceCache& references);
+
+/// Takes the errors of a trial's kept picture anew. False where that picture is not there any more. Throws InputError
+/// when the store cannot be written.
+bool take_errors_anew(const Trial& trial, const TrialStore& store, const Reference& reference);
+
+}  // namespace caustics::experiments
