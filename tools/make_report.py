@@ -25,8 +25,8 @@ def arguments():
     parser.add_argument("directories", metavar="DIR", nargs="+", help="folder with records.csv, as a sweep leaves it")
     parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the page to write: report.html")
     parser.add_argument("--tables", metavar="FOLDER", help="writes every table there, as CSV and as LaTeX (booktabs)")
-    parser.add_argument("--columns", metavar="NAMES", default=",".join(tables.USUAL), type=lambda text: text.split(","),
-                        help=f"columns of the LaTeX tables, of {', '.join(tables.KNOWN)} (default: %(default)s)")
+    parser.add_argument("--columns", metavar="NAMES", type=lambda text: text.split(","),
+                        help=f"columns of the LaTeX tables, of {', '.join(tables.KNOWN)} (default: {','.join(tables.USUAL)})")
     parser.add_argument("--references", metavar="FOLDER", type=pathlib.Path, help="where references are kept as well")
     parser.add_argument("--megabytes", metavar="NUMBER", type=positive, default=30,
                         help="most that the pictures may take; what does not fit is left out and named (default: 30)")
@@ -49,8 +49,24 @@ def require_folder(path):
         raise RecordsError(f"{path}: no folder for tables ({above} is none)")
 
 
-def write_report(chosen):
+def columns_of(chosen):
+    """Of the LaTeX tables."""
+    if chosen.columns is None:
+        return tables.USUAL
     tables.check_columns(chosen.columns)
+    if not chosen.tables:
+        raise RecordsError("--columns: belongs to --tables, whose LaTeX tables have them")
+    return chosen.columns
+
+
+def require_references(folder):
+    if folder is not None and not folder.is_dir():
+        raise RecordsError(f"--references {folder}: {'is no' if folder.exists() else 'no such'} folder")
+
+
+def write_report(chosen):
+    columns = columns_of(chosen)
+    require_references(chosen.references)
     require_place(chosen.output)
     if not chosen.output.endswith(".html"):
         raise RecordsError(f"{chosen.output}: pages are written as .html")
@@ -69,7 +85,7 @@ def write_report(chosen):
     written = [chosen.output]
     if chosen.tables:
         os.makedirs(chosen.tables, exist_ok=True)
-        for name, table in tables.all_of(found, chosen.columns):
+        for name, table in tables.all_of(found, columns):
             write(os.path.join(chosen.tables, name), table)
         written.append(chosen.tables)
     for note in notes:

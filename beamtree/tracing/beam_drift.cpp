@@ -18,6 +18,13 @@ VertexRay beyond(const VertexRay& from, const VertexRay& middle) {
             (2 * middle.direction - from.direction).normalized()};
 }
 
+/// How far a curved surface may lie off the straight line that a ray's start moves along between the ends of the bin, where
+/// it starts at `point` at one of them: chord times turn over 4, as of polygons, both twice those to the middle.
+float bulge(const PathPoint& point, const VertexRay& middle, const Departure& from) {
+    if (!point.alive) return 0;
+    return (point.ray.position - middle.position).norm() * (point.from.normal - from.normal).norm();
+}
+
 /// Half of what the ray at the longest wavelength differs by from that at the shortest.
 struct Drift {
     Vec3 position = Vec3::Zero();
@@ -41,6 +48,7 @@ DriftAccount BeamDrift::add_to(Level& level, const std::vector<bool>& kept) cons
     BeamSet& set = level.traced.set;
     set.ends = {set.rays, set.rays};
     std::vector<Known> known(set.rays.size(), Known::not_asked);
+    std::vector<float> bulges(set.rays.size(), 0);
     DriftAccount account;
     for (std::uint32_t beam = 0; beam < set.beams.size(); ++beam) {
         if (!kept[beam]) continue;
@@ -52,6 +60,8 @@ DriftAccount BeamDrift::add_to(Level& level, const std::vector<bool>& kept) cons
             const PathPoint a = first.from(level.traced.origins[ray]);
             const PathPoint b = last.from(level.traced.origins[ray]);
             const VertexRay& middle = set.rays[ray];
+            bulges[ray] = std::max(bulge(a, middle, level.departures[ray]),
+                                   bulge(b, middle, level.departures[ray]));
             account.rays += 1;
             known[ray] = a.alive || b.alive ? Known::yes : Known::no;
             if (known[ray] == Known::no) continue;
@@ -62,6 +72,12 @@ DriftAccount BeamDrift::add_to(Level& level, const std::vector<bool>& kept) cons
             account.bend =
                 std::max(account.bend, static_cast<double>((mean - middle.direction).norm()));
         }
+    }
+    for (Beam& beam : set.beams) {
+        float largest = 0;  // its surface must not be in its own light's way
+        for (const std::uint32_t ray : beam.corners)
+            if (ray != Beam::none) largest = std::max(largest, bulges[ray]);
+        beam.offset += largest;
     }
     for (std::uint32_t beam = 0; beam < set.beams.size(); ++beam)
         if (kept[beam]) account.unknown += guess(set, set.beams[beam], known);

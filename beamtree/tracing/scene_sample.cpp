@@ -35,12 +35,19 @@ private:
     std::map<std::uint32_t, CasterMesh> made_;
 };
 
+// Exact shapes of one kind have equally many.
 std::uint64_t count_polygons(const Scene& scene, Casters& casters) {
+    std::map<Primitive, std::size_t> exact;
     std::uint64_t count = 0;
-    for (const std::uint32_t shape : scene.casters())
-        count += scene.shapes()[shape].primitive == Primitive::mesh
-                     ? scene.shapes()[shape].mesh.triangles.size()
-                     : casters.of(shape).mesh.triangles.size();
+    for (const std::uint32_t index : scene.casters()) {
+        const Shape& shape = scene.shapes()[index];
+        if (shape.primitive == Primitive::mesh)
+            count += shape.mesh.triangles.size();
+        else if (const auto known = exact.find(shape.primitive); known != exact.end())
+            count += known->second;
+        else
+            count += exact[shape.primitive] = casters.of(index).mesh.triangles.size();
+    }
     return count;
 }
 

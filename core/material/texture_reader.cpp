@@ -43,7 +43,12 @@ Texture read_texture(const JsonNode& parent, const std::string& key, double fall
                      Assets& assets) {
     const auto node = parent.find(key);
     if (!node) return Spectrum(Spectrum::Constant(static_cast<float>(fallback)));
-    if (!node->is_object()) return read_colour(*node, 1);
+    if (!node->is_object()) {
+        if (!node->is_number() && !(node->is_array() && node->as_array().size() == 3))
+            node->fail(
+                "must be a number, [r, g, b] or an object of the type rgb, bitmap or checkerboard");
+        return read_colour(*node, 1);
+    }
     const std::string type = read_type(*node, "texture", {"rgb", "bitmap", "checkerboard"},
                                        {"spectrum", "uniform", "mesh_attribute", "volume"});
     if (type == "bitmap") return read_bitmap(*node, assets);

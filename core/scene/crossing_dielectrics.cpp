@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <variant>
 
+#include "core/geometry/box_tree.h"
 #include "core/geometry/tessellate.h"
 
 namespace caustics {
@@ -22,23 +24,44 @@ bool is_dielectric(const Shape& shape) {
     return std::holds_alternative<Dielectric>(shape.bsdf.model);
 }
 
+std::vector<std::uint32_t> dielectrics_of(const Scene& scene) {
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < scene.shapes().size(); ++i)
+        if (is_dielectric(scene.shapes()[i])) all.push_back(i);
+    return all;
+}
+
+BoxTree boxes_of(const Scene& scene, const std::vector<std::uint32_t>& shapes) {
+    std::vector<Box> boxes;
+    for (const std::uint32_t shape : shapes) boxes.push_back(bounds(scene.shapes()[shape]));
+    return BoxTree(std::move(boxes));
+}
+
+// A shape's bounds with room for the roundings of its mesh.
+Box wide_bounds(const Shape& shape) {
+    constexpr float room = 1e-3F;  // of the diagonal
+    const Box box = bounds(shape);
+    const Vec3 aside = Vec3::Constant(room * box.diagonal().norm());
+    return {box.min() - aside, box.max() + aside};
+}
+
 class CrossingSearch {
 public:
-    explicit CrossingSearch(const Scene& scene) : scene_(scene) {
-        for (std::uint32_t i = 0; i < scene.shapes().size(); ++i)
-            if (is_dielectric(scene.shapes()[i])) boxes_.emplace_back(i, bounds(scene.shapes()[i]));
-    }
+    explicit CrossingSearch(const Scene& scene)
+        : scene_(scene),
+          dielectrics_(dielectrics_of(scene)),
+          boxes_(boxes_of(scene, dielectrics_)) {}
 
     std::vector<Crossing> run() {
-        if (boxes_.size() > 1)
-            for (const auto& [shape, box] : boxes_) walk_edges(shape);
-        std::ranges::sort(found_);
-        return std::move(found_);
+        for (const std::uint32_t shape : dielectrics_) {
+            shape_ = shape;
+            if (meets_another(wide_bounds(scene_.shapes()[shape]))) walk_edges(shape);
+        }
+        return {found_.begin(), found_.end()};
     }
 
 private:
     void walk_edges(std::uint32_t index) {
-        shape_ = index;
         const Shape& shape = scene_.shapes()[index];
         if (shape.primitive == Primitive::mesh)
             walk_edges(shape.mesh);
@@ -53,11 +76,8 @@ private:
                           mesh.positions[mesh.triangles[i][(k + 1) % 3]]);
     }
 
-    bool comes_near_another(const Vec3& a, const Vec3& b) const {
-        const Box edge(a.cwiseMin(b), a.cwiseMax(b));
-        return std::ranges::any_of(boxes_, [&](const auto& other) {
-            return other.first != shape_ && other.second.intersects(edge);
-        });
+    bool meets_another(const Box& box) const {
+        return boxes_.any_at(box, [&](std::uint32_t i) { return dielectrics_[i] != shape_; });
     }
 
     // Calls `visit` with the surfaces on the way, one after the other, until it returns false.
@@ -75,14 +95,12 @@ private:
 
     void walk_edge(const Vec3& a, const Vec3& b) {
         const float length = (b - a).norm();
-        if (!(length > 0) || !comes_near_another(a, b)) return;
+        if (!(length > 0) || !meets_another({a.cwiseMin(b), a.cwiseMax(b)})) return;
         const Vec3 direction = (b - a) / length;
         walk(a + margin * length * direction, direction, (1 - 2 * margin) * length,
              [&](const SurfacePoint& hit) {
-                 if (crosses(hit, direction, margin * length)) {
-                     const Crossing pair = std::minmax(shape_, hit.shape);
-                     if (std::ranges::find(found_, pair) == found_.end()) found_.push_back(pair);
-                 }
+                 if (crosses(hit, direction, margin * length))
+                     found_.insert(std::minmax(shape_, hit.shape));
                  return true;
              });
     }
@@ -111,9 +129,10 @@ private:
     }
 
     const Scene& scene_;
-    std::vector<std::pair<std::uint32_t, Box>> boxes_;  ///< of the dielectrics
-    std::uint32_t shape_ = 0;                           ///< whose edges are walked
-    std::vector<Crossing> found_;
+    std::vector<std::uint32_t> dielectrics_;
+    BoxTree boxes_;            ///< of the dielectrics
+    std::uint32_t shape_ = 0;  ///< whose edges are walked
+    std::set<Crossing> found_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -166,21 +167,26 @@ void require_size(const JsonNode& node, const Shape& shape) {
 
 // What is nested in a shape under keys of the user's choice: a bsdf and an emitter.
 void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
-    bool has_bsdf = false;
+    std::optional<std::string> bsdf_key;
+    std::optional<std::string> emitter_key;
+    const auto takes_one = [](const char* what, const std::string& first, const std::string& key) {
+        return fmt::format("a shape takes one {}, and has \"{}\" and \"{}\"", what, first, key);
+    };
     const auto children = node.children();
     node.finish();
     for (const auto& [key, child] : children) {
         const std::string type = child.at("type").as_string();
         if (is_bsdf_type(type)) {
-            if (has_bsdf) child.fail("a shape takes one bsdf");
-            has_bsdf = true;
+            if (bsdf_key) child.fail(takes_one("bsdf", *bsdf_key, key));
+            bsdf_key = key;
             shape.bsdf = read_bsdf(child, assets);
             continue;
         }
         std::vector<std::string> known = bsdf_types();
         known.insert(known.begin(), "area");
         read_type(child, "bsdf or emitter", known, {"homogeneous", "heterogeneous"});
-        if (shape.radiance) child.fail("a shape takes one emitter");
+        if (emitter_key) child.fail(takes_one("emitter", *emitter_key, key));
+        emitter_key = key;
         shape.radiance = AreaLight::read(child);
         child.finish();
         if (shape.primitive == Primitive::heightfield)

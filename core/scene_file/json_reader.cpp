@@ -244,7 +244,7 @@ void JsonNode::finish() const {
         if (!known && !keys.taken.contains(key))
             fail(fmt::format(
                 "unknown key {} (known: {}{})", shown(key), join(keys.known),
-                keys.takes_objects && !child.is_number() && !child.is_boolean()
+                keys.takes_objects
                     ? "; with a name of its own: an object with a type, not " + shown(child)
                     : ""));
     }

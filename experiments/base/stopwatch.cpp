@@ -45,6 +45,13 @@ Seconds Stopwatch::of(const std::string& phase) const {
     return found == phases_.end() ? Seconds{} : found->second;
 }
 
+Seconds Stopwatch::worked() const {
+    const std::scoped_lock lock(mutex_);
+    Seconds sum;
+    for (const auto& [name, seconds] : phases_) sum += seconds;
+    return sum;
+}
+
 Seconds Stopwatch::total() const { return now() - start_; }
 
 }  // namespace caustics::experiments

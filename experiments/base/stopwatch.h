@@ -28,7 +28,8 @@ public:
 
     /// Of a phase that ended; zero when it never began.
     Seconds of(const std::string& phase) const;
-    Seconds total() const;  ///< since construction
+    Seconds worked() const;  ///< of all phases that ended
+    Seconds total() const;   ///< since construction
     const std::map<std::string, Seconds>& phases() const { return phases_; }
 
 private:

@@ -84,6 +84,21 @@ void tell(const std::vector<std::string>& differences) {
                              fmt::join(first, ", "), more)});
 }
 
+/// What --layer takes for these pictures.
+std::vector<std::string> common_layers(const Film& picture, const Film& reference) {
+    const auto both_have = [&](const std::string& layer) {
+        return picture.has_layer(layer) && reference.has_layer(layer);
+    };
+    std::vector<std::string> all;
+    if (both_have("")) all.emplace_back("beauty");
+    for (const Plane& plane : picture.planes()) {
+        if (!plane.channel.ends_with(".R")) continue;
+        const std::string layer = plane.channel.substr(0, plane.channel.size() - 2);
+        if (both_have(layer)) all.push_back(layer);
+    }
+    return all;
+}
+
 /// The layer that is judged; empty: RGB.
 std::string judged_layer(const CompareOptions& options, const Film& picture,
                          const Film& reference) {
@@ -93,7 +108,9 @@ std::string judged_layer(const CompareOptions& options, const Film& picture,
     for (const auto& [film, file] :
          {std::pair{&picture, &options.picture}, std::pair{&reference, &options.reference}})
         if (!film->has_layer(options.layer))
-            throw InputError(fmt::format("{}: has no layer \"{}\"", *file, options.layer));
+            throw InputError(fmt::format("{}: has no layer \"{}\" (both pictures have: {})", *file,
+                                         options.layer,
+                                         fmt::join(common_layers(picture, reference), ", ")));
     return options.layer;
 }
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +12,8 @@
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/lights/light_text.h"
+#include "core/picture/exr_file.h"
+#include "core/picture/png_file.h"
 #include "core/scene/transport_hash.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
@@ -107,6 +111,19 @@ void require_png(const std::string& output, const char* what) {
     require_writable_place(output);
 }
 
+void require_no_picture(const std::filesystem::path& file) {
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(file, unknown)) return;
+    std::string start(8, '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(start.data(), static_cast<std::streamsize>(start.size()));
+    if (is_exr(start) || is_png(start))
+        throw InputError(
+            fmt::format("{}: is a picture; info tells of scenes (JSON) and of photon maps (compare "
+                        "judges pictures)",
+                        file.string()));
+}
+
 void info_on_scene(const InfoOptions& options) {
     if (!options.map_scene.empty())
         throw InputError(
@@ -181,6 +198,7 @@ Verb add_info(CLI::App& app) {
         "  causticbench info pool.photons --scene pool.json -o photons.png");
     return {verb, [options] {
                 end_soon_after_interrupts();
+                require_no_picture(options->scene.file);
                 if (photonmap::is_photon_map(options->scene.file))
                     info_on_map(*options);
                 else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/base/error.h"
@@ -96,7 +97,7 @@ Picture picture_of(const RenderOptions& options) {
     RunOptions run_options = options.run.options(request.samples_per_pixel);
     const RunProgress progress(run_options, pass_count(request.method));
     RunResult result = run(scene, request, run_options, stopwatch);
-    return {std::move(request), std::move(file), std::move(result), stopwatch.total()};
+    return {std::move(request), std::move(file), std::move(result), stopwatch.worked()};
 }
 
 /// What the time of --seconds goes into.
@@ -115,6 +116,29 @@ WorkParameter work_of(const RenderOptions& options) {
             throw InputError(
                 fmt::format("--seconds chooses {}: leave --param {} out", work.parameter, param));
     return work;
+}
+
+bool is_whole(const nlohmann::json& value) {
+    if (value.is_number_integer()) return true;
+    return value.is_number_float() && std::trunc(value.get<double>()) == value.get<double>();
+}
+
+/// Refuses a value of the scene that whole numbers do not stand for; one that is not there may be set.
+void require_whole_work(const RenderOptions& options) {
+    if (options.work.empty() || options.work[0] != '/') return;
+    const auto scene = nlohmann::json::parse(options.scene.load().canonical);
+    const nlohmann::json* value = nullptr;
+    try {
+        value = &scene.at(nlohmann::json::json_pointer(options.work));
+    } catch (const nlohmann::json::exception&) {
+        return;
+    }
+    if (is_whole(*value)) return;
+    const std::string held = value->is_object()  ? "an object"
+                             : value->is_array() ? "an array"
+                                                 : value->dump();
+    throw InputError(
+        fmt::format("--work {}: holds {}, which is no whole number", options.work, held));
 }
 
 /// Whether more work made no difference: neither in the picture nor in what was counted.
@@ -136,6 +160,7 @@ Picture told_of_misfit(Picture picture, double seconds) {
 /// The picture that takes the wanted time.
 Picture picture_in_time(const RenderOptions& options) {
     const WorkParameter work = work_of(options);
+    require_whole_work(options);
     TimeBudget budget(*options.seconds, work);
     std::optional<Picture> last;
     while (true) {

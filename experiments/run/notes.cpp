@@ -12,6 +12,7 @@
 #include "core/light_path/light_path.h"
 #include "core/material/optics.h"
 #include "core/mesh/vertex_normals.h"
+#include "core/reference/sample_mean.h"
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
 #include "core/scene/lights_on_casters.h"
@@ -257,6 +258,29 @@ bool comes_through_a_medium(const Scene& scene) {
     });
 }
 
+/// Whether photons are asked to carry what beams leave out, and there is none of it.
+bool has_no_rest(const BuildReport& report) {
+    return resolved(report, "flux_share_rest") == 0 && resolved(report, "flux_share_pruned") == 0 &&
+           resolved(report, "flux_share_over_budget") == 0;
+}
+
+template <class Estimator>
+void note_picture(const MethodOf<Estimator>& method, const char* layer, const RunOptions& options,
+                  std::vector<std::string>& all) {
+    const json given = describe(method);
+    if (method.configured->disc_radius() > 0)
+        all.push_back(fmt::format(
+            "radius={}{} makes no difference in a picture: {} gathers over discs in probe alone",
+            given.at("radius").dump(), layer, method.name));
+    const SampleCount samples = method.facts().samples;
+    if (!samples.of_a_pixel) return;
+    const int asked = given.at(samples.parameter).template get<int>();
+    const int traced = paths_per_point(asked, options) * options.samples_per_pixel;
+    if (traced != asked)
+        all.push_back(fmt::format("{} paths a pixel{} are shared by {} samples: {} are traced",
+                                  asked, layer, options.samples_per_pixel, traced));
+}
+
 }  // namespace
 
 std::vector<std::string> notes_on(const Scene& scene) {
@@ -315,6 +339,17 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     add("dispersion", !has_dispersive_caster(scene), "no caster is dispersive");
     add("receiver_resolution", !has_exact_receiver(scene),
         "every receiver is a mesh, which is taken as it is");
+    add("rest", has_no_rest(report),
+        "nothing is left out that rest_photons and rest_nearest could be of");
+    return all;
+}
+
+std::vector<std::string> notes_on_picture(const Method& method,
+                                          const std::optional<IndirectMethod>& indirect,
+                                          const RunOptions& options) {
+    std::vector<std::string> all;
+    note_picture(method, "", options, all);
+    if (indirect) note_picture(*indirect, " of the indirect layer", options, all);
     return all;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,5 +17,11 @@ std::vector<std::string> notes_on(const Scene& scene);
 /// surfaces and smooth normals between a surface's sides (from 1 % on), photons with channels that
 /// differ much, an old photon map's file, and parameters that were set and make no difference.
 std::vector<std::string> notes(const Scene& scene, const Method& method, const BuildReport& report);
+
+/// What is to be known of parameters where a picture is made, beside notes(): those that only points of `probe` take,
+/// and paths a pixel that its samples do not share evenly. `options` are those of the picture.
+std::vector<std::string> notes_on_picture(const Method& method,
+                                          const std::optional<IndirectMethod>& indirect,
+                                          const RunOptions& options);
 
 }  // namespace caustics::experiments

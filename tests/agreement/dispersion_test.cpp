@@ -286,16 +286,42 @@ double below_ball(double r, double n) {
     return light.irradiance(r);
 }
 
-TEST(Dispersion, ABallLensIsTheClosedFormOverItsWavelengths) {
+Scene ball_lens() {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)),
                    support::sphere("ball", {0, 0, ball_height}, ball_radius, glass_of(heavy))};
     desc.lights = {support::point_light({0, 0, lamp_height}, static_cast<float>(power))};
+    return Scene(std::move(desc));
+}
+
+// Where the start of a beam moves along a chord of the ball as the wavelength does, the ball itself is in the way.
+TEST(Dispersion, IntervalsOfWavelengthsLeaveABallLensItsLight) {
+    const Scene scene = ball_lens();
+    beamtree::BeamTreeParams params;
+    params.mesh_resolution = 96;
+    params.max_bounces = 2;
+    params.dispersion = beamtree::Dispersion::intervals;
+    for (const int wavelengths : {4, 16}) {
+        params.wavelengths = wavelengths;
+        const auto tree = build(scene, params, RunOptions{});
+        for (const double r : {0.1, 0.15, 0.2}) {
+            const SpectrumSum exact = over_wavelengths([&](double n) { return below_ball(r, n); });
+            const ReceiverPoint point = support::probe(
+                scene, 0, {r * std::cos(0.3), r * std::sin(0.3), 0}, Vec3d::UnitZ(), 0, 0);
+            const Spectrum found = support::irradiance(*tree, {point})[0].value;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(static_cast<double>(found[c]) / exact[c], 1, 0.02)
+                    << wavelengths << " " << r << " " << c;
+        }
+    }
+}
+
+TEST(Dispersion, ABallLensIsTheClosedFormOverItsWavelengths) {
     beamtree::BeamTreeParams beams;
     beams.mesh_resolution = 96;
     beams.max_bounces = 2;
     beams.intensity = beamtree::Intensity::refined;
-    expect_on_rings(Scene(std::move(desc)), 0, {0.1, 0.15, 0.2}, below_ball, beams, 5e-3);
+    expect_on_rings(ball_lens(), 0, {0.1, 0.15, 0.2}, below_ball, beams, 5e-3);
     // The fringes are there: blue light has gone through a stronger lens.
     const SpectrumSum edge = over_wavelengths([](double n) { return below_ball(0.1, n); });
     EXPECT_GT(edge.maxCoeff() / edge.minCoeff(), 1.05);

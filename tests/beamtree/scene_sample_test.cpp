@@ -34,6 +34,24 @@ TEST(SceneSample, DoesNotGrowWithTheScene) {
     EXPECT_LT(many.polygons_sampled, 2 * few.polygons_sampled);
 }
 
+TEST(SceneSample, CountsThePolygonsOfExactShapes) {
+    SceneDesc desc = glass_ball(8);
+    const auto place = [&](Primitive primitive, double x) {
+        Shape shape = support::sphere("shape", {x, 0, 2}, 0.1, support::glass(1.5F));
+        shape.primitive = primitive;
+        desc.shapes.push_back(shape);
+    };
+    place(Primitive::sphere, 1);
+    place(Primitive::sphere, 2);
+    place(Primitive::disk, 3);
+    std::uint64_t polygons = 0;
+    const BeamParams params;
+    for (const Shape& shape : desc.shapes)
+        if (std::holds_alternative<Dielectric>(shape.bsdf.model))
+            polygons += tessellate_shape(shape, params.mesh_resolution).triangles.size();
+    EXPECT_EQ(sample_scene(Scene(desc), "beams", params, {}).polygons, polygons);
+}
+
 TEST(SceneSample, OfNothingIsNothing) {
     SceneDesc dark = glass_ball(8);
     dark.lights.clear();

@@ -61,6 +61,22 @@ TEST_F(Compare, JudgesByAnotherProgramsPicture) {
     EXPECT_EQ(causticbench({"compare", picture, reference}).exit_code, 0);
 }
 
+TEST_F(Compare, NamesTheLayersThatBothPicturesHave) {
+    const std::string picture = render("a.exr");
+    Film few(16, 12);
+    few.set_rgb("", 0, Spectrum::Ones());
+    few.set_rgb("caustic", 0, Spectrum::Ones());
+    few.set_rgb("foo", 0, Spectrum::Ones());
+    const std::string other = folder_ / "few.exr";
+    write_exr(few, other);
+    const ProgramResult result = causticbench({"compare", picture, other, "--layer", "foo"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(
+        result.err.find("a.exr: has no layer \"foo\" (both pictures have: beauty, caustic)\n"),
+        std::string::npos)
+        << result.err;
+}
+
 TEST_F(Compare, NamesThePictureThatIsNotFinite) {
     const std::string good = render("a.exr");
     Film film = read_exr(good);

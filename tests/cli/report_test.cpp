@@ -87,6 +87,10 @@ TEST_F(Report, RefusesWhatItCannotUseBeforeThePageIsWritten) {
     is_refused("out -o a.html --tables tables", "tables: no folder for tables");
     EXPECT_EQ(read_whole_file(folder_ / "tables"), "precious");
     is_refused("out -o a.html --columns=-rmse", "unknown column -rmse");
+    is_refused("out -o a.html --tables t --columns rmse,work_s,rmse", "rmse is named twice");
+    is_refused("out -o a.html --columns rmse", "--columns: belongs to --tables");
+    is_refused("out -o a.html --references absent", "--references absent: no such folder");
+    is_refused("out -o a.html --references tables", "--references tables: is no folder");
     is_refused("-o a.html -- -out", "-out: no such folder");
 }
 

@@ -217,6 +217,18 @@ TEST(Render, RefusesATimeThatNothingCouldTake) {
     EXPECT_NE(error({"--method", "photonmap", "--work", "/ball/radius"})
                   .find("--work: belongs to --seconds"),
               std::string::npos);
+    const auto of_work = [&](const std::string& work) {
+        return error({"--method", "photonmap", "--seconds", "1", "--work", work});
+    };
+    EXPECT_NE(
+        of_work("/ball/radius").find("--work /ball/radius: holds 0.4, which is no whole number"),
+        std::string::npos);
+    EXPECT_NE(of_work("/ball").find("--work /ball: holds an object, which is no whole number"),
+              std::string::npos);
+    // One that is not there is set, and refused by the scene's reader where it has no such key.
+    EXPECT_NE(of_work("/bal/radius").find("/bal/radius: there is nothing of that name"),
+              std::string::npos);
+    EXPECT_NE(of_work("/ball/rings").find("unknown key \"rings\""), std::string::npos);
     EXPECT_NE(error({"--method", "photonmap", "--seconds", "0"}).find("--seconds \"0\""),
               std::string::npos);
     EXPECT_FALSE(fs::exists(folder / "a.exr"));

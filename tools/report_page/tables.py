@@ -21,6 +21,9 @@ def check_columns(names):
     unknown = [name for name in names if name not in KNOWN]
     if unknown:
         raise RecordsError(f"--columns: unknown column {unknown[0]} (known: {', '.join(KNOWN)})")
+    twice = [name for at, name in enumerate(names) if name in names[:at]]
+    if twice:
+        raise RecordsError(f"--columns: {twice[0]} is named twice")
 
 
 def all_of(scenes, columns):

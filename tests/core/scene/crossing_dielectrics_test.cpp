@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/geometry/tessellate.h"
+#include "core/math/rng.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics {
@@ -64,6 +68,65 @@ TEST(CrossingDielectrics, WaterMayTouchItsGlass) {
                         wall("inside", 0.9, 1, support::glass(1, 1.5F)),
                         wall("water", 0.9, 0.6, support::glass(1.33F, 1.5F)), top}),
               Pairs{});
+}
+
+struct Sphere {
+    Vec3d centre;
+    double radius = 0;
+
+    // By how much two cross or keep apart, of the smaller radius: above 0 they cross.
+    double overlap(const Sphere& other) const {
+        const double distance = (centre - other.centre).norm();
+        const double smaller = std::min(radius, other.radius);
+        return std::min(radius + other.radius - distance,
+                        distance - std::abs(radius - other.radius)) /
+               smaller;
+    }
+};
+
+// Balls thrown about, no two of which cross so little that a mesh of 16 might not show it.
+std::vector<Sphere> random_spheres(std::uint64_t path, std::size_t count) {
+    constexpr double clear = 0.4;
+    Rng rng(3, Stage::test, path);
+    std::vector<Sphere> spheres;
+    while (spheres.size() < count) {
+        const Vec3 centre(rng.next(), rng.next(), rng.next());
+        const Sphere sphere{centre.cast<double>(), 0.05 + 0.1 * rng.next_fine()};
+        const bool is_clear = std::ranges::all_of(spheres, [&](const Sphere& other) {
+            const double overlap = sphere.overlap(other);
+            return overlap < -0.01 || overlap > clear;
+        });
+        if (is_clear) spheres.push_back(sphere);
+    }
+    return spheres;
+}
+
+TEST(CrossingDielectrics, AreThoseOfAllPairsInTheirOrder) {
+    for (const std::uint64_t path : {0U, 1U, 2U}) {
+        const std::vector<Sphere> spheres = random_spheres(path, 60);
+        std::vector<Shape> shapes;
+        Pairs expected;
+        for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+            shapes.push_back(ball(spheres[i].centre, spheres[i].radius));
+            for (std::uint32_t k = i + 1; k < spheres.size(); ++k)
+                if (spheres[i].overlap(spheres[k]) > 0) expected.emplace_back(i, k);
+        }
+        EXPECT_GT(expected.size(), 20U);
+        EXPECT_EQ(crossing(std::move(shapes)), expected) << path;
+    }
+}
+
+// Each edge with each ball would be a quarter of an hour.
+TEST(CrossingDielectrics, OfThousandsAreFoundInNoTime) {
+    constexpr int side = 128;
+    std::vector<Shape> shapes;
+    for (int i = 0; i < side * side; ++i)
+        shapes.push_back(ball(Vec3d(i % side, i / side, 0), i == side + 1 ? 0.6 : 0.45));
+    const auto middle = static_cast<std::uint32_t>(side + 1);
+    EXPECT_EQ(crossing(std::move(shapes)), (Pairs{{middle - side, middle},
+                                                  {middle - 1, middle},
+                                                  {middle, middle + 1},
+                                                  {middle, middle + side}}));
 }
 
 }  // namespace

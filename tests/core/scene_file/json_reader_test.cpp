@@ -100,8 +100,10 @@ TEST(JsonNode, ChildrenTakesObjectsAndLeavesTheRestUnknown) {
     ASSERT_EQ(children.size(), 2U);
     EXPECT_EQ(children[0].first, "a");
     EXPECT_EQ(children[1].first, "b");
-    EXPECT_EQ(error_of([&] { return root.finish(), 0; }),
-              "t.json: /: unknown key \"typo\" (known: type)");
+    EXPECT_EQ(
+        error_of([&] { return root.finish(), 0; }),
+        "t.json: /: unknown key \"typo\" (known: type; with a name of its own: an object with "
+        "a type, not 3)");
     EXPECT_EQ(root.others().size(), 1U);
     EXPECT_NO_THROW(root.finish());
 }

@@ -250,5 +250,56 @@ TEST(Notes, NameParametersThatMakeNoDifference) {
     EXPECT_TRUE(notes_of(all_used, "photonmap", {"photons=1"}).empty());
 }
 
+TEST(Notes, SayWherePhotonsHaveNothingToCarry) {
+    const std::vector<std::string> words = {"rest=photons makes no difference", "nothing is left"};
+    const std::vector<std::string> given = {"mesh_resolution=2", "rest=photons",
+                                            "rest_photons=1000"};
+    std::vector<std::string> pruned = given;
+    pruned.insert(pruned.end(), {"max_bounces=4", "prune=0.1"});
+    EXPECT_TRUE(any_holds(notes_of(ring(), "beamtree", {"rest=photons", "max_bounces=1"}), words));
+    EXPECT_FALSE(any_holds(notes_of(panes(), "beamtree", pruned), words));
+    EXPECT_FALSE(any_holds(notes_of(ring(), "beamtree", {"max_bounces=1"}), words));
+}
+
+std::vector<std::string> notes_of_picture(const std::string& method, const std::string& indirect,
+                                          const std::string& parameter, int samples) {
+    RunOptions options;
+    options.samples_per_pixel = samples;
+    const bool is_indirect = !indirect.empty();
+    const JsonNode given = parameters_node({parameter});
+    const JsonNode none = parameters_node({});
+    return notes_on_picture(parse_method(method, is_indirect ? none : given),
+                            is_indirect ? parse_indirect(indirect, given) : std::nullopt, options);
+}
+
+TEST(NotesOnPicture, TellThatOnlyProbeGathersOverDiscs) {
+    for (const auto& [indirect, layer] :
+         {std::pair("", ""), std::pair("lighttrace", " of the indirect layer")}) {
+        const auto all = notes_of_picture("lighttrace", indirect, "radius=0.25", 1);
+        ASSERT_EQ(all.size(), 1U);
+        EXPECT_EQ(all[0], std::string("radius=0.25") + layer +
+                              " makes no difference in a picture: lighttrace gathers over discs in "
+                              "probe alone");
+        EXPECT_TRUE(notes_of_picture("lighttrace", indirect, "paths=9", 4).empty());
+    }
+    // Of points it is no news.
+    EXPECT_TRUE(notes_of(ring(), "lighttrace", {"radius=0.25", "paths=9"}).empty());
+}
+
+TEST(NotesOnPicture, TellHowManyPathsSamplesShare) {
+    for (const auto& [method, indirect] :
+         {std::pair("pathtrace", ""), std::pair("none", "pathtrace")}) {
+        const auto all = notes_of_picture(method, indirect, "spp=13", 4);
+        ASSERT_EQ(all.size(), 1U);
+        EXPECT_EQ(all[0], std::string("13 paths a pixel") +
+                              (*indirect != 0 ? " of the indirect layer" : "") +
+                              " are shared by 4 samples: 16 are traced");
+        EXPECT_EQ(notes_of_picture(method, indirect, "spp=2", 4).size(), 1U);
+        for (const char* even : {"spp=16", "spp=4"})
+            EXPECT_TRUE(notes_of_picture(method, indirect, even, 4).empty()) << even;
+        EXPECT_TRUE(notes_of_picture(method, indirect, "spp=13", 1).empty());
+    }
+}
+
 }  // namespace
 }  // namespace caustics::experiments
