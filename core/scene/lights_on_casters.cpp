@@ -18,7 +18,8 @@ constexpr int side = 4;
 
 class Probe {
 public:
-    explicit Probe(const Scene& scene) : scene_(scene) {}
+    /// Does not find the shape `own`, whose light it is: that shines from its front.
+    Probe(const Scene& scene, std::uint32_t own) : scene_(scene), own_(own) {}
 
     // Any surface through the place crosses one of three lines through it at 35 degrees or more.
     std::optional<LightOnCaster> at(const Vec3& place) const {
@@ -37,7 +38,8 @@ private:
             const std::optional<SurfacePoint> hit = scene_.intersect(ray);
             if (!hit) return {};
             const float height = std::abs(hit->geometric_normal.dot(hit->position - place));
-            if (height <= rounding && std::ranges::count(scene_.casters(), hit->shape) > 0)
+            if (height <= rounding && hit->shape != own_ &&
+                std::ranges::count(scene_.casters(), hit->shape) > 0)
                 return LightOnCaster{place, hit->shape};
             gone += hit->distance + rounding;
         }
@@ -45,7 +47,15 @@ private:
     }
 
     const Scene& scene_;
+    std::uint32_t own_;
 };
+
+constexpr std::uint32_t no_shape = ~0U;
+
+std::uint32_t shape_of(const Light& light) {
+    const auto* const area = std::get_if<AreaLight>(&light);
+    return area == nullptr ? no_shape : area->shape;
+}
 
 std::vector<Vec3> places_of(const Scene& scene, const Light& light) {
     if (const auto point = point_of(light); point && point->position) return {*point->position};
@@ -64,13 +74,14 @@ std::vector<Vec3> places_of(const Scene& scene, const Light& light) {
 
 std::vector<LightOnCaster> lights_on_casters(const Scene& scene) {
     std::vector<LightOnCaster> all;
-    const Probe probe(scene);
-    for (const Light& light : scene.lights())
+    for (const Light& light : scene.lights()) {
+        const Probe probe(scene, shape_of(light));
         for (const Vec3& place : places_of(scene, light))
             if (const auto found = probe.at(place)) {
                 all.push_back(*found);
                 break;
             }
+    }
     return all;
 }
 

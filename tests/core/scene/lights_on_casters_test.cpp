@@ -62,5 +62,12 @@ TEST(LightsOnCasters, MayBeAreaLightsThatLieOnOne) {
     }
 }
 
+TEST(LightsOnCasters, AreNotLampsThatMirrorThemselves) {
+    SceneDesc desc;
+    desc.shapes = {floor(), mirror()};
+    desc.shapes.back().radiance = Spectrum::Constant(2);
+    EXPECT_TRUE(lights_on_casters(Scene(std::move(desc))).empty());
+}
+
 }  // namespace
 }  // namespace caustics
