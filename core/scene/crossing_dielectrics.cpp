@@ -54,6 +54,7 @@ public:
 
     std::vector<Crossing> run() {
         for (const std::uint32_t shape : dielectrics_) {
+            if (found_.size() >= most_crossing_pairs) break;
             shape_ = shape;
             if (meets_another(wide_bounds(scene_.shapes()[shape]))) walk_edges(shape);
         }
@@ -95,7 +96,9 @@ private:
 
     void walk_edge(const Vec3& a, const Vec3& b) {
         const float length = (b - a).norm();
-        if (!(length > 0) || !meets_another({a.cwiseMin(b), a.cwiseMax(b)})) return;
+        if (!(length > 0) || found_.size() >= most_crossing_pairs ||
+            !meets_another({a.cwiseMin(b), a.cwiseMax(b)}))
+            return;
         const Vec3 direction = (b - a) / length;
         walk(a + margin * length * direction, direction, (1 - 2 * margin) * length,
              [&](const SurfacePoint& hit) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "core/scene/scene.h"
 
 namespace caustics {
+
+/// So many pairs, or a few more, are enough to be told: thousands of shapes may all cross each other.
+constexpr std::size_t most_crossing_pairs = 100;
 
 /// Pairs of dielectric shapes (indices into Scene::shapes, the lower first) whose surfaces cross: of a
 /// place inside both the medium is not defined, so the light there means nothing. Shapes

@@ -114,7 +114,9 @@ std::optional<std::string> what_crosses(const Scene& scene) {
         scene.shapes()[pairs[0].first].name, scene.shapes()[pairs[0].second].name,
         pairs.size() == 1   ? ""
         : pairs.size() == 2 ? " (and 1 pair more)"
-                            : fmt::format(" (and {} pairs more)", pairs.size() - 1));
+        : pairs.size() < most_crossing_pairs
+            ? fmt::format(" (and {} pairs more)", pairs.size() - 1)
+            : fmt::format(" (and {} pairs more, at least)", pairs.size() - 1));
 }
 
 std::string where_it_lies(const Scene& scene, const LightOnCaster& light) {

@@ -129,5 +129,14 @@ TEST(CrossingDielectrics, OfThousandsAreFoundInNoTime) {
                                                   {middle, middle + side}}));
 }
 
+TEST(CrossingDielectrics, OfWhichThousandsCrossEachOtherAreToldInPart) {
+    std::vector<Shape> shapes;
+    for (int i = 0; i < 2000; ++i)
+        shapes.push_back(ball(0.05 * Vec3d(i % 13, i / 13 % 13, i / 169), 0.4));
+    const Pairs pairs = crossing(std::move(shapes));
+    EXPECT_GE(pairs.size(), most_crossing_pairs);
+    EXPECT_LT(pairs.size(), most_crossing_pairs + 2000);
+}
+
 }  // namespace
 }  // namespace caustics
