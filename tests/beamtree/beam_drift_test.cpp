@@ -51,6 +51,7 @@ Level first_level(const LitCaster& surface) {
     for (const Vec3& place : places) {
         const MeshPoint point = surface.bender().at(place, Vec3::UnitZ());
         level.traced.set.rays.push_back({place, point.bent.direction[refraction]});
+        level.departures.push_back({Vec3::UnitZ()});
         level.traced.origins.push_back({place, Vec3::UnitZ()});
         level.traced.origins.back().offset = surface.offset(0);
     }
@@ -77,6 +78,7 @@ TEST(BeamDrift, OfCornersInTheShadeIsThatOfTheOthers) {
             BeamDrift(scene, casters[0], light).add_to(level, std::vector<bool>(1, true));
         EXPECT_EQ(account.rays, 3);
         EXPECT_EQ(account.unknown, static_cast<double>(lids));
+        EXPECT_EQ(level.traced.set.beams[0].offset, 0) << "what is flat is in no ray's way";
         EXPECT_GT(account.bend, 0);
         EXPECT_LT(account.bend, 1e-3);
         for (const std::size_t end : {0U, 1U}) {
