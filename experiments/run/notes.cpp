@@ -72,6 +72,11 @@ bool has_dispersive_caster(const Scene& scene) {
     });
 }
 
+bool has_parameter(const Method& method, const std::string& key) {
+    return std::ranges::any_of(method.description->parameters(),
+                               [&](const KeyText& text) { return text.key == key; });
+}
+
 /// Beams of parts of the wavelengths draw a rainbow as so many pictures beside each other.
 std::optional<std::string> steps_of_colour(const Scene& scene, const Method& method) {
     const std::vector<KeyText> texts = method.description->parameters();
@@ -84,9 +89,7 @@ std::optional<std::string> steps_of_colour(const Scene& scene, const Method& met
         "parts are steps, and points beside them are off by tens of per cent (a larger wavelengths "
         "makes them smaller{})",
         given.contains("wavelengths") ? given.at("wavelengths").dump() : parts->usual,
-        std::ranges::find(texts, "dispersion", &KeyText::key) == texts.end()
-            ? ""
-            : "; dispersion=intervals has none");
+        has_parameter(method, "dispersion") ? "; dispersion=intervals has none" : "");
 }
 
 /// Flat polygons stand for a curved receiver.
@@ -243,9 +246,10 @@ std::string lost_light(const Method& method, const BuildReport& report, double l
             : "";
     return fmt::format(
         "{} loses {:.1f} % of the light between specular surfaces, {:.1f} % in paths too weak to "
-        "be followed{} and the rest where polygons are too coarse for what they meet (photonmap "
+        "be followed{} and the rest where polygons are too coarse for what they meet ({}photonmap "
         "follows it; max_bounces=1 asks for the paths with one event alone)",
-        method.name, 100 * lost, 100 * pruned, beyond);
+        method.name, 100 * lost, 100 * pruned, beyond,
+        has_parameter(method, "rest") ? "rest=photons completes the first two; " : "");
 }
 
 // Whether light comes from infinitely far away through a medium that absorbs.

@@ -221,6 +221,7 @@ TEST(Notes, NameTheLightThatBeamsLose) {
         for (const std::string part :
              {method.c_str(), " % of the light", "photonmap", "max_bounces=1"})
             EXPECT_NE(all[0].find(part), std::string::npos) << all[0];
+        EXPECT_EQ(all[0].find("rest=photons") != std::string::npos, method == "beamtree");
         // One event alone loses nothing, and smooth casters little.
         EXPECT_TRUE(notes_of(panes(), method, {"mesh_resolution=2", "max_bounces=1"}).empty());
         EXPECT_TRUE(notes_of(ring(), method, {}).empty());
