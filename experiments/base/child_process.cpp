@@ -36,6 +36,9 @@ constexpr char bad_input_letter = 'i';
 constexpr char unsupported_letter = 'u';
 constexpr char threw_letter = 'e';
 
+/// Those that ask a process to end.
+constexpr int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
+
 [[noreturn]] void fail(const char* what) {
     throw std::system_error(errno, std::generic_category(), what);
 }
@@ -138,7 +141,7 @@ public:
     InterruptsHeld() {
         sigset_t held;
         sigemptyset(&held);
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, signal);
+        for (const int signal : end_signals) sigaddset(&held, signal);
         pthread_sigmask(SIG_BLOCK, &held, &before_);
     }
     ~InterruptsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
@@ -154,7 +157,7 @@ private:
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
     // The parent ends its children; what it was asked before is not for them.
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
+    for (const int signal : end_signals) std::signal(signal, SIG_IGN);
     forget_interrupt();
     try {
         write_all(pipe, last_message(work, limits, log, pipe));

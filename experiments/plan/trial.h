@@ -28,9 +28,10 @@ nlohmann::json trial_record(const Trial& trial, const std::string& status,
 void record_errors(nlohmann::json& record, const Film& film, const Reference& reference);
 
 /// Runs one trial and measures it: times per stage (wall and CPU), memory, how busy the machine was,
-/// counters, errors against its reference. Never throws: a failure becomes a record of status failed, a scene the
-/// method cannot serve one of status unsupported, and what is not the trial's own fault (a reference that cannot be
-/// read, a scene that changed) one of status left, which is not to be kept. `threads`, instruction set and progress come from the options.
+/// counters, errors against its reference. Never throws: a failure becomes a record of status failed,
+/// a scene the method cannot serve one of status unsupported, and what is not the trial's own fault (a
+/// reference that cannot be read, a scene that changed) one of status left, which is not to be kept.
+/// `threads`, instruction set and progress come from the options.
 TrialOutcome run_trial(const Trial& trial, ReferenceCache& references, const RunOptions& options,
                        const TrialLog& log);
 

@@ -117,9 +117,8 @@ std::optional<std::string> what_crosses(const Scene& scene) {
         scene.shapes()[pairs[0].first].name, scene.shapes()[pairs[0].second].name,
         pairs.size() == 1   ? ""
         : pairs.size() == 2 ? " (and 1 pair more)"
-        : pairs.size() < most_crossing_pairs
-            ? fmt::format(" (and {} pairs more)", pairs.size() - 1)
-            : fmt::format(" (and {} pairs more, at least)", pairs.size() - 1));
+                            : fmt::format(" (and {} pairs more{})", pairs.size() - 1,
+                                          pairs.size() < most_crossing_pairs ? "" : ", at least"));
 }
 
 std::string where_it_lies(const Scene& scene, const LightOnCaster& light) {
@@ -333,6 +332,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));
 
     const SetParameters parameters(method);
+    const bool disperses = has_dispersive_caster(scene);
     const auto add = [&](const char* name, bool useless, const char* why) {
         if (const auto given = parameters.find(name); given && useless)
             all.push_back(fmt::format("{} makes no difference in this scene: {}", *given, why));
@@ -341,8 +341,8 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     add("light_samples", !has_area_light(scene), "it has no area light");
     add("mesh_resolution", resolved(report, "casters_tessellated") == 0,
         "every caster is a mesh, which is taken as it is");
-    add("wavelengths", !has_dispersive_caster(scene), "no caster is dispersive");
-    add("dispersion", !has_dispersive_caster(scene), "no caster is dispersive");
+    add("wavelengths", !disperses, "no caster is dispersive");
+    add("dispersion", !disperses, "no caster is dispersive");
     add("receiver_resolution", !has_exact_receiver(scene),
         "every receiver is a mesh, which is taken as it is");
     add("rest", has_no_rest(report),

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -23,6 +22,7 @@
 #include "experiments/plan/trial_store.h"
 #include "experiments/report/record_table.h"
 #include "experiments/report/trial_rows.h"
+#include "experiments/sweep/stale_errors.h"
 
 namespace caustics::experiments {
 
@@ -90,8 +90,7 @@ void require_same_judge(Survey& survey, const TableRow& row, const fs::path& fol
     if (!mean) return;
     const std::string reference = row.text("reference");
     const auto [same, is_new] = survey.judged.emplace(reference, Judged{*mean, folder});
-    constexpr double rounding = 1e-9;
-    if (!is_new && std::abs(same->second.mean - *mean) > rounding * std::abs(*mean))
+    if (!is_new && !are_of_one_picture(same->second.mean, *mean))
         throw InputError(fmt::format(
             "trials in {} and {} were judged by different pictures of the reference {} (means {} "
             "and {}): put one of the pictures into the references/ of both folders and sweep each "

@@ -14,9 +14,6 @@ namespace caustics::experiments {
 
 namespace {
 
-/// Of the means of one picture.
-constexpr double rounding = 1e-9;
-
 /// The mean of a reference's caustics; nothing where there is no such picture now.
 std::optional<double> mean_of(const ReferenceRequest& request, ReferenceCache& references) {
     if (references.must_render(request)) return {};
@@ -29,6 +26,11 @@ std::optional<double> mean_of(const ReferenceRequest& request, ReferenceCache& r
 
 }  // namespace
 
+bool are_of_one_picture(double mean, double other) {
+    constexpr double rounding = 1e-9;
+    return std::abs(mean - other) <= rounding * std::abs(other);
+}
+
 std::vector<const Trial*> trials_with_stale_errors(const SweepPlan& plan, const SweepStatus& status,
                                                    ReferenceCache& references) {
     std::map<std::string, std::vector<const Trial*>> judged;
@@ -40,8 +42,7 @@ std::vector<const Trial*> trials_with_stale_errors(const SweepPlan& plan, const 
         const std::optional<double> now = mean_of(*trials[0]->reference, references);
         if (!now) continue;
         for (const Trial* trial : trials)
-            if (std::abs(status.judged_by.at(trial->id) - *now) > rounding * std::abs(*now))
-                stale.push_back(trial);
+            if (!are_of_one_picture(status.judged_by.at(trial->id), *now)) stale.push_back(trial);
     }
     return stale;
 }
@@ -55,11 +56,7 @@ bool take_errors_anew(const Trial& trial, const TrialStore& store, const Referen
     for (const char* name : {"image.exr", "log.txt"}) {
         const std::filesystem::path file = store.folder_of(trial.id) / name;
         if (!std::filesystem::exists(file)) continue;
-        std::error_code error;
-        std::filesystem::copy_file(file, folder / name, error);
-        if (error)
-            throw InputError((folder / name).string() + ": cannot be written (" + error.message() +
-                             ")");
+        write_atomic_file(folder / name, read_whole_file(file));
     }
     store.commit(trial.id, *record);
     return true;

@@ -6,6 +6,9 @@
 
 namespace caustics::experiments {
 
+/// Whether two means of a reference's caustics, as records keep them, may be those of one picture.
+bool are_of_one_picture(double mean, double other);
+
 /// The trials whose errors were taken against another picture than the one that stands for their reference now, by
 /// their references: `--references rebuild` and `extend` make others of the same name. Known by the mean of what the
 /// reference has of caustics, which records keep.

@@ -311,8 +311,8 @@ private:
     TrialRunner* runner_ = nullptr;
     std::size_t next_ = 0;  ///< of status_.todo
     std::map<std::string, json> unfinished_;
-    std::map<std::string, std::string>
-        unserved_references_;  ///< and why their methods do not serve the scenes
+    /// By key, why the reference's method does not serve the scene.
+    std::map<std::string, std::string> unserved_references_;
     std::size_t failed_references_ = 0;
     std::size_t left_ = 0;  ///< trials that could not run, by no fault of theirs
     std::size_t ran_ = 0;

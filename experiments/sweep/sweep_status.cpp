@@ -25,8 +25,8 @@ void take_note(SweepStatus& all, const Trial& trial, const TableRow& row, const 
     const std::optional<double> seconds = row.number("elapsed_s");
     if (status != "done" || !seconds) return;
     if (const auto mean = row.number("reference_mean")) all.judged_by[trial.id] = *mean;
-    if (const auto threads = row.number("threads")) ++all.threads[static_cast<int>(*threads)];
-    ++all.isas[row.text("isa")];
+    if (const auto threads = row.number("threads")) all.threads.insert(static_cast<int>(*threads));
+    all.isas.insert(row.text("isa"));
     std::error_code none;
     const auto bytes = std::filesystem::file_size(store.image_of(trial.id), none);
     all.costs.add(trial, {*seconds, none ? 0 : static_cast<double>(bytes)});
@@ -74,11 +74,10 @@ std::string SweepStatus::code_warning() const {
 
 std::string SweepStatus::times_warning(const SweepOptions& options) const {
     if (todo.empty()) return {};
-    std::set<int> counts;
-    for (const auto& [count, records] : threads) counts.insert(count);
+    std::set<int> counts = threads;
     for (const Trial* trial : todo) counts.insert(options.trials.threads_of(*trial));
-    std::set<std::string> sets{std::string(name(options.trials.isa))};
-    for (const auto& [set, records] : isas) sets.insert(set);
+    std::set<std::string> sets = isas;
+    sets.insert(std::string(name(options.trials.isa)));
     std::string differences;
     if (!threads.empty() && counts.size() > 1 && options.trials.threads > 0)
         differences = fmt::format("{} threads", fmt::join(counts, " and "));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,8 @@ struct SweepStatus {
     /// Means of the references that trials were judged by, by id.
     std::map<std::string, double> judged_by;
     std::map<std::string, std::size_t> other_code;  ///< records by another code version
-    std::map<int, std::size_t> threads;             ///< of records that are done, with their number
-    std::map<std::string, std::size_t> isas;        ///< of the same
+    std::set<int> threads;                          ///< of the records that are done
+    std::set<std::string> isas;                     ///< of the same
     CostEstimate costs;                             ///< from the records
 
     /// Of the shard's trials.

@@ -43,9 +43,9 @@ public:
         const Trial* trial;
         nlohmann::json record;
     };
-    /// Waits for up to a fifth of a second; stores the trials that have ended, but those of status left. A trial that crashed,
-    /// hung or ate memory is one of status failed or timeout. Throws InputError when the store
-    /// cannot be written.
+    /// Waits for up to a fifth of a second; stores the trials that have ended, but those of status left.
+    /// A trial that crashed, hung or ate memory is one of status failed or timeout. Throws InputError
+    /// when the store cannot be written.
     std::vector<Finished> wait();
 
     struct Running {
