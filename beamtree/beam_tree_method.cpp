@@ -31,7 +31,7 @@ std::vector<Parameter<P>> tree_parameters() {
         parameter::number<P>(
             &P::spread_threshold, 0, 90,
             {.key = "spread_threshold",
-             .meaning = "With the bound hybrid: spread up to which a node's cone is double.",
+             .meaning = "With the bound hybrid: spread from which on a node's cone is double.",
              .unit = "degrees",
              .source = "[CC95 sec. 3.1]"})
             .only_if([](const P& p) { return p.bound == Bound::hybrid; }),
@@ -46,11 +46,12 @@ std::vector<Parameter<P>> tree_parameters() {
              .meaning =
                  "The caster's own subdivision (usual with cones), or a tree of any polygons.",
              .source = "[CC95 sec. 3.1]"}),
-        parameter::choice<P>(&P::leaf, {{"receiver", P::Leaf::n, "n"}, {"fixed", P::Leaf::k, "k"}},
+        parameter::choice<P>(&P::leaf,
+                             {{"receiver", P::Leaf::receiver, "n"}, {"fixed", P::Leaf::fixed, "k"}},
                              {.key = "leaf",
                               .meaning = "Plane of the caustic polygons: across the receiver's "
                                          "normal (usual with cones), or fixed.",
-                              .source = "[CC95 3.2.2]"}),
+                              .source = "[CC95 sec. 3.2.2]"}),
         parameter::choice<P>(
             &P::intensity, {{"area", Intensity::area}, {"refined", Intensity::refined}},
             {.key = "intensity",
@@ -99,7 +100,7 @@ std::vector<Parameter<P>> tree_parameters() {
 
 // Cones are what the parameters ask for that belong to them alone.
 bool asks_for_cones(const JsonNode& node, const P& params) {
-    return node.has("spread_threshold") || (node.has("leaf") && params.leaf == P::Leaf::n) ||
+    return node.has("spread_threshold") || (node.has("leaf") && params.leaf == P::Leaf::receiver) ||
            (node.has("merging") && params.merging == Merging::cones);
 }
 
@@ -144,13 +145,13 @@ void settle_tree(const JsonNode& node, P& params) {
     if (const auto merging = node.find("merging");
         merging && !has_cones && params.merging == Merging::cones)
         merging->fail("the bound \"two_slice\" has no cones to merge (take \"rays\")");
-    if (const auto leaf = node.find("leaf"); leaf && !has_cones && params.leaf == P::Leaf::n)
+    if (const auto leaf = node.find("leaf"); leaf && !has_cones && params.leaf == P::Leaf::receiver)
         leaf->fail(
             "the bound \"two_slice\" would lose light with \"receiver\": it holds beams only on "
             "planes across a fixed normal (take \"fixed\", or another bound)");
     if (!has_cones) params.merging = Merging::rays;
     if (!node.has("hierarchy")) params.hierarchy = has_cones ? P::Tree::quadtree : P::Tree::binned;
-    if (!node.has("leaf")) params.leaf = has_cones ? P::Leaf::n : P::Leaf::k;
+    if (!node.has("leaf")) params.leaf = has_cones ? P::Leaf::receiver : P::Leaf::fixed;
 }
 
 }  // namespace
@@ -159,7 +160,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
     static const DescribedMethod<P> method(
         {.facts = {.name = "beamtree",
                    .summary = "Chuang and Cheng 1995: beams of specular polygons, found through a "
-                              "tree of cones",
+                              "tree of boxes on two planes, or of the paper's cones",
                    .serves = "every light but `constant`; on coarse meshes beams lose light, "
                              "and the record says how much",
                    .work = {.parameter = "mesh_resolution", .power = 2, .first = 8, .most = 4096},

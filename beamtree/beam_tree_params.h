@@ -18,8 +18,8 @@ struct BeamTreeParams : BeamParams {
         binned
     };
     enum class Leaf {
-        n,  ///< caustic polygons on the plane across the receiver's normal, as the paper says
-        k   ///< on planes across a normal fixed for the tree
+        receiver,  ///< caustic polygons on the plane across the receiver's normal, as the paper says
+        fixed      ///< on planes across a normal fixed for the tree
     };
     enum class Rest {
         none,    ///< light that `prune` and `max_beams` leave out is lost
@@ -30,7 +30,7 @@ struct BeamTreeParams : BeamParams {
     double spread_threshold = 10;  ///< of `hybrid` [degrees]
     ConeTreeSettings::Merging merging = ConeTreeSettings::Merging::rays;
     Tree hierarchy = Tree::binned;
-    Leaf leaf = Leaf::k;  ///< with two_slice always
+    Leaf leaf = Leaf::fixed;  ///< with two_slice always
     Intensity intensity = Intensity::refined;
     /// Side of the square round each point, on the tree's planes, over which its irradiance is averaged
     /// exactly [m]; 0: at the point alone. Only with the bound two_slice; beams that spread too far for
@@ -50,7 +50,7 @@ struct BeamTreeParams : BeamParams {
         params.bound = Bound::hybrid;
         params.merging = ConeTreeSettings::Merging::cones;
         params.hierarchy = Tree::quadtree;
-        params.leaf = Leaf::n;
+        params.leaf = Leaf::receiver;
         params.intensity = Intensity::area;
         return params;
     }

@@ -30,7 +30,7 @@ public:
         : traced_(traced), params_(params) {
         for (std::uint32_t i = 0; i < traced.sets.size(); ++i) {
             const BeamSet& set = traced.sets[i];
-            const bool fixed = params.leaf == BeamTreeParams::Leaf::k;
+            const bool fixed = params.leaf == BeamTreeParams::Leaf::fixed;
             for (const PlaneGroup& group : fixed ? fixed_planes(set) : receiver_planes(set))
                 add(i, group);
         }

@@ -84,11 +84,11 @@ std::vector<Parameter<P>> estimate_parameters() {
         parameter::yes_or_no<P>(&P::adaptive,
                                 {.key = "adaptive",
                                  .meaning = "Takes fewer than N photons where they lie unevenly.",
-                                 .source = "[J96 5]"}),
+                                 .source = "[J96 sec. 5]"}),
         parameter::optional_length<P>(&P::max_radius, "leave it out to have it chosen",
                                       {.key = "max_radius",
                                        .meaning = "Farthest photon of an estimate.",
-                                       .source = "[J96 3]"})
+                                       .source = "[J96 sec. 3]"})
             .usually("chosen"),
         parameter::optional_length<P>(
             &P::radius, "leave it out to take the nearest photons",
@@ -141,7 +141,7 @@ std::vector<Parameter<P>> estimate_parameters() {
         parameter::yes_or_no<P>(
             &P::tables, {.key = "tables",
                          .meaning = "Shades by tables over the directions that photons can have.",
-                         .source = "[J96 5]"})};
+                         .source = "[J96 sec. 5]"})};
 }
 
 void settle_files(const JsonNode& node, P& params) {
@@ -221,13 +221,15 @@ void settle(const JsonNode& node, P& params) {
 
 const DescribedMethod<PhotonMapParams>& photonmap_method() {
     static const DescribedMethod<P> method(
-        {.facts = {.name = "photonmap",
-                   .summary =
-                       "Jensen 1996: photons aimed at the casters, balanced kd-tree, N nearest",
-                   .serves = "every scene; without light on casters by `emitted` alone",
-                   .work = {.parameter = "photons", .first = 1000, .most = 1'000'000'000},
-                   .effort = {"photons=60000", "nearest=60"},
-                   .more_effort = {"photons=480000", "nearest=60"}},
+        {.facts =
+             {.name = "photonmap",
+              .summary =
+                  "Jensen 1996: photons aimed at the casters, N nearest in a packed kd-tree, or "
+                  "in the paper's balanced one",
+              .serves = "every scene; without light on casters by `emitted` alone",
+              .work = {.parameter = "photons", .first = 1000, .most = 1'000'000'000},
+              .effort = {"photons=60000", "nearest=60"},
+              .more_effort = {"photons=480000", "nearest=60"}},
          .parameters = joined(photon_parameters(), estimate_parameters()),
          .settle = settle,
          .take_least_work =

@@ -106,6 +106,7 @@ Cap box_cap(std::span<const Vec3d> directions) {
     return measured(centre.normalized(), directions);
 }
 
+// [CC95 (1)]
 Cap smallest_cap(std::span<const Vec3d> directions) {
     // The method needs a hemisphere: without one its three loops would go on and on.
     const Cap box = box_cap(directions);

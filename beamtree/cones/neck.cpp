@@ -15,6 +15,7 @@ struct Plane {
 struct Bracket {
     Plane left, middle, right;
 
+    // [CC95 (2)]
     double proposed() const {
         return (left.size * right.depth + right.size * left.depth) / (left.size + right.size);
     }

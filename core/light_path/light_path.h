@@ -49,8 +49,8 @@ LightPathCounts light_path_counts(const Counters& counters);
 
 /// What happens at a surface that both reflects and refracts.
 enum class Interaction {
-    roulette,  ///< one decision by Russian roulette, the survivor's channels rescaled [C11]
-    split      ///< both are followed, each with its weight (POV-Ray's way, as [C11] describes it)
+    roulette,  ///< one decision by Russian roulette, the survivor's channels rescaled [J96 sec. 2], [C11]
+    split  ///< both are followed, each with its weight (POV-Ray's way, as [C11] describes it)
 };
 
 /// With `split`, a branch that carries less than this share of its particle's flux continues with a

@@ -126,7 +126,7 @@ std::string topic_list() {
     for (const FileTopic& topic : file_topics)
         text += wrapped(fmt::format("  {:<18} ", topic.name), topic.meaning);
     return text +
-           "[J96 (4)] is an equation, [J96 5] a section of a paper; PAPERS.md has the keys.\n";
+           "[J96 (4)] is an equation, [J96 sec. 5] a section of a paper; PAPERS.md has the keys.\n";
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ RadianceEstimate::Spread RadianceEstimate::over_disc(const ReceiverPoint& point,
 }
 
 Spectrum RadianceEstimate::density(const SpectrumSum& sum, const Spread& spread) const {
-    // [J96 (4)]: the sum over the area.
+    // [J96 (2)], [J96 (4)]: the sum over the area.
     const SpectrumSum density =
         sum * settings_.flux_unit.cast<double>() * (spread.factor / spread.area);
     return density.cast<float>();
@@ -89,6 +89,7 @@ Spectrum RadianceEstimate::density(const SpectrumSum& sum, const Spread& spread)
 Spectrum RadianceEstimate::radiance(const ReceiverPoint& point, const GatheredPhotons& gathered,
                                     EstimateScratch& scratch) const {
     const Spread around = spread(point, gathered, scratch);
+    // [J96 (1)]: f_r times the light that arrives.
     if (scratch.table)
         return density(shading_.reflected(point, around.photons, *scratch.table), around);
     return density(shading_.reflected(point, around.photons), around);

@@ -13,7 +13,8 @@ namespace {
 // Every choice of the beam tree against formulas, point by point, within 0.5 %.
 std::vector<beamtree::BeamTreeParams> all_params() {
     std::vector<beamtree::BeamTreeParams> all;
-    for (const auto leaf : {beamtree::BeamTreeParams::Leaf::n, beamtree::BeamTreeParams::Leaf::k})
+    for (const auto leaf :
+         {beamtree::BeamTreeParams::Leaf::receiver, beamtree::BeamTreeParams::Leaf::fixed})
         for (const beamtree::Bound bound :
              {beamtree::Bound::single, beamtree::Bound::double_cone, beamtree::Bound::hybrid,
               beamtree::Bound::sphere_swept}) {

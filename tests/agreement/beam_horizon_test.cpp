@@ -67,7 +67,7 @@ TEST(BeamHorizon, AStandingMirrorOfAnyResolutionLightsTheFloor) {
         const Scene scene = standing_mirror(resolution);
         const double allowed = resolution < 4 ? 0.09 : 0.3 / resolution;
         for (const auto leaf :
-             {beamtree::BeamTreeParams::Leaf::n, beamtree::BeamTreeParams::Leaf::k}) {
+             {beamtree::BeamTreeParams::Leaf::receiver, beamtree::BeamTreeParams::Leaf::fixed}) {
             beamtree::BeamTreeParams params = beamtree::BeamTreeParams::chuang1995();
             params.leaf = leaf;
             const Agreement own = on_the_floor(scene, *build(scene, params, {}));

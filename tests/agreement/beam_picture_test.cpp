@@ -108,7 +108,7 @@ TEST(BeamPicture, FixedPlanesAndQuadsGiveTheSameLight) {
     const Scene scene(pool(64));
     const double usual = sum(caustic_layer(scene, beamtree::BeamTreeParams{}));
     beamtree::BeamTreeParams fixed;
-    fixed.leaf = beamtree::BeamTreeParams::Leaf::k;
+    fixed.leaf = beamtree::BeamTreeParams::Leaf::fixed;
     EXPECT_NEAR(sum(caustic_layer(scene, fixed)) / usual, 1, 0.01);
     beamtree::BeamTreeParams quads;
     quads.polygons = beamtree::PolygonKind::quad;

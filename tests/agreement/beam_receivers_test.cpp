@@ -107,7 +107,7 @@ void expect_closed_form(const Shape& receiver, const beamtree::BeamTreeParams& p
 std::vector<beamtree::BeamTreeParams> both_leaves() {
     beamtree::BeamTreeParams n;
     beamtree::BeamTreeParams k;
-    k.leaf = beamtree::BeamTreeParams::Leaf::k;
+    k.leaf = beamtree::BeamTreeParams::Leaf::fixed;
     return {n, k};
 }
 

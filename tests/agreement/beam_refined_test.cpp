@@ -21,7 +21,7 @@ using namespace exact_pool;
 
 beamtree::BeamTreeParams refined(
     beamtree::PolygonKind polygons = beamtree::PolygonKind::triangle,
-    beamtree::BeamTreeParams::Leaf leaf = beamtree::BeamTreeParams::Leaf::n) {
+    beamtree::BeamTreeParams::Leaf leaf = beamtree::BeamTreeParams::Leaf::receiver) {
     beamtree::BeamTreeParams params = with(beamtree::Intensity::refined);
     params.polygons = polygons;
     params.leaf = leaf;
@@ -53,7 +53,7 @@ TEST(BeamRefined, IsOfSecondOrderAtPoints) {
     const PointwiseTruth truth(Lamp::point);
     const auto water_of = [](int n) { return meshed(tessellate_heightfield(water(), n)); };
     for (const beamtree::BeamTreeParams& params :
-         {refined(), refined(beamtree::PolygonKind::quad, beamtree::BeamTreeParams::Leaf::k)}) {
+         {refined(), refined(beamtree::PolygonKind::quad, beamtree::BeamTreeParams::Leaf::fixed)}) {
         const Errors coarse = truth.errors(water_of(48), params);
         const Errors fine = truth.errors(water_of(96), params);
         EXPECT_GT(order(coarse, fine), 1.9) << coarse.median << ", " << fine.median;

@@ -170,7 +170,7 @@ TEST(Dispersion, BeamsAskForTheIntervalsOfWavelengths) {
     expect_right("cones");
     params.merging = beamtree::ConeTreeSettings::Merging::rays;
     params.bound = beamtree::Bound::two_slice;
-    params.leaf = beamtree::BeamTreeParams::Leaf::k;
+    params.leaf = beamtree::BeamTreeParams::Leaf::fixed;
     params.hierarchy = beamtree::BeamTreeParams::Tree::binned;
     expect_right("slices");
     params.intensity = beamtree::Intensity::refined;

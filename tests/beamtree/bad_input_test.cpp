@@ -127,7 +127,7 @@ TEST(BeamTree, FollowsLightThroughASecondSurface) {
 TEST(BeamTree, EveryBoundAndHierarchyGivesTheSameBits) {
     using Merging = ConeTreeSettings::Merging;
     const Scene scene(pool_desc(12));
-    for (const auto leaf : {BeamTreeParams::Leaf::n, BeamTreeParams::Leaf::k}) {
+    for (const auto leaf : {BeamTreeParams::Leaf::receiver, BeamTreeParams::Leaf::fixed}) {
         BeamTreeParams params;
         params.leaf = leaf;
         const std::vector<Estimate> first = on_floor(scene, 1, params);

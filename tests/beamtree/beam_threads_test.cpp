@@ -74,7 +74,7 @@ BeamTreeParams slices() {
     BeamTreeParams params;
     params.bound = Bound::two_slice;
     params.hierarchy = BeamTreeParams::Tree::binned;
-    params.leaf = BeamTreeParams::Leaf::k;
+    params.leaf = BeamTreeParams::Leaf::fixed;
     params.intensity = Intensity::refined;
     return params;
 }

@@ -23,7 +23,7 @@ TEST(BeamTreeParams, AreTheBestByDefault) {
     const BeamTreeParams p = params("{}");
     EXPECT_EQ(p.bound, Bound::two_slice);
     EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::binned);
-    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::k);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::fixed);
     EXPECT_EQ(p.intensity, Intensity::refined);
 }
 
@@ -34,7 +34,7 @@ TEST(BeamTreeParams, AreThePapersByPreset) {
     EXPECT_EQ(p.bound, Bound::hybrid);
     EXPECT_EQ(p.spread_threshold, 10);
     EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::quadtree);
-    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::n);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::receiver);
 }
 
 TEST(BeamTreeParams, AreRead) {
@@ -44,7 +44,7 @@ TEST(BeamTreeParams, AreRead) {
             "polygons": "quads"})");
     EXPECT_EQ(p.bound, Bound::double_cone);
     EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::binned);
-    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::k);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::fixed);
     EXPECT_EQ(p.light_samples, 9);
     EXPECT_EQ(p.mesh_resolution, 32);
     EXPECT_EQ(p.max_bounces, 1);
@@ -58,7 +58,7 @@ TEST(BeamTreeParams, AreRead) {
 TEST(BeamTreeParams, TwoSliceBringsWhatFitsIt) {
     const BeamTreeParams p = params(R"({"bound": "two_slice"})");
     EXPECT_EQ(p.bound, Bound::two_slice);
-    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::k);
+    EXPECT_EQ(p.leaf, BeamTreeParams::Leaf::fixed);
     EXPECT_EQ(p.hierarchy, BeamTreeParams::Tree::binned);
     EXPECT_EQ(params(R"({"bound": "two_slice", "hierarchy": "quadtree", "leaf": "k"})").hierarchy,
               BeamTreeParams::Tree::quadtree);

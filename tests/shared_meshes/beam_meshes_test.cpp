@@ -46,7 +46,7 @@ TEST_P(BeamsOfRealMeshes, BringTheirFluxToTheFloor) {
     beamtree::BeamTreeParams params;
     params.bound = beamtree::Bound::two_slice;
     params.hierarchy = beamtree::BeamTreeParams::Tree::binned;
-    params.leaf = beamtree::BeamTreeParams::Leaf::k;
+    params.leaf = beamtree::BeamTreeParams::Leaf::fixed;
     params.intensity = beamtree::Intensity::refined;
     params.max_bounces = real.max_bounces;
     const auto method = build(scene, params, {});

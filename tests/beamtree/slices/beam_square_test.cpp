@@ -13,7 +13,7 @@ namespace {
 BeamTreeParams averaged(float footprint, Intensity intensity = Intensity::area) {
     BeamTreeParams params;
     params.bound = Bound::two_slice;
-    params.leaf = BeamTreeParams::Leaf::k;
+    params.leaf = BeamTreeParams::Leaf::fixed;
     params.hierarchy = BeamTreeParams::Tree::binned;
     params.max_bounces = 1;
     params.footprint = footprint;

@@ -111,7 +111,7 @@ BeamTreeParams params_of(Bound bound) {
     params.bound = bound;
     params.max_bounces = 1;
     if (bound != Bound::two_slice) return params;
-    params.leaf = BeamTreeParams::Leaf::k;
+    params.leaf = BeamTreeParams::Leaf::fixed;
     params.hierarchy = BeamTreeParams::Tree::binned;
     return params;
 }
@@ -179,7 +179,7 @@ TEST(SliceTree, LeavesOutBeamsThatBeginBelowThePoint) {
     const auto hits = slices.counters.at("beam_point_hits");
     EXPECT_LT(slices.counters.at("beam_point_tests"), 6 * hits);
     params.bound = Bound::sphere_swept;
-    params.leaf = BeamTreeParams::Leaf::k;
+    params.leaf = BeamTreeParams::Leaf::fixed;
     EXPECT_EQ(slices.irradiance, ask(scene, params, {}, -1, 2000).irradiance);
 }
 
