@@ -3,8 +3,9 @@
 method is best at equal time and at equal error, with ties where the seeds do not tell.
 
 Reads DIR/records.csv, writes statistics.csv, statistics.md, equal_time.md and equal_error.md. Wants five seeds; a cell
-of one seed has no interval, and with fewer than five no method is called the best. Times are CPU seconds of the whole
-trial without reading the scene, so compare records of one machine. The same records give the same bytes.
+of one seed has no interval, and with fewer than five no method is called the best. Repeats make the same picture again, so
+they are no seeds. Times are CPU seconds of build (of indirect light too) and query, so compare records of one machine. The
+same records give the same bytes.
 Exit codes: 0 done, 2 bad input or usage.
 """
 import argparse
@@ -19,7 +20,6 @@ import sys
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 from report import records
-from report.estimate_cells import STAGES
 from report.intervals import FEWEST_SEEDS, Answer, half_interval, is_worse, log_variance
 from report.report_files import report, write
 
@@ -47,14 +47,16 @@ def write_all(directory, output):
 
 
 class Scored:
-    """A cell of the records, seed by seed: rmse, and CPU seconds."""
+    """A cell of the records: rmse and CPU seconds seed by seed, and the CPU seconds of every trial."""
 
     def __init__(self, cell):
         self.scene, self.method, self.parameters = cell.scene, cell.method, cell.parameters
         rows = [row for row in cell.records if row.get("rmse")]
         self.reference = rows[0].get("reference", "")  # the same for all pictures of one scene as it was set
-        self.errors = [float(row["rmse"]) for row in rows]
-        self.times = [sum(float(row.get(stage) or 0) for stage in STAGES) for row in rows]
+        seeds = records.by_seed(rows).values()
+        self.errors = [float(repeats[0]["rmse"]) for repeats in seeds]
+        self.times = [statistics.median(map(records.cpu_seconds, repeats)) for repeats in seeds]
+        self.trial_times = [records.cpu_seconds(row) for row in rows]
         own = cell.reference_error()
         self.reference_square = own * own if own else 0.0
         variance = cell.spread("variance")
@@ -81,7 +83,8 @@ class Scored:
         return statistics.stdev(error * error for error in self.errors) / math.sqrt(len(self.errors))
 
     def seconds(self):
-        return statistics.median(self.times)
+        """The median over seeds and repeats."""
+        return statistics.median(self.trial_times)
 
     def efficiency(self):
         """1 / (mse x time): doubles where half the time gives the same error."""
@@ -118,8 +121,9 @@ def statistics_csv(cells):
     names = parameter_names(cells)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["scene", "method", *names, "seeds", "rmse_mean", "rmse_half_interval_95", "bias_square",
-                     "bias_square_stderr", "variance", "reference_square", "cpu_s_median", "efficiency"])
+    writer.writerow(records.table_head(names, ["scene", "method"], [
+        "seeds", "rmse_mean", "rmse_half_interval_95", "bias_square", "bias_square_stderr", "variance", "reference_square",
+        "cpu_s_median", "efficiency"]))
     for cell in cells:
         numbers = [cell.mean(), cell.half_interval(), cell.bias_square(), cell.bias_square_error(), cell.variance,
                    cell.reference_square, cell.seconds(), cell.efficiency()]

@@ -29,7 +29,6 @@ MARKS = {"folded": ("equal_error_sharp_pool", 10, 50), "calm": ("equal_error_smo
 CELLS = {False: 4096, True: 2048}  # of the truth, along each side; quick
 LONGEST = 600  # seconds of a trial
 BLOCKS = 64  # of the film, where the truth is held against lighttrace
-PHASES = ("precompute_cpu_s", "balance_cpu_s", "render_cpu_s")
 
 
 def arguments():
@@ -92,7 +91,7 @@ def settings(row):
 def measured(program, folder, row, truth):
     """One trial: method, settings, CPU seconds, rmse over the mean radiance."""
     found = program.compare(folder / "trials" / row["trial"] / "image.exr", truth[0])["metrics"]
-    return {"method": row["method"], "settings": settings(row), "seconds": sum(float(row[phase] or 0) for phase in PHASES),
+    return {"method": row["method"], "settings": settings(row), "seconds": records.cpu_seconds(row),
             "error": found["rmse"] / truth[1]["mean"], "relative_error": math.sqrt(found["relmse"]),
             "mean_ratio": found["mean_ratio"], "spp": int(row["spp"])}
 

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """tools/bench_peers.py without peers: its ratios by hand, its edits of exports, its splat, and that the committed page follows from its records."""
 import math
 import pathlib

@@ -25,7 +25,7 @@ import compare_methods as tool
 from report import intervals
 
 COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "isa", "photons_stored", "nearest", "alpha",
-           "mesh_resolution", "render_cpu_s", "total_s", "rmse", "relmse", "variance", "mean_ratio", "reference",
+           "mesh_resolution", "render_cpu_s", "indirect_cpu_s", "total_s", "rmse", "relmse", "variance", "mean_ratio", "reference",
            "reference_stderr", "reference_mean", "code_version", "effort")
 
 
@@ -35,7 +35,7 @@ def rows(method, efforts, errors, seeds=5, scatter=0.01, reference="lighttrace:1
         for seed in range(seeds):
             step = 0 if seeds == 1 else scatter * error * (2 * seed / (seeds - 1) - 1)
             yield dict(zip(COLUMNS, [f"{method}{effort}s{seed}", "done", "pool", method, str(seed), "1", "1", "plain", "",
-                                     "", "", "", str(effort), str(effort), repr(error + step), "0.1", repr(error**2 / 2),
+                                     "", "", "", str(effort), "", str(effort), repr(error + step), "0.1", repr(error**2 / 2),
                                      "1", reference, "0.01", "1", "v", str(effort)]))
 
 
@@ -114,11 +114,52 @@ class Comparison(unittest.TestCase):
         wrong = sum(tool.is_worse(answer(draw()), answer(draw())) for _ in range(2000))
         self.assertAlmostEqual(wrong / 2000, 0.025, delta=4 * math.sqrt(0.025 / 2000))
 
+    def test_no_error_and_tiny_errors_have_no_worse_ones_by_chance(self):
+        """Zeros have no logarithm: they tie with each other, and all else is above them. The unit of an error changes nothing."""
+        usual = [1.0, 1.1, 1.2, 1.3, 1.4]
+        for unit in (1e-300, 1e-12, 1e150):
+            self.assertAlmostEqual(tool.log_variance([unit * each for each in usual]), tool.log_variance(usual))
+        self.assertEqual(tool.log_variance([0.0] * 5), 0)
+        answer = lambda value: tool.Answer(value, ((0.01, 4),))
+        self.assertFalse(tool.is_worse(answer(0.0), answer(0.0)))
+        self.assertTrue(tool.is_worse(answer(1e-300), answer(0.0)))
+        self.assertTrue(tool.is_worse(answer(1e150), answer(1e-300)))
+        text = outputs(rows("one", [1, 4], [4e-300, 2e-300]), rows("two", [1, 4], [4e-300, 2e-300]))["equal_time.md"]
+        for name in ("one", "two"):
+            self.assertEqual(next(line for line in text.splitlines() if line.startswith(f"| {name}")).count("**"), 2 * tool.STEPS)
+
     def test_three_seeds_call_no_winner(self):
         text = outputs(rows("good", [1, 4], [0.4, 0.2], seeds=3), rows("poor", [1, 4], [0.8, 0.4]))
         for name in ("equal_time.md", "equal_error.md"):
             self.assertIn("Too few seeds (3, not 5)", text[name])
             self.assertNotIn("**", text[name])
+
+    def test_repeats_are_no_seeds(self):
+        """Three repeats of each of two seeds: the table of two seeds, with no winner, and the median of all times."""
+        two = [list(rows(name, [1, 4], errors, seeds=2)) for name, errors in (("good", [0.4, 0.2]), ("poor", [0.8, 0.4]))]
+        repeated = [[{**row, "repeat": str(i), "trial": f"{row['trial']}r{i}", "render_cpu_s": repr(float(row["effort"]) * (0.5 + 0.5 * i))}
+                     for row in own for i in (1, 2, 3)] for own in two]
+        text, wanted = outputs(*repeated), outputs(*two)
+        column = lambda tables, name: [row[name] for row in csv.DictReader(tables["statistics.csv"].splitlines())]
+        for name in ("seeds", "rmse_mean", "rmse_half_interval_95", "bias_square_stderr"):
+            self.assertEqual(column(text, name), column(wanted, name), name)
+        self.assertEqual(column(text, "seeds"), ["2"] * 4)
+        self.assertEqual(column(text, "cpu_s_median"), ["1.5", "6.0"] * 2)
+        for name in ("equal_time.md", "equal_error.md"):
+            self.assertIn("Too few seeds (2, not 5)", text[name])
+            self.assertNotIn("**", text[name])
+
+    def test_indirect_light_takes_its_time(self):
+        lit = [{**row, "indirect_cpu_s": "3"} for row in rows("a", [1], [0.5], scatter=0)]
+        row = next(csv.DictReader(outputs(lit)["statistics.csv"].splitlines()))
+        self.assertEqual(row["cpu_s_median"], "4.0")
+        self.assertAlmostEqual(float(row["efficiency"]), 1)
+
+    def test_a_swept_parameter_with_the_name_of_a_column_has_one_of_its_own(self):
+        cells = [tool.Scored(tool.records.Cell("pool", "a", {"efficiency": effort}, list(rows("a", [1], [0.5])))) for effort in "12"]
+        for row, effort in zip(csv.DictReader(tool.statistics_csv(cells).splitlines()), "12"):
+            self.assertEqual(row["swept_efficiency"], effort)
+            self.assertAlmostEqual(float(row["efficiency"]), 4, places=2)
 
     def test_the_better_method_alone_is_bold(self):
         text = outputs(rows("good", [1, 4], [0.4, 0.2]), rows("poor", [1, 4], [0.8, 0.4]))["equal_time.md"]

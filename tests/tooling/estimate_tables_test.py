@@ -23,7 +23,8 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from report import estimate_heat_maps
+from report import estimate_heat_maps, records
+from report.estimate_cells import Estimate
 from report import record_plots
 
 COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "isa", "photons_stored", "nearest", "alpha",
@@ -94,6 +95,17 @@ class EstimateTables(unittest.TestCase):
         self.assertEqual(re.findall("## (.*)", table), ["ring, alpha 0.1", "ring, alpha 1"])
         self.assertIn("| raw | none | 20 | 1.120 |", table)
 
+    def test_repeats_are_no_seeds(self):
+        """A seed that ran three times counts once in an error; every run's time counts."""
+        trials = [{**row(1000, 20, relmse=error), "rmse": repr(error), "seed": seed, "repeat": repeat, "render_cpu_s": seconds,
+                   "indirect_cpu_s": "10"}
+                  for seed, repeat, error, seconds in (("1", "1", 0.1, "1"), ("1", "2", 0.1, "2"), ("1", "3", 0.1, "3"),
+                                                       ("2", "1", 0.3, "4"), ("3", "1", 0.5, "5"))]
+        cell = Estimate(records.Cell("ring", "photonmap", {"photons": "1000"}, trials))
+        self.assertAlmostEqual(cell.error, 0.3)
+        self.assertAlmostEqual(cell.square, (0.01 + 0.09 + 0.25) / 3)
+        self.assertEqual(cell.seconds, 13)
+
     def test_nothing_to_draw_is_an_error_with_its_reason(self):
         done = self.run_tool([row(1000, 20), row(1000, 60)])
         self.assertEqual(done.returncode, 2, done.stdout)
@@ -128,6 +140,11 @@ class Interpreter(unittest.TestCase):
         wrong = {name: line for name, line in first.items() if line.startswith("#!") and "python" in line
                  and line != "#!/usr/bin/python3"}
         self.assertEqual(wrong, {})
+
+    def test_what_has_an_interpreter_can_be_run(self):
+        files = [path for path in (ROOT / "tools").rglob("*") if path.is_file() and path.suffix != ".pyc"]
+        first = {path: path.read_bytes()[:2] == b"#!" for path in files}
+        self.assertEqual([path.name for path, runs in first.items() if runs != os.access(path, os.X_OK)], [])
 
 
 if __name__ == "__main__":

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Tests tools/report/indirect_growth.py on records whose shares and gains are known."""
 import json
 import pathlib
@@ -12,12 +11,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent.parent / "
 from report import indirect_growth
 
 
-def keep(folder, name, swept, phases):
+def keep(folder, name, swept, phases, seed=0):
     """A record whose wall seconds are half of its CPU seconds where `folder` is of two threads."""
     place = pathlib.Path(folder) / "trials" / name
     place.mkdir(parents=True)
     threads = 2 if pathlib.Path(folder).name == "two" else 1
-    record = {"status": "done", "swept": swept, "load": {"average": float(threads)},
+    record = {"status": "done", "swept": swept, "seed": seed, "load": {"average": float(threads)},
               "phases": {phase: {"cpu": seconds * threads ** 0.5, "wall": seconds / threads} for phase, seconds in phases.items()}}
     (place / "record.json").write_text(json.dumps(record), encoding="utf-8")
 
@@ -29,8 +28,9 @@ class IndirectGrowth(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for each in (pathlib.Path(folder) / "one", pathlib.Path(folder) / "two"):
                 keep(each, "film", film, {"render": 1})
+                keep(each, "film-again", film, {"render": 1})  # a repeat, no other seed
                 for seed, gather in enumerate((4, 5, 9)):  # the median counts
-                    keep(each, f"room{seed}", room, {"indirect/trace": 2, "indirect/balance": 1, "indirect/precompute": 2, "render": 1 + gather})
+                    keep(each, f"room{seed}", room, {"indirect/trace": 2, "indirect/balance": 1, "indirect/precompute": 2, "render": 1 + gather}, seed)
             text = indirect_growth.section(pathlib.Path(folder) / "one", pathlib.Path(folder) / "two")
         self.assertIn("| 200,000 | 16 | 200 | 2.00 (20 %) | 1.00 (10 %) | 2.00 (20 %) | 5.00 (50 %) | 10.00 |\n", text)
         self.assertIn("two threads take 5.0 s where one takes 10.0 s: 2.00 times", text)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Tests what tools/measure_indirect.py sweeps with --quick, and its gains on records whose errors are known."""
 import json
 import pathlib

@@ -108,7 +108,7 @@ def write_trial(folder, scene, method, step, seed):
     values = {"trial": trial, "status": "done", "scene": scene, "method": method, "seed": seed, "repeat": 1, "threads": 1,
               "isa": "plain", "total_s": 0.5 * step, "rmse": repr(float(numpy.sqrt((error ** 2).mean()))),
               "relmse": repr(float((error ** 2).mean())), "bias": repr(float(error.mean() / mean)), "mean_ratio": "1.0123456789012345",
-              "reference": f"lighttrace:{KEY}", "reference_stderr": "0.01", "reference_mean": repr(mean), "config_hash": "c" * 16,
+              "variance": 0.25, "reference": f"lighttrace:{KEY}", "reference_stderr": "0.01", "reference_mean": repr(mean), "config_hash": "c" * 16,
               "code_version": "0.1.0 (abc)", "precompute_cpu_s": repr(0.1 * step), "render_cpu_s": repr(0.2 * step + 0.001 * seed),
               "picture_hash": f"{zlib.crc32(trial.encode()):016x}", "finished": "2026-11-23T00:00:00Z",
               "cpu": "Test CPU", "load_average": "0.5", "spp": 4, "map_bytes": 1000 * step}

@@ -28,8 +28,8 @@ except ImportError as error:
     sys.exit(77)
 
 import report_sweep as sweep
-from report import exr, records
-from report_page import pictures, scenes
+from report import exr, record_tables, records
+from report_page import pictures, scenes, tables
 
 TOOL = ROOT / "tools" / "make_report.py"
 
@@ -103,6 +103,19 @@ class Packing(unittest.TestCase):
         self.assertEqual(pictures.packed(numpy.stack([plane, plane, 2 * plane]))[0]["planes"], 3)
 
 
+class Numbers(unittest.TestCase):
+    def test_no_size_of_a_number_loses_its_digits(self):
+        for value, half, text in ((0.37091, 0.00999, r"$0.3709 \pm 0.0100$"), (123.4, 45.6, r"$123 \pm 46$"),
+                                  (7.418e-7, 1.998e-8, r"$(7.42 \pm 0.20) \cdot 10^{-7}$"),
+                                  (7.418e-300, 1.998e-301, r"$(7.42 \pm 0.20) \cdot 10^{-300}$"),
+                                  (7418179.4, 199783.0, r"$(7.42 \pm 0.20) \cdot 10^{6}$"),
+                                  (-7.418e-7, 1.998e-8, r"$(-7.42 \pm 0.20) \cdot 10^{-7}$"),
+                                  (0.0, 3e-8, r"$(0.0 \pm 3.0) \cdot 10^{-8}$"),
+                                  (1.0123, 2.2e-16, r"$1.0123 \pm 2.2 \cdot 10^{-16}$"),
+                                  (3.5483e-7, None, r"$3.55 \cdot 10^{-7}$"), (0.0, 0.0, "$0$"), (None, None, "--")):
+            self.assertEqual(tables.number_tex(value, half), text)
+
+
 class Page(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -153,6 +166,7 @@ class Page(unittest.TestCase):
         self.assertEqual(mean, statistics.mean(own))
         deviation = numpy.std(own, ddof=1)
         self.assertAlmostEqual(half, 2.7764451 * deviation / 5 ** 0.5, places=9)
+        self.assertEqual(cell["errors"]["variance"], [0.25, None])
         self.assertAlmostEqual(cell["costs"]["build_s"], 0.1)
         self.assertAlmostEqual(cell["costs"]["query_s"], 0.203)
         self.assertAlmostEqual(cell["costs"]["work_s"], 0.303)
@@ -248,6 +262,17 @@ class Page(unittest.TestCase):
         self.assertEqual([contest["best"] for contest in scene["contests"]], [[]] * len(scene["contests"]))
         self.assertFalse(any(cell["tied"] for cell in scene["cells"]))
 
+    def test_no_error_at_all_is_a_tie(self):
+        """Of a black setting: both methods have no error, or one has none and the other next to none."""
+        for tiny, best in (("0", {"photonmap", "beamtree"}), ("1e-310", {"photonmap"})):
+            for row in self.rows:
+                row["rmse"] = "0" if row["method"] == "photonmap" else tiny
+            sweep.write_table(self.sweep, self.rows)
+            scene, = self.page(self.sweep, "--tables", self.folder / "tables")["scenes"]
+            contest = scene["contests"][scene["contest"]]
+            self.assertEqual({scene["cells"][i]["method"] for i in contest["best"]}, best)
+            self.assertEqual({cell["method"] for cell in scene["cells"] if cell["tied"]}, best)
+
     def test_the_file_asks_for_nothing(self):
         self.page()
         self.assertEqual(re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', self.text), [])
@@ -317,6 +342,7 @@ class Page(unittest.TestCase):
         own = [float(row["rmse"]) for row in self.rows if row["method"] == "photonmap" and row["photons"] == "4000"]
         cell = next(cell for cell in cells if cell["photons"] == "4000")
         self.assertEqual(cell["rmse"], repr(statistics.mean(own)))
+        self.assertEqual((cell["variance"], cell["variance_half_interval_95"]), ("0.25", ""))
         text = (tables / "cells-ring.tex").read_text(encoding="utf-8")
         self.assertIn(r"\toprule", text)
         self.assertIn(r"\begin{table*}", text)
@@ -324,6 +350,59 @@ class Page(unittest.TestCase):
         rows = [line for line in text.splitlines() if line.endswith(r"\\") and "multicolumn" not in line]
         self.assertEqual({line.count(" & ") for line in rows}, {3})
         self.assertRegex((tables / "equal_time.tex").read_text(encoding="utf-8"), r"beamtree & \\boldmath\{\$0\.\d+ \\pm")
+
+    def test_one_setting_in_two_folders_is_two_cells_of_different_names(self):
+        """Folders of one name, of two and of three seeds: nothing is merged, and everything says which it is from."""
+        places = [self.folder / name / "run" for name in ("a", "b")]
+        for place, seeds in zip(places, ((1, 2), (3, 4, 5))):
+            sweep.write_sweep(place, seeds=seeds)
+        made = self.folder / "tables"
+        data = self.page(*places, "--tables", made)
+        scene, = data["scenes"]
+        labels = [cell["label"] for cell in scene["cells"]]
+        self.assertEqual(len(labels), len(set(labels)))
+        self.assertEqual(sorted(label for label in labels if "1k" in label),
+                         ["photonmap, 1k photons, from a/run", "photonmap, 1k photons, from b/run"])
+        self.assertEqual([table["folder"] for table in data["tables"]], ["a/run", "b/run"])
+        with open(made / "cells.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual({(row["folder"], row["seeds"]) for row in csv.DictReader(file)}, {("a/run", "2"), ("b/run", "3")})
+        with open(made / "equal_time.csv", newline="", encoding="utf-8") as file:
+            self.assertTrue({row["folder"] for row in csv.DictReader(file)} <= {"a/run", "b/run"})
+        self.assertIn(r"mean over 2 to 3 seeds $\pm$", (made / "cells-ring.tex").read_text(encoding="utf-8"))
+        self.assertEqual((scene["seeds"], scene["seeds_text"]), (2, "2 to 3 seeds"))
+
+    def test_no_scene_takes_the_name_of_another(self):
+        """The same scene held against two references; and settings whose file names would be one."""
+        other = self.folder / "other"
+        rows = sweep.write_sweep(other, seeds=(6, 7))
+        for row in rows:
+            row["reference"] = "lighttrace:another"
+        sweep.write_table(other, rows)
+        made = self.folder / "tables"
+        data = self.page(self.sweep, other, "--tables", made)
+        self.assertEqual([scene["title"] for scene in data["scenes"]],
+                         [f"ring, reference lighttrace:{sweep.KEY}", "ring, reference lighttrace:another"])
+        self.assertEqual(len(list(made.glob("cells-*.tex"))), 2)
+        titled = [types.SimpleNamespace(title=lambda text=text: text) for text in ("ring, z -1", "ring, z 1")]
+        self.assertEqual(tables.file_names(titled), ["cells-ring_z_1.tex", "cells-ring_z_1_2.tex"])
+
+    def test_swept_parameters_with_the_name_of_a_column_have_one_of_their_own(self):
+        rows = [{**row, "work_s": "7", "seeds": "8", "folder": "9", "swept_seeds": "10"} for row in self.rows]
+        with open(self.sweep / "records.csv", "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, rows[0])
+            writer.writeheader()
+            writer.writerows(rows)
+        made = self.folder / "tables"
+        self.page(self.sweep, "--tables", made)
+        with open(made / "cells.csv", newline="", encoding="utf-8") as file:
+            reader = csv.DictReader(file)
+            row = next(reader)
+        self.assertEqual(len(reader.fieldnames), len(set(reader.fieldnames)))
+        self.assertEqual([row[name] for name in ("swept_work_s", "swept_seeds", "folder", "swept_swept_seeds", "seeds")],
+                         ["7", "8", "9", "10", "5"])
+        self.assertNotEqual(row["work_s"], "7")
+        summary = next(csv.reader(record_tables.summary_csv(records.read(self.sweep / "records.csv")).splitlines()))
+        self.assertEqual((len(summary), summary.count("swept_seeds")), (len(set(summary)), 1))
 
     def test_unknown_columns_and_sizes_are_refused(self):
         done = self.run_tool(self.sweep, "--columns", "rmse,speed")
@@ -384,6 +463,9 @@ class Page(unittest.TestCase):
         self.rows[3]["rmse"] = "nan"
         sweep.write_table(self.sweep, self.rows)
         self.refuses("line 5", 'column rmse is "nan"')
+        self.rows[3]["rmse"] = "1e300"
+        sweep.write_table(self.sweep, self.rows)
+        self.refuses("line 5", 'column rmse is "1e300", expected a number whose square is finite')
 
     def test_names_that_lead_elsewhere_are_refused(self):
         for name in ("trial", "reference"):

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Long work of every verb at a terminal: something is shown, no line wraps, Ctrl-C ends it with 130 and leaves nothing half-written.
 
 Usage: waiting_test.py causticbench

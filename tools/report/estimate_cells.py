@@ -4,7 +4,6 @@ import statistics
 
 from report import records
 
-STAGES = ("precompute_cpu_s", "balance_cpu_s", "render_cpu_s")  # empty where a method has no such stage
 ESTIMATE = ("photons", "nearest", "adaptive", "filter", "estimator")  # what tables and heat maps compare
 
 
@@ -21,13 +20,13 @@ class Estimate:
         self.raw = own.get("estimator") == "raw"
         self.adaptive = own.get("adaptive") == "true"
         self.passes = int(own.get("passes", 1))
-        rows = cell.records
+        rows = [repeats[0] for repeats in records.by_seed(cell.records).values()]
         errors = [math.sqrt(float(row["relmse"])) for row in rows]
         self.error, self.least, self.greatest = statistics.median(errors), min(errors), max(errors)
         shares = [float(row["rmse"]) / float(row["reference_mean"]) for row in rows]
         self.rmse = statistics.median(shares)
         self.square = statistics.mean(share * share for share in shares)
-        self.seconds = statistics.median(sum(float(row.get(stage) or 0) for stage in STAGES) for row in rows)
+        self.seconds = statistics.median(map(records.cpu_seconds, cell.records))
         self.used = mean_used(rows)
 
     def estimator(self):

@@ -53,7 +53,7 @@ class Trials:
         return sorted(found, key=lambda setting: [dict(setting)[key] for key in keys])
 
     def seeds(self):
-        return min(len(records) for records in self.of.values())
+        return min(len({record["seed"] for record in records}) for records in self.of.values())
 
     def seconds(self, setting, kind):
         """Medians of the phases and of gathering; `kind`: cpu or wall."""

@@ -27,17 +27,19 @@ def half_interval(values):
 
 
 def log_variance(values):
-    """Of the logarithm of the mean, to first order; 0 for one value."""
-    if len(values) < 2:
+    """Of the logarithm of the mean, to first order; 0 for one value, and for zeros, which have no logarithm."""
+    mean = statistics.mean(values)
+    if len(values) < 2 or mean == 0:
         return 0.0
-    return statistics.variance(values) / len(values) / statistics.mean(values) ** 2
+    return statistics.variance([value / mean for value in values]) / len(values)  # as shares: no square leaves the doubles
 
 
 def is_worse(mine, best):
-    """Whether a value is above another by more than chance, by Welch's t with Satterthwaite's degrees of freedom."""
+    """Whether a value is above another by more than chance, by Welch's t with Satterthwaite's degrees of freedom. All that is
+    not 0 is above 0."""
     terms = [(variance, degrees) for variance, degrees in mine.terms + best.terms if variance > 0]
     variance = sum(variance for variance, _ in terms)
-    if variance == 0:
+    if variance == 0 or best.value == 0:
         return mine.value > best.value
     degrees = variance ** 2 / sum(variance ** 2 / degrees for variance, degrees in terms)
-    return math.log(mine.value / best.value) > student(degrees) * math.sqrt(variance)
+    return math.log(mine.value) - math.log(best.value) > student(degrees) * math.sqrt(variance)

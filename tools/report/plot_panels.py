@@ -4,11 +4,10 @@ A line is one method with its N (photons in the estimate); what else varies make
 """
 import dataclasses
 
-from report.records import PHOTON_PARAMETERS, as_number, natural
+from report.records import PHOTON_PARAMETERS, as_number, cpu_seconds, natural
 
 QUANTITIES = {"photons": "stored photons", "time": "time", "alpha": "alpha", "mesh_resolution": "mesh_resolution"}
 WORK = ("paths", "mesh_resolution")  # what a line runs along, where only some methods have it
-CPU_PARTS = ("precompute_cpu_s", "balance_cpu_s", "indirect_cpu_s", "render_cpu_s")
 # Okabe and Ito's palette without its yellow: distinct to every kind of colour vision.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 MARKERS = "osD^vPX*"
@@ -46,7 +45,7 @@ def set_times(cells):
     rows = [record for cell in cells for record in cell.records]
     if all(record.get("render_cpu_s") for record in rows):
         for record in rows:
-            record["time_s"] = repr(sum(float(record.get(part) or 0) for part in CPU_PARTS))
+            record["time_s"] = repr(cpu_seconds(record))
         return "CPU time of build and query [s]"
     for record in rows:
         record["time_s"] = record["total_s"]

@@ -5,7 +5,7 @@ import io
 import os
 import urllib.parse
 
-from report.records import FORMULAS, UNITS
+from report.records import FORMULAS, UNITS, table_head
 
 SUMMARISED = ("rmse", "relmse", "mean_ratio", "total_s", "precompute_s", "render_s", "photons_stored",
               "reference_stderr")
@@ -80,8 +80,8 @@ def summary_csv(records):
     """Every cell with the median, minimum and maximum of each summarised measure, all digits."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["scene", "method", *records.parameters, "records", "seeds"]
-                    + [f"{name}_{what}" for name in SUMMARISED for what in ("median", "min", "max")])
+    measured = [f"{name}_{what}" for name in SUMMARISED for what in ("median", "min", "max")]
+    writer.writerow(table_head(records.parameters, ["scene", "method"], ["records", "seeds", *measured]))
     for cell in records.cells:
         numbers = []
         for name in SUMMARISED:

@@ -32,6 +32,11 @@ RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN
 NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads") + MEASURES
 LABELS = ("isa", "code_version")  # never numbers, whatever they look like
+# CPU seconds of a trial's parts, each empty where a method has no such part: what all tools add up.
+BUILD = ("precompute_cpu_s", "balance_cpu_s")
+INDIRECT = ("indirect_cpu_s",)
+QUERY = ("render_cpu_s",)
+CPU_PARTS = BUILD + INDIRECT + QUERY
 NOT_NEGATIVE = ("photons_stored", "total_s", "rmse", "relmse", "reference_stderr")
 
 # What each metric is, as captions and axes say it: x the picture, r the reference, over all reached pixels and channels
@@ -92,6 +97,19 @@ class Records:
 
     def scenes(self):
         return sorted({cell.scene for cell in self.cells}, key=natural)
+
+
+def cpu_seconds(row, parts=CPU_PARTS):
+    """CPU seconds of a trial's parts: of build, indirect light and query unless others are named."""
+    return sum(float(row.get(part) or 0) for part in parts)
+
+
+def by_seed(rows):
+    """{seed: its rows}. Repeats measure the time again and make the same picture again, so an error is that of any of them."""
+    seeds = {}
+    for row in rows:
+        seeds.setdefault(row["seed"], []).append(row)
+    return seeds
 
 
 def natural(text):
@@ -173,6 +191,19 @@ def plain(field):
     return field[1:] if re.match(r"'+[=+\-@\t\r]", field) else field
 
 
+def table_head(parameters, before, after):
+    """The heads of a table's columns, with swept parameters in the middle. A parameter may have any name that no column of
+    records.csv has; one that is another column's here is called swept_… ."""
+    taken = {*before, *after}
+    heads = []
+    for name in parameters:
+        while name in taken:
+            name = f"swept_{name}"
+        taken.add(name)
+        heads.append(name)
+    return [*before, *heads, *after]
+
+
 def marked(field):
     """With it, where it is needed: what is read plainly is written so."""
     needs = re.match(r"'*[=+\-@\t\r]", field) and (field.startswith("'") or as_number(field) is None)
@@ -206,6 +237,8 @@ def check(path, line, row):
         number = as_number(text)
         if number is None or not math.isfinite(number):
             raise RecordsError(f'{place}: column {name} is "{text}", expected a finite number or nothing')
+        if not math.isfinite(number * number):
+            raise RecordsError(f'{place}: column {name} is "{text}", expected a number whose square is finite')
         if number < 0 and name in NOT_NEGATIVE:
             raise RecordsError(f'{place}: column {name} is "{text}", expected a number ≥ 0')
 

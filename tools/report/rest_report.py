@@ -2,8 +2,8 @@
 import math
 
 from equal_error import against, front, ratio_text
+from report.records import CPU_PARTS
 
-PHASES = ("precompute_cpu_s", "balance_cpu_s", "render_cpu_s")
 PAGE = """# Beams completed by photons
 
 Made by `tools/measure_beams.py --rest` on {machine}
@@ -42,7 +42,7 @@ def averaged(rows):
             "pixels": "averaged" if rows[0].get("pixel_footprint") or rows[0].get("footprint") else "points",
             "max_beams": rows[0]["max_beams"] if beams else "",
             "photons": f"{mean('rest_photons_stored'):.0f} stored" if beams else f"{rows[0]['photons']}, N = {rows[0]['nearest']}",
-            "seconds": sum(mean(phase) for phase in PHASES), "rmse": squares("rmse"), "relmse": mean("relmse"),
+            "seconds": sum(mean(part) for part in CPU_PARTS), "rmse": squares("rmse"), "relmse": mean("relmse"),
             "light": mean("mean_ratio"), "beams": beams, "left_out": mean("flux_share_pruned") + mean("flux_share_over_budget"),
             "lost": 1 - mean("flux_share_captured")}
 

@@ -106,8 +106,7 @@ function drawHead() {
     budget.value = state.contest === "" ? scene().contest ?? contests.length - 1 : state.contest;
     byId("budget-text").textContent = `${short(shownContest().seconds, 3)} CPU s`;
   }
-  const seeds = scene().seeds;
-  byId("scene-text").textContent = `${scene().width} × ${scene().height} pixels, ${scene().cells.length} cells, ${seeds} seed${seeds > 1 ? "s" : ""}, `
+  byId("scene-text").textContent = `${scene().width} × ${scene().height} pixels, ${scene().cells.length} cells, ${scene().seeds_text}, `
     + (scene().reference ? `reference ${scene().reference.method} ${scene().reference.key}` : "no reference");
   drawNotDone();
 }

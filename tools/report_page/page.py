@@ -8,7 +8,7 @@ from report.intervals import student
 from report.records import FORMULAS
 from report import exr
 from report_page import pictures
-from report_page.scenes import COSTS, ERRORS, best_of, rank
+from report_page.scenes import COSTS, ERRORS, best_of, rank, seeds_text
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -81,7 +81,7 @@ def make(sweeps, scenes, references, megabytes, tell=lambda picture: None):
     data = {
         "methods": sorted({cell.method for scene in scenes for cell in scene.cells}, key=rank),
         "newest": max((row.get("finished", "") for sweep in sweeps for row in sweep.rows), default=""),
-        "tables": [{"folder": os.path.basename(os.path.normpath(os.path.abspath(sweep.folder))), "header": sweep.header,
+        "tables": [{"folder": sweep.name, "header": sweep.header,
                     "rows": [[row[name] for name in sweep.header] for row in sweep.rows]} for sweep in sweeps],
         "scenes": [scene.data(sweeps) for scene in shown],
         "pictures": album.about,
@@ -188,10 +188,11 @@ class SceneData:
             data["rows"] = [[sweeps.index(cell.sweep), cell.sweep.place[row["trial"]]] for row in cell.rows]
             data["tied"] = cell in tied
         return {
-            "name": self.scene.name, "title": self.scene.title(), "seeds": self.scene.seeds(),
+            "name": self.scene.name, "title": self.scene.title(), "seeds": self.scene.seeds(), "seeds_text": seeds_text(cells),
             "height": self.size[0] if self.size else 0, "width": self.size[1] if self.size else 0,
             "reference": self.reference, "rest": self.rest, "cells": self.cells,
-            "contests": [{"seconds": seconds, "picks": {method: cells.index(cell) for method, cell in picks.items()},
+            "contests": [{"seconds": seconds, "seeds": min(len(cell.seeds()) for cell in picks.values()),
+                          "seeds_text": seeds_text(picks.values()), "picks": {method: cells.index(cell) for method, cell in picks.items()},
                           "best": [cells.index(cell) for cell in best]}
                          for seconds, picks, best in self.scene.contests()],
             "contest": self.scene.usual_contest(),

@@ -10,13 +10,11 @@ import statistics
 from report import records
 from report.intervals import FEWEST_SEEDS, Answer, half_interval, is_worse, log_variance
 from report.plot_panels import counted, varying
-from report.records import PHOTON_PARAMETERS, RecordsError, natural
+from report.records import BUILD, CPU_PARTS, PHOTON_PARAMETERS, QUERY, RecordsError, natural
 
-BUILD = ("precompute_cpu_s", "balance_cpu_s")
-QUERY = ("render_cpu_s",)
-INDIRECT = ("indirect_cpu_s",)
 ERRORS = ("rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "mask_rmse", "mask_relmse", "mask_mean_ratio",
           "beauty_rmse", "flip", "indirect_rmse", "indirect_relmse", "indirect_mean_ratio")
+OF_ALL_SEEDS = ("variance",)  # one value a cell, which each of its records repeats
 COSTS = ("work_s", "build_s", "query_s", "indirect_cpu_s", "total_s", "photons_stored", "photons_emitted", "map_bytes", "peak_rss_bytes")
 METHODS = ("photonmap", "beamtree", "causticpolygons", "illuminationmap", "lighttrace", "pathtrace", "none")
 LENGTHS = ("footprint", "max_radius")  # numbers that are no work: no line runs along them
@@ -25,10 +23,10 @@ PLAN_VERSION = 1
 
 
 class Sweep:
-    """The folder of a sweep: its cells and what was left out of them."""
+    """The folder of a sweep: its cells and what was left out of them. `name` tells it from the others of a report."""
 
     def __init__(self, folder):
-        self.folder = folder
+        self.folder, self.name = folder, os.path.basename(os.path.abspath(folder))
         self.path = os.path.join(folder, "records.csv")
         check_plan(folder)
         self.header, rows = records.read_rows(self.path)
@@ -50,6 +48,17 @@ def require_each_once(sweeps):
             first = place.setdefault(row["trial"], sweep)
             if first is not sweep:
                 raise RecordsError(f"{row['trial']}: is in {first.folder} and in {sweep.folder}; name one of the two")
+
+
+def name_folders(sweeps):
+    """Names them by as many of the last parts of their paths as tell them apart."""
+    paths = [os.path.abspath(sweep.folder).split(os.sep) for sweep in sweeps]
+    for count in range(1, max(map(len, paths)) + 1):
+        names = ["/".join(path[-count:]) for path in paths]
+        if len(set(names)) == len(names):
+            break
+    for sweep, name in zip(sweeps, names):
+        sweep.name = name
 
 
 def check_plan(folder):
@@ -87,12 +96,12 @@ class Cell:
     def values(self, column):
         """The column's numbers, a row each; [] where it does not apply to all rows. Build, query and their sum are CPU
         seconds."""
-        parts = {"build_s": BUILD, "query_s": QUERY, "work_s": BUILD + QUERY + INDIRECT}.get(column)
+        parts = {"build_s": BUILD, "query_s": QUERY, "work_s": CPU_PARTS}.get(column)
         if parts is None:
             return numbers(row.get(column) for row in self.rows)
         if not any(row.get(part) for row in self.rows for part in parts):
             return []
-        return [sum(float(row.get(part) or 0) for part in parts) for row in self.rows]
+        return [records.cpu_seconds(row, parts) for row in self.rows]
 
     def by_seed(self, column):
         """The column's numbers, a seed each: repeats make the same picture again."""
@@ -105,9 +114,11 @@ class Cell:
         return list(dict.fromkeys(row["seed"] for row in self.rows))
 
     def error(self, column):
-        """(mean, half its 95 % interval or None) over the seeds, or None."""
+        """(mean, half its 95 % interval or None) over the seeds, or None. What all seeds together have has no interval."""
         values = self.by_seed(column)
-        return (statistics.mean(values), half_interval(values)) if values else None
+        if not values:
+            return None
+        return (statistics.mean(values), None if column in OF_ALL_SEEDS else half_interval(values))
 
     def cost(self, column):
         """The median over seeds and repeats, or None."""
@@ -145,7 +156,11 @@ class Scene:
         return [cell for cell in self.cells if cell.by_seed("rmse") and cell.cost("work_s") is not None]
 
     def seeds(self):
+        """The fewest that a cell has."""
         return min(len(cell.seeds()) for cell in self.cells)
+
+    def folders(self):
+        return list(dict.fromkeys(cell.sweep.name for cell in self.cells))
 
     def contests(self):
         """[(CPU seconds, {method: its best cell until then}, the best and all that the seeds do not tell from it)], one for
@@ -176,14 +191,19 @@ class Scene:
                     if seconds >= goal and all(method in picks for method in first) or i + 1 == len(contests))
 
 
+def seeds_text(cells):
+    """How many seeds the cells have: 5 seeds, 2 to 3 seeds."""
+    fewest, most = (extreme(len(cell.seeds()) for cell in cells) for extreme in (min, max))
+    return (f"{fewest} to {most}" if fewest < most else f"{most}") + (" seeds" if most > 1 else " seed")
+
+
 def best_of(cells):
     """The cell with the least rmse and those that are not above it by more than chance; none with too few seeds."""
     cells = list(cells)
     if not cells or min(len(cell.by_seed("rmse")) for cell in cells) < FEWEST_SEEDS:
         return []
     best = min((cell.answer() for cell in cells), key=lambda answer: answer.value)
-    positive = best.value > 0
-    return [cell for cell in cells if (not is_worse(cell.answer(), best) if positive else cell.answer().value == 0)]
+    return [cell for cell in cells if not is_worse(cell.answer(), best)]
 
 
 def name_cells(scene):
@@ -196,7 +216,7 @@ def name_cells(scene):
         for cell in own:
             words = [f"{counted(cell.parameters[name])} {name}" if name in COUNTED else spelt(name, cell.parameters[name])
                      for name in sorted(names, key=lambda name: name != work) if name in cell.parameters and not of_indirect(name)]
-            place = (f"from {os.path.basename(os.path.normpath(cell.sweep.folder))}",) if folders else ()
+            place = (f"from {cell.sweep.name}",) if folders else ()
             cell.label = ", ".join([method, *words, *indirect_words(cell, names), *place])
             others = [name for name in names if name != work]
             cell.line = (method, *(spelt(name, cell.parameters[name]) for name in others
@@ -243,7 +263,9 @@ def work_parameter(cells, names):
 
 
 def scenes_of(sweeps):
-    """Every scene as it was set, in a natural order, with the settings that tell scenes of one name apart."""
+    """Every scene as it was set, in a natural order, with the settings that tell scenes of one name apart. The same settings in
+    two folders are two cells, since each has its own variance and its own machine."""
+    name_folders(sweeps)
     groups = {}
     for sweep in sweeps:
         for cell in sweep.records.cells:
@@ -252,6 +274,10 @@ def scenes_of(sweeps):
     found = [Scene(name, reference, cells) for (name, reference), cells in groups.items()]
     for scene in found:
         scene.settings = settings(scene, [other for other in found if other.name == scene.name])
+    titles = [scene.title() for scene in found]
+    for scene, title in zip(found, titles):
+        if titles.count(title) > 1:  # set alike, but held against different references
+            scene.settings["reference"] = scene.reference
     return sorted(found, key=lambda scene: [natural(scene.name)] + [natural(value) for value in scene.settings.values()])
 
 

@@ -68,11 +68,11 @@ async function drawStrip() {
 
 function contestText(contest) {
   if (!contest) return "No two methods have errors and times here, so nothing is held against equal time: the best of each method, or of each of indirect light.";
-  const seeds = scene().seeds, own = scene().cells.find((each) => each.references_error)?.references_error;
+  const own = scene().cells.find((each) => each.references_error)?.references_error;
   const noise = own && Object.values(contest.picks).some((i) => scene().cells[i].errors.rmse[0] < 2 * own)
     ? ` An rmse near ${short(own, 3)}, the reference's own standard error, is mostly the reference's noise.` : "";
   const time = `Each method's least rmse within ${short(contest.seconds, 3)} CPU seconds of build and query; ${page.words.rmse} of the caustic layer [W m⁻² sr⁻¹].${noise}`;
-  return seeds < 5 ? `${time} With ${seeds} seed${seeds > 1 ? "s" : ""} (five are asked for) none is called the best.`
+  return contest.seeds < 5 ? `${time} With ${contest.seeds_text} (five are asked for) none is called the best.`
     : `${time} ★: the best, and all that the seeds do not tell from it (Welch's t of the logarithms, 95 %).`;
 }
 

@@ -59,8 +59,10 @@ function drawTable() {
 }
 
 function tieText() {
-  return page.scenes.some((where) => where.seeds < 5) ? "Mean over seeds ± half its 95 % interval (Student); times and sizes are medians. With fewer than five seeds none is called the best."
-    : "Mean over seeds ± half its 95 % interval (Student); times and sizes are medians. ★: least rmse of its scene, and all that the seeds do not tell from it (Welch's t of the logarithms, 95 %).";
+  const few = page.scenes.filter((where) => where.seeds < 5).length;
+  return "Mean over seeds ± half its 95 % interval (Student); times and sizes are medians."
+    + (few < page.scenes.length ? " ★: least rmse of its scene, and all that the seeds do not tell from it (Welch's t of the logarithms, 95 %)." : "")
+    + (few ? " With fewer than five seeds none is called the best." : "");
 }
 
 function compare(a, b) {

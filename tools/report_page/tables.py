@@ -1,15 +1,17 @@
 """The tables of the page as CSV, with all digits, and as LaTeX (booktabs) for one or two columns of a paper."""
 import csv
+import decimal
 import io
 import math
 import re
 
 from report.record_tables import tex
-from report.records import RecordsError, marked
-from report_page.scenes import COSTS, ERRORS, rank
+from report.records import RecordsError, marked, table_head
+from report_page.scenes import COSTS, ERRORS, rank, seeds_text
 
 KNOWN = ERRORS + COSTS
 USUAL = ("rmse", "work_s")
+MOST_PLACES = 6  # after the point; beyond them a power of ten says it
 NARROW = 2  # columns of numbers that fit beside the labels in one column of a paper
 RADIANCE = r"$\mathrm{W\,m^{-2}\,sr^{-1}}$"
 TEX_UNITS = {"rmse": RADIANCE, "mask_rmse": RADIANCE, "beauty_rmse": RADIANCE, "indirect_rmse": RADIANCE, "indirect_cpu_s": "CPU seconds",
@@ -30,10 +32,18 @@ def all_of(scenes, columns):
     """[(file name, text)]."""
     made = [("cells.csv", cells_csv(scenes)), ("equal_time.csv", equal_time_csv(scenes)),
             ("equal_time.tex", equal_time_tex(scenes))]
+    return made + list(zip(file_names(scenes), (cells_tex(scene, columns) for scene in scenes)))
+
+
+def file_names(scenes):
+    """Of the scenes' LaTeX tables: no two are one, whatever signs their titles have."""
+    names = []
     for scene in scenes:
         name = re.sub(r"[^A-Za-z0-9.]+", "_", scene.title()).strip("_")
-        made.append((f"cells-{name}.tex", cells_tex(scene, columns)))
-    return made
+        while f"cells-{name}.tex" in names:
+            name += "_2"
+        names.append(f"cells-{name}.tex")
+    return names
 
 
 def csv_text(rows):
@@ -42,15 +52,21 @@ def csv_text(rows):
     return text.getvalue()
 
 
+def of_several_folders(scenes):
+    """Whether tables have a column that says which folder a cell is from."""
+    return len({name for scene in scenes for name in scene.folders()}) > 1
+
+
 def cells_csv(scenes):
+    several = of_several_folders(scenes)
     names = list(dict.fromkeys(name for scene in scenes for cell in scene.cells for name in cell.parameters))
-    heads = [f"{name}{what}" for name in ERRORS for what in ("", "_half_interval_95")] + list(COSTS)
-    rows = [["scene", "method", *names, "seeds", *heads]]
+    measured = [f"{name}{what}" for name in ERRORS for what in ("", "_half_interval_95")] + list(COSTS)
+    rows = [table_head(names, [*["folder"] * several, "scene", "method"], ["seeds", *measured])]
     for scene in scenes:
         for cell in scene.cells:
             errors = [number for name in ERRORS for number in cell.error(name) or (None, None)]
             costs = [cell.cost(name) for name in COSTS]
-            rows.append([scene.title(), cell.method, *(cell.parameters.get(name, "") for name in names),
+            rows.append([*[cell.sweep.name] * several, scene.title(), cell.method, *(cell.parameters.get(name, "") for name in names),
                          len(cell.seeds()), *("" if number is None else repr(number) for number in errors + costs)])
     return csv_text(rows)
 
@@ -66,26 +82,42 @@ def contest_rows(scene):
 
 
 def equal_time_csv(scenes):
-    rows = [["scene", "cpu_s_allowed", "method", "settings", "seeds", "rmse", "rmse_half_interval_95", "work_s", "build_s",
-             "query_s", "among_best"]]
+    several = of_several_folders(scenes)
+    rows = [[*["folder"] * several, "scene", "cpu_s_allowed", "method", "settings", "seeds", "rmse", "rmse_half_interval_95", "work_s",
+             "build_s", "query_s", "among_best"]]
     for scene in scenes:
         for seconds, method, cell, best in contest_rows(scene):
             error, half = cell.error("rmse")
-            rows.append([scene.title(), repr(seconds), method, cell.label, len(cell.seeds()), repr(error),
+            rows.append([*[cell.sweep.name] * several, scene.title(), repr(seconds), method, cell.label, len(cell.seeds()), repr(error),
                          "" if half is None else repr(half), *(repr(cell.cost(name)) for name in COSTS[:3]),
                          "yes" if best else ""])
     return csv_text(rows)
 
 
 def number_tex(value, half=None, digits=3):
-    """0.0532 ± 0.0004 to the digits that the interval leaves, else so many digits."""
+    """0.0532 ± 0.0040 to the digits that the interval leaves, else so many digits."""
     if value is None:
         return "--"
-    if half:
-        places = min(6, max(0, 1 - math.floor(math.log10(half))))
-        return f"${value:.{places}f} \\pm {half:.{places}f}$"
+    return f"${with_interval_tex(value, half) if half else rounded_tex(value, digits)}$"
+
+
+def rounded_tex(value, digits):
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
-    return f"${mantissa} \\cdot 10^{{{int(power)}}}$" if power else f"${mantissa}$"
+    return f"{mantissa} \\cdot 10^{{{int(power)}}}" if power else mantissa
+
+
+def with_interval_tex(value, half):
+    """The interval to two digits, the value to as many places: plainly, as (7.42 ± 0.20) · 10⁻⁷ where that has too many
+    zeros, and where the interval is far below the value each in digits of its own."""
+    places = 1 - math.floor(math.log10(half))
+    if max(abs(value), half) < 10 ** MOST_PLACES and places <= MOST_PLACES:
+        return f"{value:.{max(0, places)}f} \\pm {half:.{max(0, places)}f}"
+    power = math.floor(math.log10(max(abs(value), half)))
+    places = max(0, places + power)
+    if places > MOST_PLACES:
+        return rf"{rounded_tex(value, MOST_PLACES + 1)} \pm {rounded_tex(half, 2)}"
+    mantissas = [f"{decimal.Decimal(each).scaleb(-power):.{places}f}" for each in (value, half)]
+    return rf"({mantissas[0]} \pm {mantissas[1]}) \cdot 10^{{{power}}}"
 
 
 def head_tex(name):
@@ -119,7 +151,7 @@ def cells_tex(scene, columns):
             fields = [number_tex(*(cell.error(name) or (None,))) if name in ERRORS else number_tex(cell.cost(name))
                       for name in columns]
             rows.append([settings_tex(cell), *fields])
-    caption = (f"{tex(scene.title())}: mean over {scene.seeds()} seeds $\\pm$ half its 95\\,\\% interval (Student); times and "
+    caption = (f"{tex(scene.title())}: mean over {seeds_text(scene.cells)} $\\pm$ half its 95\\,\\% interval (Student); times and "
                f"sizes are medians. {units_tex(columns)}.")
     return tabular("l" + "r" * len(columns), ["settings", *map(head_tex, columns)], rows, len(columns) > NARROW, caption)
 
