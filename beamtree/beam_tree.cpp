@@ -10,6 +10,10 @@ namespace {
 /// Its counts name the tests of cones as well.
 class ConeSearch final : public BeamSearch {
 public:
+    /// Squares of `footprint` round points, and the points with them.
+    std::vector<PixelCell> squares;
+    std::vector<ReceiverPoint> points;
+
     void add_to(Counters& counters) const override {
         BeamSearch::add_to(counters);
         counters["cone_point_tests"] += counts.cone_point_tests;
@@ -23,6 +27,7 @@ public:
         : BeamEstimator(scene, std::move(traced), static_cast<std::uint32_t>(params.rest_nearest),
                         threads),
           forest_(std::move(forest)),
+          footprint_(static_cast<double>(params.footprint)),
           pixel_footprint_(params.pixel_footprint) {}
 
     bool asks_for_cells() const override { return pixel_footprint_; }
@@ -39,10 +44,19 @@ public:
 
 private:
     void find(std::span<const ReceiverPoint> points, BeamSearch& search) const override {
-        forest_.find(sets(), points, search);
+        if (footprint_ == 0) return forest_.find(sets(), points, search);
+        auto& own = dynamic_cast<ConeSearch&>(search);
+        own.squares.clear();
+        for (const ReceiverPoint& point : points)
+            own.squares.push_back(
+                PixelCell::square(point.geometric_normal.cast<double>(), footprint_));
+        own.points.assign(points.begin(), points.end());
+        for (std::size_t i = 0; i < points.size(); ++i) own.points[i].cell = &own.squares[i];
+        forest_.find(sets(), own.points, search);
     }
 
     Forest forest_;
+    double footprint_;
     bool pixel_footprint_;
 };
 

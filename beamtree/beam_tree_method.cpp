@@ -61,7 +61,8 @@ std::vector<Parameter<P>> tree_parameters() {
         parameter::optional_length<P>(&P::footprint, "leave it out to ask at points",
                                       {.key = "footprint",
                                        .meaning = "With two_slice: side of the square round a "
-                                                  "point that irradiance is averaged over."})
+                                                  "point, on its tangent plane, that irradiance is "
+                                                  "averaged over."})
             .usually("none"),
         parameter::yes_or_no<P>(
             &P::pixel_footprint,

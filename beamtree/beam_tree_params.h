@@ -32,7 +32,7 @@ struct BeamTreeParams : BeamParams {
     Tree hierarchy = Tree::binned;
     Leaf leaf = Leaf::fixed;  ///< with two_slice always
     Intensity intensity = Intensity::refined;
-    /// Side of the square round each point, on the tree's planes, over which its irradiance is averaged
+    /// Side of the square round each point, on its tangent plane along PlaneAxes, over which its irradiance is averaged
     /// exactly [m]; 0: at the point alone. Only with the bound two_slice; beams that spread too far for
     /// a fixed plane, and polygons that the plane cuts, are asked at the point.
     float footprint = 0;

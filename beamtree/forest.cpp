@@ -72,8 +72,8 @@ Hierarchy quadtree_of(const TracedScene& traced, const TreePlan& plan) {
 }
 
 SliceTree slice_tree(const Scene& scene, const TracedScene& traced, const TreePlan& plan,
-                     float footprint, const RunOptions& options, int threads) {
-    SlicedBeams beams{traced.sets, plan.beams, *plan.normal, scene.bounds(), footprint};
+                     const RunOptions& options, int threads) {
+    SlicedBeams beams{traced.sets, plan.beams, *plan.normal, scene.bounds()};
     if (!plan.regular) return {std::move(beams), options.isa, threads};
     const Hierarchy hierarchy = quadtree_of(traced, plan);
     beams.beams.clear();
@@ -107,8 +107,7 @@ Forest::Forest(const Scene& scene, const TracedScene& traced, const BeamTreePara
     TraceProgress progress(options);
     const auto build = [&](std::size_t i, int threads) {
         if (plans[i].sliced)
-            slices[i].emplace(
-                slice_tree(scene, traced, plans[i], params.footprint, options, threads));
+            slices[i].emplace(slice_tree(scene, traced, plans[i], options, threads));
         else
             cones[i].emplace(cone_tree(scene, traced, plans[i], params, threads));
         progress.add(1 / static_cast<double>(plans.size()));

@@ -1,13 +1,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "core/math/plane_axes.h"
 
 namespace caustics {
 
-/// The part of a picture that one camera sample stands for, as the camera sees it on the tangent plane of a
-/// receiver point: a convex quadrilateral. A pixel's cells cover it once.
+/// Where irradiance is averaged instead of being asked at a receiver point, on its tangent plane: the part of a picture
+/// that one camera sample stands for, as the camera sees it there, a convex quadrilateral (a pixel's cells cover it
+/// once), or a square round the point.
 struct PixelCell {
     Vec3d normal;    ///< of the plane, on the camera's side; unit to rounding
     PlaneAxes axes;  ///< of the plane; coordinates along them are from the receiver point [m]
@@ -15,6 +17,16 @@ struct PixelCell {
     double radius = 0;             ///< distance of the farthest one
     /// By which share of the point's depth [1/m] the camera's depth grows along the axes.
     Vec2d depth_slope = Vec2d::Zero();
+
+    /// Along PlaneAxes.
+    static PixelCell square(const Vec3d& normal, double side) {
+        const double half = side / 2;
+        return {.normal = normal,
+                .axes = PlaneAxes(normal),
+                .corners = {Vec2d(-half, -half), Vec2d(half, -half), Vec2d(half, half),
+                            Vec2d(-half, half)},
+                .radius = std::sqrt(2.0) * half};
+    }
 
     Vec2d along(const Vec3d& way) const { return {axes.right.dot(way), axes.forward.dot(way)}; }
     /// From the receiver point [m].

@@ -52,13 +52,14 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
 bool meets_receiver(const Scene& scene, const ReceiverPoint& point, const BeamHit& hit,
                     const SegmentEnd& start) {
     const Vec3 middle = point.position + hit.offset;
-    const Vec3 direction = (middle - start.position).normalized();
-    const auto met = scene.intersect(spawn_ray(start, direction));
+    Ray ray = spawn_ray(start, (middle - start.position).normalized());
+    ray.direction = (middle - ray.origin).normalized();
+    const auto met = scene.intersect(ray);
     if (!met) return false;
     const float away = (met->position - middle).norm();
-    if (away <= hit.cell_radius / 100) return true;
-    const float slant = std::abs(point.geometric_normal.dot(direction));
-    return met->shape == point.shape && away * slant <= 2 * hit.cell_radius &&
+    if (away <= std::max(hit.cell_radius / 100, 4 * point.offset)) return true;
+    const float slant = std::abs(point.geometric_normal.dot(ray.direction));
+    return met->shape == point.shape && away * slant <= 2 * hit.cell_radius + 4 * point.offset &&
            std::abs(met->geometric_normal.dot(point.geometric_normal)) >= same_surface_cosine;
 }
 
@@ -73,8 +74,8 @@ BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
 
 std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit, const VertexRay& guess,
                                                        const Vec3& point) const {
-    // Of a square round the point its middle is not what is asked for.
-    if (!searches_[hit.set] || hit.is_part_of_square()) return {};
+    // Of a cell round the point its middle is not what is asked for.
+    if (!searches_[hit.set] || hit.is_part_of_cell()) return {};
     return searches_[hit.set]->find(sets_[hit.set].beams[hit.beam], hit.triangle, guess, point);
 }
 
@@ -113,8 +114,8 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                 (factor * exact->weight * left).template cast<double>() * exact->density * cosine;
             continue;
         }
-        // Of a small polygon in a square no more than the square's area counts.
-        const double area = hit.is_part_of_square() ? hit.area : std::max(hit.area, least_area);
+        // Of a small polygon in a cell no more than the cell's area counts.
+        const double area = hit.is_part_of_cell() ? hit.area : std::max(hit.area, least_area);
         double density = refined_density(set, hit, point.position)
                              .value_or(hit.flux_share / area);  // [CC95 (11)]
         density *= hit.coverage;

@@ -20,11 +20,11 @@ struct BeamHit {
     Vec3 weights;             ///< barycentric, of the triangle's corners: where the light left
     double area = 0;          ///< of the caustic polygon [m^2], see test_beam
     double flux_share = 1;    ///< of the beam's flux that falls on it
-    double coverage = 1;      ///< of a square round the point; 1 where the point itself is asked
-    /// Covariances of the weights (1, 2), (2, 0) and (0, 1) over the part of the square that is covered;
-    /// 0 where the point itself is asked.
+    double coverage = 1;      ///< of a cell round the point; 1 where the point itself is asked
+    /// Covariances of the weights (1, 2), (2, 0) and (0, 1) over the part of the cell that is covered; 0 where the
+    /// point itself is asked.
     Vec3 covariances = Vec3::Zero();
-    /// Where the middle of a pixel's cell part lies, from the point, and the cell's radius [m]; 0: not of a cell.
+    /// Where the middle of that part lies, from the point, and the cell's radius [m]; 0: the point itself is asked.
     Vec3 offset = Vec3::Zero();
     float cell_radius = 0;
     /// Of a beam that drifts: the places in its bin of wavelengths between which it holds the point.
@@ -32,8 +32,8 @@ struct BeamHit {
     double to = 0;
 
     double place() const { return (from + to) / 2; }
-    /// Whether the mean over a square is asked for, of which this is a part.
-    bool is_part_of_square() const { return coverage != 1 || cell_radius > 0; }
+    /// Whether the mean over a cell is asked for, of which this is a part.
+    bool is_part_of_cell() const { return cell_radius > 0; }
 };
 
 /// Does the point that the plane goes through lie inside the beam? Writes up to two hits (a polygon

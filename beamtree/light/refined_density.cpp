@@ -65,7 +65,7 @@ public:
 
     /// At the point with these barycentric weights, to a factor [W m^-2].
     double irradiance(const Vec3d& weights) const { return 1 / std::abs(weights.dot(spread_)); }
-    /// The mean of it over the hit's part of a square, to second order of how the spread varies there.
+    /// The mean of it over the hit's part of a cell, to second order of how the spread varies there.
     double irradiance(const BeamHit& hit) const {
         const double spread = hit.weights.cast<double>().dot(spread_);
         const Vec3d apart(spread_[1] - spread_[2], spread_[2] - spread_[0],
@@ -147,8 +147,8 @@ std::optional<double> refined_density(const BeamSet& set, const BeamHit& hit, co
     if (set.spreads.empty()) return {};
     const TestPlane plane(point, hit.plane_normal);
     if (const auto found = density_on(plane, set, hit)) return found;
-    // Of a square [CC95 (11)] keeps the flux; on another plane the covered part is another one.
-    if (hit.is_part_of_square()) return {};
+    // Of a cell [CC95 (11)] keeps the flux; on another plane the covered part is another one.
+    if (hit.is_part_of_cell()) return {};
     const Vec3 direction = arriving_direction(set, hit);
     const auto across = density_on(TestPlane(point, -direction), set, hit);
     if (!across) return {};

@@ -23,6 +23,8 @@ public:
         return {static_cast<double>(p[u_]) - point_[u_] + s * static_cast<double>(d[u_]),
                 static_cast<double>(p[v_]) - point_[v_] + s * static_cast<double>(d[v_])};
     }
+    /// The same two coordinates of a way along the plane.
+    Vec2d across(const Vec3d& way) const { return {way[u_], way[v_]}; }
     /// Area on the plane over the area in those coordinates.
     double area_scale() const { return area_scale_; }
 

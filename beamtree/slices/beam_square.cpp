@@ -51,7 +51,7 @@ bool apart(const BeamSquare& square, const Triangle& triangle, double area) {
             return true;
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec2d side = triangle[(i + 1) % 3] - triangle[i];
-        if (std::ranges::all_of(square.corners, [&](const Vec2d& p) {
+        if (std::ranges::all_of(square.cell->corners, [&](const Vec2d& p) {
                 return cross(side, p - triangle[i]) * area < 0;
             }))
             return true;
@@ -98,30 +98,58 @@ double area_on_film(const Part& part, const PixelCell& cell) {
     return area;
 }
 
-Vec2d place(const BeamSquare& square, const Vec3d& p) {
-    const Vec3d& point = square.plane.point();
-    return square.cell == nullptr ? square.frame->across(p) - square.frame->across(point)
-                                  : square.cell->along(p - point);
+/// One of a beam's triangles on the tree's plane through the point, where boxes bound it and its light comes down evenly.
+/// Coordinates are from the point.
+struct OnPlane {
+    Triangle at;
+    double area = 0;  ///< with the sign of the triangle's turn
+    Vec3d direction;  ///< that its light has at the point, or at the nearest of its places
+};
+
+Vec3d weights_at(const Vec2d& p, const Triangle& t, double area) {
+    const Vec3d weights(cross(t[1] - p, t[2] - p), cross(t[2] - p, t[0] - p),
+                        cross(t[0] - p, t[1] - p));
+    return weights / (2 * area);
 }
 
-// The triangle on the plane that is asked about. Empty where its light does not come down to the plane
-// everywhere, or not evenly.
-std::optional<Triangle> project(const std::array<const VertexRay*, 3>& rays,
-                                const BeamSquare& square) {
-    Triangle at;
+// Empty where it does not come down to the plane everywhere, or not evenly.
+std::optional<OnPlane> project(const std::array<const VertexRay*, 3>& rays,
+                               const TestPlane& plane) {
+    OnPlane found;
     double least = 1;
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double height = square.plane.height(rays[i]->position);
-        const double steepness = square.plane.steepness(rays[i]->direction);
+        const double height = plane.height(rays[i]->position);
+        const double steepness = plane.steepness(rays[i]->direction);
         if (!(height > 0 && steepness > 0)) return {};
         least = std::min(least, steepness);
         most = std::max(most, steepness);
-        at[i] = place(square, rays[i]->position.cast<double>() +
-                                  height / steepness * rays[i]->direction.cast<double>());
+        found.at[i] = plane.project(rays[i]->position, height / steepness, rays[i]->direction);
     }
     if (most > most_uneven * least) return {};
-    return at;
+    found.area = area_of(found.at);
+    found.direction = Vec3d::Zero();
+    if (found.area == 0) return found;
+    const Vec3d nearest = weights_at(Vec2d::Zero(), found.at, found.area).cwiseMax(0);
+    for (std::size_t i = 0; i < 3; ++i)
+        found.direction +=
+            nearest[static_cast<Eigen::Index>(i)] * rays[i]->direction.cast<double>();
+    return found;
+}
+
+// From the cell's coordinates to those on the tree's plane, along the light. Empty where the light does not come to the cell's
+// front.
+std::optional<Eigen::Matrix2d> along_light(const PixelCell& cell, const TestPlane& plane,
+                                           const Vec3d& direction) {
+    if (!(cell.normal.dot(direction) < 0)) return {};
+    const auto onto = [&](const Vec3d& way) {
+        return plane.across(way -
+                            plane.normal().dot(way) / plane.normal().dot(direction) * direction);
+    };
+    Eigen::Matrix2d map;
+    map << onto(cell.axes.right), onto(cell.axes.forward);
+    if (map.determinant() == 0) return {};
+    return map;
 }
 
 // Of the weights of corners 1 and 2, 2 and 0, 0 and 1.
@@ -138,28 +166,10 @@ Vec3 weights_covariances(const Eigen::Matrix2d& of_places, const Triangle& t, do
     return found;
 }
 
-Vec3 weights_at(const Vec2d& p, const Triangle& t, double area) {
-    const Vec3d weights(cross(t[1] - p, t[2] - p), cross(t[2] - p, t[0] - p),
-                        cross(t[0] - p, t[1] - p));
-    return (weights / (2 * area)).cast<float>();
-}
-
 }  // namespace
 
-BeamSquare BeamSquare::at(const TestPlane& plane, const SliceFrame& frame, double half) {
-    return {
-        .plane = plane,
-        .frame = &frame,
-        .corners = {Vec2d(-half, -half), Vec2d(half, -half), Vec2d(half, half), Vec2d(-half, half)},
-        .outward = {Vec2d(-1, 0), Vec2d(1, 0), Vec2d(0, -1), Vec2d(0, 1)},
-        .limit = {half, half, half, half},
-        .area = 4 * half * half};
-}
-
 std::optional<BeamSquare> BeamSquare::at(const Vec3& point, const PixelCell& cell) {
-    BeamSquare square{.plane = TestPlane(point, cell.normal.cast<float>()),
-                      .cell = &cell,
-                      .corners = cell.corners};
+    BeamSquare square{.plane = TestPlane(point, cell.normal.cast<float>()), .cell = &cell};
     const double turn = cross(cell.corners[2] - cell.corners[0], cell.corners[3] - cell.corners[1]);
     if (turn == 0) return {};
     Part all;
@@ -191,38 +201,40 @@ void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& r
                     const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,
                     std::vector<BeamHit>& hits, SearchCounts& counts) {
     const std::size_t count = rays[3] == nullptr ? 1 : 2;
-    std::array<Triangle, 2> triangles;
-    std::array<double, 2> areas{};
+    std::array<OnPlane, 2> triangles;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto projected = project({rays[0], rays[1 + i], rays[2 + i]}, square);
+        const auto projected = project({rays[0], rays[1 + i], rays[2 + i]}, plane);
         if (!projected) return find_in_beam(set, rays, number, plane, hits, counts);
         triangles[i] = *projected;
-        areas[i] = area_of(*projected);
     }
     // Two triangles that keep their orientation are one caustic polygon.
-    const bool together = areas[0] * areas[1] > 0;
+    const bool together = triangles[0].area * triangles[1].area > 0;
     ++counts.beam_point_tests;
     const std::size_t before = hits.size();
     for (std::size_t i = 0; i < count; ++i) {
-        if (areas[i] == 0 || apart(square, triangles[i], areas[i])) continue;
-        const Part covered = within(square, triangles[i]);
+        const OnPlane& whole = triangles[i];
+        const auto map = along_light(*square.cell, plane, whole.direction);
+        if (whole.area == 0 || !map) continue;
+        const Eigen::Matrix2d back = map->inverse();
+        const Triangle triangle = {back * whole.at[0], back * whole.at[1], back * whole.at[2]};
+        const double area = area_of(triangle);
+        if (apart(square, triangle, area)) continue;
+        const Part covered = within(square, triangle);
         const Extent part = extent(covered);
-        if (!(part.area / areas[i] > 0)) continue;
+        if (!(part.area / area > 0)) continue;
         BeamHit hit;
         hit.set = number.set;
         hit.beam = number.beam;
         hit.triangle = static_cast<std::uint8_t>(i);
-        hit.winding = areas[i] > 0 ? 1 : -1;
-        hit.plane_normal = square.plane.normal().cast<float>();
-        hit.weights = weights_at(part.middle, triangles[i], areas[i]);
-        hit.covariances = weights_covariances(part.covariance, triangles[i], areas[i]);
-        hit.area = std::abs(together ? areas[0] + areas[1] : areas[i]);
-        hit.coverage = std::abs(part.area) / square.area;
-        if (square.cell != nullptr) {
-            hit.coverage = std::abs(area_on_film(covered, *square.cell) / square.area);
-            hit.offset = square.cell->at(part.middle).cast<float>();
-            hit.cell_radius = static_cast<float>(square.cell->radius);
-        }
+        hit.winding = whole.area > 0 ? 1 : -1;
+        hit.plane_normal = plane.normal().cast<float>();
+        hit.weights = weights_at(part.middle, triangle, area).cast<float>();
+        hit.covariances = weights_covariances(part.covariance, triangle, area);
+        hit.area = std::abs(together ? triangles[0].area + triangles[1].area : whole.area) *
+                   plane.area_scale();
+        hit.coverage = std::abs(area_on_film(covered, *square.cell) / square.area);
+        hit.offset = square.cell->at(part.middle).cast<float>();
+        hit.cell_radius = static_cast<float>(square.cell->radius);
         if (count == 2 && !together) hit.flux_share = set.beams[number.beam].share_of(i);
         hits.push_back(hit);
     }

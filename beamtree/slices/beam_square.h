@@ -9,20 +9,15 @@
 
 namespace caustics::beamtree {
 
-/// Where irradiance is averaged instead of being asked at a point, a convex quadrilateral with its plane: a square on a
-/// plane of a frame, along its axes (`footprint`), or the cell of a camera sample on the receiver's plane
-/// (`pixel_footprint`). Coordinates are from the point.
+/// A cell with its plane. Coordinates are from the point, along the cell's axes.
 struct BeamSquare {
     TestPlane plane;
-    const SliceFrame* frame = nullptr;  ///< whose axes they run along; or those of:
     const PixelCell* cell = nullptr;
-    std::array<Vec2d, 4> corners = {};
     /// What lies inside has outward . p <= limit for each side.
     std::array<Vec2d, 4> outward = {};
     std::array<double, 4> limit = {};
-    double area = 0;  ///< of a cell as the camera shows it
+    double area = 0;  ///< as the camera shows it
 
-    static BeamSquare at(const TestPlane& plane, const SliceFrame& frame, double half_side);
     /// Empty for a cell without area.
     static std::optional<BeamSquare> at(const Vec3& point, const PixelCell& cell);
 };

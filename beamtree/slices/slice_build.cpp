@@ -30,8 +30,8 @@ float widest(const SliceBox& box, int axis) {
 
 class Widener {
 public:
-    Widener(const Hierarchy& from, std::span<const SlicedTriangle> triangles, float reach)
-        : from_(from), triangles_(triangles), reach_(reach) {
+    Widener(const Hierarchy& from, std::span<const SlicedTriangle> triangles)
+        : from_(from), triangles_(triangles) {
         SliceBox all;
         for (const SlicedTriangle& triangle : triangles) {
             all.extend(box_of(triangle));
@@ -58,10 +58,10 @@ public:
         copy_branches(threads, all);
         all.leaf_width /= static_cast<float>(all.leaves.size());
         all.travel /= static_cast<float>(triangles_.size());
-        all.room = margin_ + reach_;
+        all.room = margin_;
         for (const SlicedTriangle& triangle : triangles_)
-            all.room = std::max({all.room, margin_ + reach_ + triangle.drift[0],
-                                 margin_ + reach_ + triangle.drift[1]});
+            all.room =
+                std::max({all.room, margin_ + triangle.drift[0], margin_ + triangle.drift[1]});
         return all;
     }
 
@@ -197,9 +197,9 @@ private:
         for (int axis = 0; axis < 2; ++axis) {
             const float low = child.box.low(axis, 0);
             const float high = child.box.high(axis, 0);
-            wide.low[axis][i] = low - margin_ - reach_;
+            wide.low[axis][i] = low - margin_;
             wide.low_growth[axis][i] = child.box.low(axis, 1) - low;
-            wide.high[axis][i] = high + margin_ + reach_;
+            wide.high[axis][i] = high + margin_;
             wide.high_growth[axis][i] = child.box.high(axis, 1) - high;
         }
         wide.begun_from[i] = child.begun_from;
@@ -227,9 +227,8 @@ private:
                 width = std::max(width, widest(box, axis));
             }
             into.travel += std::hypot(leaf.growth[0][0][i], leaf.growth[0][1][i]);
-            // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin; and
-            // moving the point by the reach adds the reach times both extents of the edge.
-            leaf.slack[i] = margin_ * (5 * width + 4 * (margin_ + reach_)) + 2 * reach_ * width;
+            // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin.
+            leaf.slack[i] = margin_ * (5 * width + 4 * margin_);
             // Likewise for corners that move.
             const auto& [along, across] = triangle.drift;
             leaf.slack[i] +=
@@ -248,16 +247,15 @@ private:
     const Hierarchy& from_;
     std::span<const SlicedTriangle> triangles_;
     std::vector<std::uint32_t> first_of_;  ///< triangles of the beams in their order, and the end
-    float reach_;
     float margin_ = 0;
     std::vector<Branch> branches_;
 };
 
 }  // namespace
 
-SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles, float reach,
+SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles,
                  int threads) {
-    return Widener(hierarchy, triangles, reach).run(threads);
+    return Widener(hierarchy, triangles).run(threads);
 }
 
 }  // namespace caustics::beamtree

@@ -30,9 +30,9 @@ struct SliceNodes {
 };
 
 /// Makes a hierarchy eight wide by opening the child with most triangles again and again.
-/// `triangles` are in the order of the hierarchy's beams; those of one beam side by side. A walk finds
-/// what comes within `reach` of a point along either axis [m]. The same with any number of threads.
-SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles, float reach,
+/// `triangles` are in the order of the hierarchy's beams; those of one beam side by side. The same with any number of
+/// threads.
+SliceNodes widen(const Hierarchy& hierarchy, std::span<const SlicedTriangle> triangles,
                  int threads = 1);
 
 }  // namespace caustics::beamtree

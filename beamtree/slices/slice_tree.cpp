@@ -181,14 +181,10 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa, int
     : SliceTree(std::move(beams), &hierarchy, isa, threads) {}
 
 SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa, int threads)
-    : frame_(frame_of(beams)),
-      half_footprint_(static_cast<double>(beams.footprint) / 2),
-      plane_(Vec3::Zero(), beams.normal),
-      walk_(walk_for(isa)) {
+    : frame_(frame_of(beams)), plane_(Vec3::Zero(), beams.normal), walk_(walk_for(isa)) {
     const Slicer slicer(beams, frame_, threads);
     const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer, threads);
-    SliceNodes made =
-        widen(hierarchy, triangles_of(beams, slicer, threads), beams.footprint / 2, threads);
+    SliceNodes made = widen(hierarchy, triangles_of(beams, slicer, threads), threads);
     nodes_ = std::move(made.nodes);
     leaves_ = std::move(made.leaves);
     root_ = made.root;
@@ -264,14 +260,6 @@ bool SliceTree::place(const ReceiverPoint& point, SlicePoint& placed) const {
     return true;
 }
 
-std::optional<BeamSquare> SliceTree::square_of(const ReceiverPoint& point) const {
-    if (point.cell != nullptr) return BeamSquare::at(point.position, *point.cell);
-    if (half_footprint_ == 0) return {};
-    TestPlane plane = plane_;
-    plane.move_to(point.position);
-    return BeamSquare::at(plane, frame_, half_footprint_);
-}
-
 void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoint> points,
                      std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
                      SearchCounts& counts) const {
@@ -294,7 +282,9 @@ void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoin
         Group& group = groups[count - 1];
         group.number[group.count - 1] = i;
         group.position[group.count - 1] = &points[i].position;
-        group.square[group.count - 1] = square_of(points[i]);
+        std::optional<BeamSquare>& square = group.square[group.count - 1];
+        square.reset();
+        if (points[i].cell != nullptr) square = BeamSquare::at(points[i].position, *points[i].cell);
     }
     if (count > 0) find(std::span(groups).first(count), sets, stack, hits, counts);
 }

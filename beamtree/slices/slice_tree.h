@@ -20,7 +20,6 @@ struct SlicedBeams {
     std::vector<BeamNumber> beams;  ///< at least one; all of their rays come down to the planes
     Vec3 normal;                    ///< of the planes, against the light
     Box receivers;                  ///< where receiver points can be
-    float footprint = 0;            ///< side of the squares round points that are asked for [m]
 };
 
 /// A tree of beams, each node bounded by its rays' boxes on two planes across the normal: above all
@@ -55,7 +54,6 @@ private:
     struct Group;
     SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa, int threads);
     bool place(const ReceiverPoint& point, SlicePoint& placed) const;
-    std::optional<BeamSquare> square_of(const ReceiverPoint& point) const;
     void keep_corners(std::span<const BeamSet> sets);
     void find(std::span<const Group> groups, std::span<const BeamSet> sets,
               std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
@@ -69,7 +67,6 @@ private:
     std::vector<VertexRay> corners_;
     std::size_t corner_count_ = 0;
     SliceFrame frame_;
-    double half_footprint_;
     TestPlane plane_;  ///< the direction of all planes
     WalkSlices walk_;
     std::vector<SliceNode> nodes_;

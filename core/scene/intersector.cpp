@@ -184,6 +184,14 @@ void write_ray(const Ray& ray, unsigned i, Packet& packet) {
     packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
 }
 
+// Where Embree has no packets of this width it cuts them up and takes for valid what is not empty, whatever `valid` says;
+// what no one has written may even abort it.
+void write_no_ray(unsigned i, Packet& packet) {
+    write_ray(Ray{}, i, packet);
+    packet.ray.tnear[i] = 1;
+    packet.ray.tfar[i] = 0;
+}
+
 void occlude_scene(RTCScene scene, RTCRay& ray) {
 #if RTC_VERSION_MAJOR >= 4
     rtcOccluded1(scene, &ray);
@@ -288,6 +296,8 @@ void Intersector::intersect_together(std::span<const Ray> rays,
         valid[i] = -1;
         write_ray(rays[i], i, packet);
     }
+    for (auto i = static_cast<unsigned>(rays.size()); i < most_rays_together; ++i)
+        write_no_ray(i, packet);
     Query query;
     intersect_packet(embree_->scene, valid.data(), packet, query);
     const RTCHit16& hit = packet.hit;

@@ -147,6 +147,13 @@ bool are_same(const RunResult& a, const RunResult& b) {
            std::ranges::equal(a.film.planes(), b.film.planes(), {}, &Plane::values, &Plane::values);
 }
 
+/// Whether a pixel's samples have a path each, however little work is asked for.
+bool is_below_samples(const RunRequest& request, const WorkParameter& work, std::int64_t value) {
+    const SampleCount& samples = request.method.facts().samples;
+    return samples.of_a_pixel && samples.parameter == work.parameter &&
+           value <= request.samples_per_pixel;
+}
+
 /// Says where a picture that has the work to fit its time does not.
 Picture told_of_misfit(Picture picture, double seconds) {
     constexpr double most_misfit = 0.25;
@@ -170,7 +177,8 @@ Picture picture_in_time(const RenderOptions& options) {
         Picture picture = picture_of(trial);
         write_stderr(fmt::format("{}: {:.3g} s, {:.3g} CPU s of the {} s of --seconds\n", chosen,
                                  picture.took.wall, picture.took.cpu, shortest(*options.seconds)));
-        if (last && are_same(last->result, picture.result)) {
+        if (last && are_same(last->result, picture.result) &&
+            !is_below_samples(picture.request, work, budget.work())) {
             picture.result.notes.push_back(fmt::format(
                 "{} makes no difference here, so that the picture does not take the {} s of "
                 "--seconds{}",

@@ -99,6 +99,10 @@ std::string flaw_of(const json& record) {
     if (!record.is_object()) return "not a JSON object";
     for (const RecordColumn& column : record_columns_of_all()) {
         const json::json_pointer& place = places().at(column.name);
+        const json::json_pointer holder = place.parent_pointer();
+        if (record.contains(holder) && !record.at(holder).is_object() &&
+            !record.at(holder).is_null())
+            return fmt::format("{}: expected an object", holder.to_string());
         if (!record.contains(place) || record.at(place).is_null()) continue;
         if (!is_of_kind(record.at(place), column.kind))
             return fmt::format("{}: expected {}", column.pointer, name_of(column.kind));

@@ -47,7 +47,9 @@ void SweepSummary::add(const TableRow& row) {
     const std::optional<double> rmse = row.number("rmse");
     if (!rmse) return;
     const Values values = values_of(row);
-    const std::string judge = row.text("reference") + " " + row.text("unreached_fraction");
+    // Errors over other pixels are not compared; how many a method leaves out varies a little by seed.
+    const std::string judge = fmt::format("{} {:.2f}", row.text("reference"),
+                                          row.number("unreached_fraction").value_or(0));
     const auto [place, is_first] =
         scenes_[row.text("scene")].try_emplace(judge, Judged{{}, values});
     Judged& judged = place->second;

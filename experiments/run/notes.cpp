@@ -16,6 +16,7 @@
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
 #include "core/scene/lights_on_casters.h"
+#include "core/scene/shared_faces.h"
 
 namespace caustics::experiments {
 
@@ -119,6 +120,21 @@ std::optional<std::string> what_crosses(const Scene& scene) {
         : pairs.size() == 2 ? " (and 1 pair more)"
                             : fmt::format(" (and {} pairs more{})", pairs.size() - 1,
                                           pairs.size() < most_crossing_pairs ? "" : ", at least"));
+}
+
+std::optional<std::string> what_shares_faces(const Scene& scene) {
+    const auto faces = shared_faces(scene);
+    if (faces.empty()) return {};
+    return fmt::format(
+        "{} lies with a face on {}{}: light that leaves one of the two steps over the other, and "
+        "what "
+        "comes there is not to be trusted (leave a gap of a ten-thousandth of the size, or make "
+        "one "
+        "surface of both)",
+        scene.shapes()[faces[0].caster].name, scene.shapes()[faces[0].other].name,
+        faces.size() == 1   ? ""
+        : faces.size() == 2 ? " (and 1 pair more)"
+                            : fmt::format(" (and {} pairs more)", faces.size() - 1));
 }
 
 std::string where_it_lies(const Scene& scene, const LightOnCaster& light) {
@@ -298,6 +314,7 @@ std::vector<std::string> notes_on(const Scene& scene) {
                 "surface is lost (face_normals: true shades the triangles flat)",
                 caster.text()));
     if (const auto crossing = what_crosses(scene)) all.push_back(*crossing);
+    if (const auto faces = what_shares_faces(scene)) all.push_back(*faces);
     for (const LightOnCaster& light : lights_on_casters(scene))
         all.push_back(where_it_lies(scene, light));
     if (eye_medium(scene).ambiguous)

@@ -28,10 +28,11 @@ std::string trials_text(const SweepStatus& status, const SweepOptions& options,
 }
 
 std::string time_text(const SweepStatus& status, const SweepOptions& options,
-                      const std::optional<Cost>& cost) {
+                      const std::optional<Cost>& cost, std::size_t references) {
     if (!cost) return "unknown: no trial has run yet (run a few by --filter)";
-    return fmt::format("about {} with {} at a time, from {} earlier records{}",
+    return fmt::format("about {} with {} at a time{}, from {} earlier records{}",
                        clock_text(cost->seconds / options.trials.jobs), options.trials.jobs,
+                       references == 0 ? "" : ", and that of the references, which is not known",
                        status.count("done"),
                        status.other_code.empty() ? "" : ", some by other code");
 }
@@ -62,10 +63,11 @@ std::string dry_run(const SweepPlan& plan, const SweepOptions& options) {
     const SweepStatus status = sweep_status(plan, options, TrialStore(options.folder));
     const ReferenceCache references(options.folder / "references", options.references);
     const std::optional<Cost> cost = status.cost();
+    const std::size_t to_render = status.references(references).size();
     std::string text = fmt::format(
         "trials     {}\nreferences {} to render\ntime       {}\ndisk       {}{:.1f} MB are free\n",
-        trials_text(status, options, plan.duplicates), status.references(references).size(),
-        time_text(status, options, cost),
+        trials_text(status, options, plan.duplicates), to_render,
+        time_text(status, options, cost, to_render),
         cost ? fmt::format("pictures of about {:.1f} MB, ", cost->bytes / megabyte) : "",
         free_bytes(options.folder) / megabyte);
     if (!status.broken.empty())

@@ -12,37 +12,29 @@
 
 namespace caustics::experiments {
 
-namespace {
-
-/// The mean of a reference's caustics; nothing where there is no such picture now.
-std::optional<double> mean_of(const ReferenceRequest& request, ReferenceCache& references) {
-    if (references.must_render(request)) return {};
-    try {
-        return references.get(request)->caustic.mean;
-    } catch (const InputError&) {
-        return {};  // who asks for it hears why
-    }
-}
-
-}  // namespace
-
 bool are_of_one_picture(double mean, double other) {
     constexpr double rounding = 1e-9;
     return std::abs(mean - other) <= rounding * std::abs(other);
 }
 
-std::vector<const Trial*> trials_with_stale_errors(const SweepPlan& plan, const SweepStatus& status,
-                                                   ReferenceCache& references) {
+StaleErrors stale_errors(const SweepPlan& plan, const SweepStatus& status,
+                         ReferenceCache& references) {
     std::map<std::string, std::vector<const Trial*>> judged;
     for (const Trial& trial : plan.trials)
         if (trial.reference && status.judged_by.contains(trial.id))
             judged[trial.reference->key].push_back(&trial);
-    std::vector<const Trial*> stale;
+    StaleErrors stale;
     for (const auto& [key, trials] : judged) {
-        const std::optional<double> now = mean_of(*trials[0]->reference, references);
-        if (!now) continue;
-        for (const Trial* trial : trials)
-            if (!are_of_one_picture(status.judged_by.at(trial->id), *now)) stale.push_back(trial);
+        const ReferenceRequest& request = *trials[0]->reference;
+        if (references.must_render(request)) continue;
+        try {
+            const double now = references.get(request)->caustic.mean;
+            for (const Trial* trial : trials)
+                if (!are_of_one_picture(status.judged_by.at(trial->id), now))
+                    stale.trials.push_back(trial);
+        } catch (const InputError& error) {
+            stale.unreadable.push_back(error.what());
+        }
     }
     return stale;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "experiments/sweep/sweep_status.h"
@@ -12,8 +13,12 @@ bool are_of_one_picture(double mean, double other);
 /// The trials whose errors were taken against another picture than the one that stands for their reference now, by
 /// their references: `--references rebuild` and `extend` make others of the same name. Known by the mean of what the
 /// reference has of caustics, which records keep.
-std::vector<const Trial*> trials_with_stale_errors(const SweepPlan& plan, const SweepStatus& status,
-                                                   ReferenceCache& references);
+struct StaleErrors {
+    std::vector<const Trial*> trials;
+    std::vector<std::string> unreadable;  ///< what is wrong with references that cannot be compared
+};
+StaleErrors stale_errors(const SweepPlan& plan, const SweepStatus& status,
+                         ReferenceCache& references);
 
 /// Takes the errors of a trial's kept picture anew. False where that picture is not there any more. Throws InputError
 /// when the store cannot be written.

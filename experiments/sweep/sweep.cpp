@@ -147,7 +147,10 @@ private:
     void take_stale_errors_anew() {
         ReferenceCache references = references_;  // trials start without what this one reads
         std::size_t anew = 0;
-        for (const Trial* trial : trials_with_stale_errors(plan_, status_, references)) {
+        const StaleErrors stale = stale_errors(plan_, status_, references);
+        for (const std::string& why : stale.unreadable)
+            progress_->note(fmt::format("warning: {}: the errors of its trials are kept", why));
+        for (const Trial* trial : stale.trials) {
             throw_if_interrupted();
             if (take_errors_anew(*trial, store_, *references.get(*trial->reference)))
                 ++anew;

@@ -6,7 +6,8 @@ namespace caustics::photonmap {
 
 namespace {
 
-void copy(const Vec3& from, float (&to)[3]) {
+template <typename Three>
+void copy(const Three& from, float (&to)[3]) {
     for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 
@@ -50,9 +51,9 @@ BrdfLobe reflection_of(const ReceiverPoint& point) {
              reflection.lobe.mirrored);
         reflection.lobe.exponent = phong->exponent;
         reflection.scale = SpectrumSum::Ones();
-        reflection.diffuse = evaluate(phong->diffuse_reflectance, point.uv).cast<double>() / pi_d;
-        reflection.specular = evaluate(phong->specular_reflectance, point.uv).cast<double>() *
-                              (static_cast<double>(phong->exponent) + 2) / (2 * pi_d);
+        copy(evaluate(phong->diffuse_reflectance, point.uv) / pi, reflection.lobe.diffuse);
+        copy(evaluate(phong->specular_reflectance, point.uv) * (phong->exponent + 2) / (2 * pi),
+             reflection.lobe.specular);
     } else {
         reflection.model = BrdfLobe::Model::other;
         reflection.scale = SpectrumSum::Ones();

@@ -6,21 +6,18 @@
 namespace caustics::photonmap {
 
 /// The f_r of a receiver point seen along its `wo`, taken apart for shading many photons:
-/// f_r(wi) = `scale` x a factor of wi that a kernel works out; Phong's factor is `diffuse` x that of `facing`
-/// + `specular` x that of `phong`.
+/// f_r(wi) = `scale` x a factor of wi that a kernel works out.
 struct BrdfLobe {
     enum class Model {
         black,    ///< no light reaches the viewer
         lambert,  ///< the kernel `facing`
         schlick,  ///< the kernel `schlick`
-        phong,    ///< the kernels `facing` and `phong`
+        phong,    ///< the kernel `phong`
         other     ///< evaluate(bsdf, ...), photon by photon
     };
     Model model = Model::black;
     Lobe lobe{};
     SpectrumSum scale = SpectrumSum::Zero();  ///< holds the reflectance at the point, but for Phong
-    SpectrumSum diffuse = SpectrumSum::Zero();
-    SpectrumSum specular = SpectrumSum::Zero();
 };
 
 /// The point's texture is evaluated here, once.

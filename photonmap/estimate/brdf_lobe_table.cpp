@@ -11,8 +11,7 @@ namespace {
 /// Whether the factors of all directions are the same.
 bool same_factors(const BrdfLobe& a, const BrdfLobe& b) {
     return a.model == b.model && a.model != BrdfLobe::Model::other &&
-           std::memcmp(&a.lobe, &b.lobe, sizeof(Lobe)) == 0 && (a.diffuse == b.diffuse).all() &&
-           (a.specular == b.specular).all();
+           std::memcmp(&a.lobe, &b.lobe, sizeof(Lobe)) == 0;
 }
 
 }  // namespace
@@ -44,11 +43,7 @@ void BrdfLobeTable::fill(Entry& entry, std::uint16_t direction) {
             factor.setConstant(schlick_factor(direction_tables(), reflection_.lobe, theta, phi));
             break;
         case BrdfLobe::Model::phong:
-            factor = (reflection_.diffuse * static_cast<double>(facing_factor(
-                                                direction_tables(), reflection_.lobe, theta, phi)) +
-                      reflection_.specular * static_cast<double>(phong_factor(
-                                                 direction_tables(), reflection_.lobe, theta, phi)))
-                         .cast<float>();
+            phong_factors(direction_tables(), reflection_.lobe, theta, phi, factor.data());
             break;
         case BrdfLobe::Model::other:
             factor = evaluate(*point_.bsdf, point_.uv, point_.shading_normal, point_.wo,

@@ -101,10 +101,7 @@ SpectrumSum Shading::reflected(const ReceiverPoint& point, const WeightedPhotons
     switch (reflection.model) {
         case BrdfLobe::Model::lambert: return sum_of(facing) * reflection.scale;
         case BrdfLobe::Model::schlick: return sum_of(kernels_.schlick) * reflection.scale;
-        case BrdfLobe::Model::phong:
-            return (sum_of(facing) * reflection.diffuse +
-                    sum_of(kernels_.phong) * reflection.specular) *
-                   reflection.scale;
+        case BrdfLobe::Model::phong: return sum_of(kernels_.phong) * reflection.scale;
         case BrdfLobe::Model::other: return sum_evaluated(point, photons);
         case BrdfLobe::Model::black: break;
     }

@@ -98,21 +98,27 @@ private:
 class Sums {
 public:
     void add(const ShadedPhotons& photons, size_t i, Floats lanes, Floats factor) {
+        add(photons, i, lanes, Vectors{factor, factor, factor});
+    }
+    /// A factor for each channel.
+    void add(const ShadedPhotons& photons, size_t i, Floats lanes, const Vectors& factor) {
         const Words energy =
             _mm256_loadu_si256(reinterpret_cast<const __m256i*>(photons.energy + i));
         const Words byte = _mm256_set1_epi32(255);
         // 2^(exponent - 136) in two factors, because the smallest are no normal floats.
         const Words power = _mm256_slli_epi32(_mm256_srli_epi32(energy, 24), 23);
-        if (photons.weight != nullptr)
-            factor = product(factor, _mm256_loadu_ps(photons.weight + i));
         const Floats scale = product(_mm256_castsi256_ps(power), all(0x1p-9F));
-        const Floats unit = _mm256_and_ps(lanes, product(factor, scale));
+        const Floats weight =
+            photons.weight != nullptr ? _mm256_loadu_ps(photons.weight + i) : all(1);
+        const auto unit = [&](Floats by) {
+            return _mm256_and_ps(lanes, product(product(by, weight), scale));
+        };
         const Words red = _mm256_and_si256(energy, byte);
         const Words green = _mm256_and_si256(_mm256_srli_epi32(energy, 8), byte);
         const Words blue = _mm256_and_si256(_mm256_srli_epi32(energy, 16), byte);
-        red_.add(product(unit, _mm256_cvtepi32_ps(red)));
-        green_.add(product(unit, _mm256_cvtepi32_ps(green)));
-        blue_.add(product(unit, _mm256_cvtepi32_ps(blue)));
+        red_.add(product(unit(factor.x), _mm256_cvtepi32_ps(red)));
+        green_.add(product(unit(factor.y), _mm256_cvtepi32_ps(green)));
+        blue_.add(product(unit(factor.z), _mm256_cvtepi32_ps(blue)));
     }
     void add_to(double* rgb) const {
         rgb[0] += red_.total();
@@ -170,18 +176,22 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     sums.add_to(rgb);
 }
 
-/// The formula of phong_factor.
+/// The formula of phong_factors.
 void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                double* rgb) {
     const Vectors n = all_of(lobe.normal), mirrored = all_of(lobe.mirrored);
+    const Vectors diffuse = all_of(lobe.diffuse), specular = all_of(lobe.specular);
     Sums sums;
     for (size_t i = 0; i < photons.count; i += 8) {
         const Vectors wi = directions(tables, photons.direction + i);
         const Vectors apart{_mm256_sub_ps(mirrored.x, wi.x), _mm256_sub_ps(mirrored.y, wi.y),
                             _mm256_sub_ps(mirrored.z, wi.z)};
         const Floats t = product(all(0.5F), dot(apart, apart));
+        const Floats power = cosine_power<Avx2Lanes>(t, lobe.exponent);
         sums.add(photons, i, facing(counted(photons, i), dot(n, wi)),
-                 cosine_power<Avx2Lanes>(t, lobe.exponent));
+                 Vectors{sum(diffuse.x, product(specular.x, power)),
+                         sum(diffuse.y, product(specular.y, power)),
+                         sum(diffuse.z, product(specular.z, power))});
     }
     sums.add_to(rgb);
 }

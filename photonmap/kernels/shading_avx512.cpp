@@ -103,20 +103,26 @@ private:
 class Sums {
 public:
     void add(const ShadedPhotons& photons, size_t i, __mmask16 lanes, Floats factor) {
+        add(photons, i, lanes, Vectors{factor, factor, factor});
+    }
+    /// A factor for each channel.
+    void add(const ShadedPhotons& photons, size_t i, __mmask16 lanes, const Vectors& factor) {
         const Words energy = _mm512_loadu_si512(photons.energy + i);
         const Words byte = _mm512_set1_epi32(255);
         // 2^(exponent - 136) in two factors, because the smallest are no normal floats.
         const Words power = _mm512_slli_epi32(_mm512_srli_epi32(energy, 24), 23);
-        if (photons.weight != nullptr)
-            factor = product(factor, _mm512_loadu_ps(photons.weight + i));
         const Floats scale = product(_mm512_castsi512_ps(power), all(0x1p-9F));
-        const Floats unit = _mm512_maskz_mul_ps(lanes, factor, scale);
+        const Floats weight =
+            photons.weight != nullptr ? _mm512_loadu_ps(photons.weight + i) : all(1);
+        const auto unit = [&](Floats by) {
+            return _mm512_maskz_mul_ps(lanes, product(by, weight), scale);
+        };
         const Words red = _mm512_and_si512(energy, byte);
         const Words green = _mm512_and_si512(_mm512_srli_epi32(energy, 8), byte);
         const Words blue = _mm512_and_si512(_mm512_srli_epi32(energy, 16), byte);
-        red_.add(product(unit, _mm512_cvtepi32_ps(red)));
-        green_.add(product(unit, _mm512_cvtepi32_ps(green)));
-        blue_.add(product(unit, _mm512_cvtepi32_ps(blue)));
+        red_.add(product(unit(factor.x), _mm512_cvtepi32_ps(red)));
+        green_.add(product(unit(factor.y), _mm512_cvtepi32_ps(green)));
+        blue_.add(product(unit(factor.z), _mm512_cvtepi32_ps(blue)));
     }
     void add_to(double* rgb) const {
         rgb[0] += red_.total();
@@ -179,19 +185,23 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     sums.add_to(rgb);
 }
 
-/// The formula of phong_factor.
+/// The formula of phong_factors.
 void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                double* rgb) {
     const Vectors n = all_of(lobe.normal), mirrored = all_of(lobe.mirrored);
+    const Vectors diffuse = all_of(lobe.diffuse), specular = all_of(lobe.specular);
     Sums sums;
     for (size_t i = 0; i < photons.count; i += 16) {
         const Vectors wi = directions(tables, photons.direction + i);
         const Vectors apart{_mm512_sub_ps(mirrored.x, wi.x), _mm512_sub_ps(mirrored.y, wi.y),
                             _mm512_sub_ps(mirrored.z, wi.z)};
         const Floats t = product(all(0.5F), dot(apart, apart));
+        const Floats power = cosine_power<Avx512Lanes>(t, lobe.exponent);
         sums.add(photons, i,
                  _mm512_mask_cmp_ps_mask(counted(photons, i), dot(n, wi), all(0), _CMP_GT_OQ),
-                 cosine_power<Avx512Lanes>(t, lobe.exponent));
+                 Vectors{sum(diffuse.x, product(specular.x, power)),
+                         sum(diffuse.y, product(specular.y, power)),
+                         sum(diffuse.z, product(specular.z, power))});
     }
     sums.add_to(rgb);
 }

@@ -18,6 +18,8 @@ struct Lobe {
     float alpha;        ///< of Schlick's model
     float mirrored[3];  ///< of Phong's: wo about the normal
     float exponent;     ///< of Phong's
+    float diffuse[3];   ///< of Phong's: the part that is the same for all directions
+    float specular[3];  ///< of Phong's: the part that the power of the cosine multiplies
 };
 
 /// A run of gathered photons; arrays as in GatheredPhotons.
@@ -33,7 +35,7 @@ struct ShadedPhotons {
 ///   `arriving`: 1;
 ///   `facing`: 1 where n.wi > 0, else 0 (Lambert's law but for the factor 1/pi);
 ///   `schlick`: pi f_r (alpha + (1 - alpha) v) / alpha by [J96 (5)], [J96 (6)] where n.wi > 0, else 0;
-///   `phong`: cos^exponent of the angle to the mirrored direction where n.wi > 0, else 0.
+///   `phong`: diffuse + specular x cos^exponent of the angle to the mirrored direction where n.wi > 0, else 0.
 ///
 /// n.wi is rounded step by step as `evaluate(bsdf, ...)` does it, so that all agree on which photons
 /// count. Eight sums in double, each of every eighth photon, are added up by halves: the same bits on every
@@ -91,8 +93,9 @@ extern const ShadingKernels avx512_shading;
 
 /// What `schlick` multiplies a photon's energy by.
 float schlick_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
-/// What `phong` multiplies a photon's energy by.
-float phong_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
+/// Writes what `phong` multiplies a photon's energy by, channel by channel.
+void phong_factors(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi,
+                   float* rgb);
 /// What `facing` multiplies a photon's energy by.
 float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi);
 

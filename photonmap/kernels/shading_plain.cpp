@@ -29,10 +29,10 @@ double total(double* lanes) {
     return lanes[0];
 }
 
-/// A photon's factor by a function of (tables, lobe, theta, phi).
-template <typename Factor>
-void add(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons, double* rgb,
-         const Factor& factor_of) {
+/// A photon's factors by a function of (tables, lobe, theta, phi, rgb), which writes them.
+template <typename Factors>
+void add_coloured(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
+                  double* rgb, const Factors& write_factors) {
     double sums[3][8] = {};
     for (size_t i = 0; i < photons.count; ++i) {
         if (i == photons.left_out) continue;
@@ -42,11 +42,25 @@ void add(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& p
         // 2^(exponent - 136) in two factors, because the smallest are no normal floats.
         const float scale = std::bit_cast<float>(static_cast<uint32_t>(energy[3]) << 23U) * 0x1p-9F;
         const float weight = photons.weight != nullptr ? photons.weight[i] : 1.0F;
-        const float factor = factor_of(tables, lobe, direction[0], direction[1]) * weight * scale;
-        for (size_t c = 0; c < 3; ++c)
-            sums[c][i % 8] += static_cast<double>(factor * static_cast<float>(energy[c]));
+        float factor[3];
+        write_factors(tables, lobe, direction[0], direction[1], factor);
+        for (size_t c = 0; c < 3; ++c) {
+            const float unit = factor[c] * weight * scale;
+            sums[c][i % 8] += static_cast<double>(unit * static_cast<float>(energy[c]));
+        }
     }
     for (size_t c = 0; c < 3; ++c) rgb[c] += total(sums[c]);
+}
+
+/// A photon's factor by a function of (tables, lobe, theta, phi).
+template <typename Factor>
+void add(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons, double* rgb,
+         const Factor& factor_of) {
+    add_coloured(
+        tables, lobe, photons, rgb,
+        [&](const DirectionTables& t, const Lobe& l, uint8_t theta, uint8_t phi, float* factor) {
+            factor[0] = factor[1] = factor[2] = factor_of(t, l, theta, phi);
+        });
 }
 
 void add_arriving(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
@@ -67,7 +81,7 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
 
 void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                double* rgb) {
-    add(tables, lobe, photons, rgb, phong_factor);
+    add_coloured(tables, lobe, photons, rgb, phong_factors);
 }
 
 }  // namespace
@@ -95,14 +109,17 @@ float schlick_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t th
     return (u * v_in + u_in * d + peak * peak) / d_in;
 }
 
-float phong_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi) {
+void phong_factors(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi,
+                   float* rgb) {
     const Direction wi = decode(tables, theta, phi);
-    if (!(dot(lobe.normal, wi) > 0)) return 0;
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    if (!(dot(lobe.normal, wi) > 0)) return;
     const Direction apart{lobe.mirrored[0] - wi.x, lobe.mirrored[1] - wi.y,
                           lobe.mirrored[2] - wi.z};
     // |a - b|^2 / 2 of unit vectors: the cosine itself would be rounded where it is near 1.
     const float square = apart.x * apart.x + (apart.y * apart.y + apart.z * apart.z);
-    return cosine_power<PlainSimd>(0.5F * square, lobe.exponent);
+    const float power = cosine_power<PlainSimd>(0.5F * square, lobe.exponent);
+    for (size_t c = 0; c < 3; ++c) rgb[c] = lobe.diffuse[c] + lobe.specular[c] * power;
 }
 
 float facing_factor(const DirectionTables& tables, const Lobe& lobe, uint8_t theta, uint8_t phi) {

@@ -271,6 +271,25 @@ TEST_F(Sweeps, TakeErrorsAnewWhereTheReferenceIsAnotherPicture) {
             EXPECT_EQ(after[i].at(column), fresh[i].at(column)) << column;
 }
 
+// All trials are done, so that nothing else asks for it.
+TEST_F(Sweeps, NameAReferenceThatIsAnotherOne) {
+    const std::string file = write_sweep(R"([{"method": "photonmap", "param": {"photons": 500}}])");
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const std::vector<Row> before = rows();
+    for (const auto& entry : fs::directory_iterator(fs::path(out_) / "references")) {
+        Film film = read_exr(entry.path());
+        film.metadata["reference_key"] = "0123456789abcdef";
+        write_exr(film, entry.path());
+    }
+    const ProgramResult again = sweep(file);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.err.find("is the reference 0123456789abcdef, renamed (remake it with "
+                             "--references rebuild): the errors of its trials are kept"),
+              std::string::npos)
+        << again.err;
+    EXPECT_EQ(rows(), before);
+}
+
 TEST_F(Sweeps, WarnWhereThreadsAndInstructionSetsMix) {
     const std::string file = write_sweep(R"([{"method": "none"}])");
     ASSERT_EQ(sweep(file, {"--filter", "seed=1", "--isa", "plain", "--threads", "2"}).exit_code, 0);

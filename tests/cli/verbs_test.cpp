@@ -182,6 +182,18 @@ TEST(Render, MakesThePictureOfATimeAgainByTheCommandThatItTells) {
     }
 }
 
+// 1, 8 and 64 paths a pixel are the same picture at 64 samples a pixel.
+TEST(Render, GoesOnWhereSamplesHaveAPathEachAnyway) {
+    const support::TemporaryFolder folder;
+    const ProgramResult result =
+        causticbench({"render", CAUSTICS_SOURCE_DIR "/experiments/scenes/ring_area.json", "--set",
+                      "/sensor/film/width=16", "--set", "/sensor/film/height=12", "--spp", "64",
+                      "--method", "pathtrace", "--seconds", "1", "-o", folder / "a.exr"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.find("makes no difference"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("\nspp=256: "), std::string::npos) << result.err;
+}
+
 TEST(Render, GivesTheTimeToANumberOfTheScene) {
     const support::TemporaryFolder folder;
     const std::string pool = CAUSTICS_SOURCE_DIR "/experiments/scenes/pool.json";

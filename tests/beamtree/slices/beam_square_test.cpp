@@ -187,7 +187,68 @@ TEST(BeamSquare, BecomesAPointAsItShrinks) {
     for (std::size_t i = 0; i < at.size(); ++i) EXPECT_NEAR(squares[i] / points[i], 1, 1e-2);
 }
 
-// Between a square and a beam whose box it meets there may be room.
+// Light that comes nearly along the floor: what is averaged over lies on the floor, not across the light, and ends with
+// the light.
+TEST(BeamSquare, LiesOnTheReceiver) {
+    const double slope = std::tan(80 * pi_d / 180);
+    SceneDesc desc;
+    desc.shapes = {
+        support::rectangle("mirror", {0, 0, 1}, {0, 2, 0}, {0, 0, -0.5}, support::mirror()),
+        support::horizontal("floor", 0, 10, true, support::diffuse(0.5F))};
+    desc.lights = {support::directional_light(Vec3d(slope, 0, -1), 1)};
+    const Scene scene(std::move(desc));
+    const double lit = std::cos(80 * pi_d / 180);
+    const auto near = static_cast<float>(-0.5 * slope);
+    for (const Intensity intensity : {Intensity::area, Intensity::refined}) {
+        const BeamTreeParams params = averaged(2, intensity);
+        for (const auto& [x, share] :
+             {std::pair(2 * near, 1.0), {near, 0.5}, {near - 0.5F, 0.75}}) {
+            std::vector<ReceiverPoint> point = {
+                support::probe(scene, 1, Vec3(x, 0, 0).cast<double>(), Vec3d::UnitZ(), 0)};
+            const auto found = support::irradiance(*build(scene, params, {}), point);
+            EXPECT_NEAR(static_cast<double>(found[0].value.mean()) / lit, share, 1e-4) << x;
+        }
+    }
+}
+
+// Far from a ball caustic polygons are large, and light comes down to the floor unevenly: within one of them it differs by more than
+// [CC95 (11)] tells, and not as it does across the light.
+TEST(BeamSquare, IsAPointWithinALargePolygon) {
+    SceneDesc desc;
+    desc.shapes = {support::sphere("ball", {0, 0, 0.35}, 0.3, support::glass(1.5F)),
+                   support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
+    desc.lights = {support::point_light({-1.2, 0.4, 1.6}, 6)};
+    const Scene scene(std::move(desc));
+    std::vector<ReceiverPoint> at;
+    for (int i = 0; i < 20; ++i)
+        for (int j = 0; j < 10; ++j)
+            at.push_back(
+                support::probe(scene, 1, {0.9 + 0.03 * i, -0.65 + 0.04 * j, 0}, Vec3d::UnitZ(), 0));
+    const auto ask = [&](float footprint) {
+        BeamTreeParams params = averaged(footprint, Intensity::refined);
+        params.max_bounces = 2;
+        return support::irradiance(*build(scene, params, {}), at);
+    };
+    const auto points = ask(0);
+    for (const float side : {1e-3F, 1e-5F}) {
+        const auto squares = ask(side);
+        double apart = 0;
+        int lit = 0, black = 0;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            if (!(points[i].value.mean() > 0)) continue;
+            const double ratio =
+                static_cast<double>(squares[i].value.mean() / points[i].value.mean());
+            apart += std::abs(ratio - 1);
+            black += ratio > 0 ? 0 : 1;
+            ++lit;
+        }
+        EXPECT_GT(lit, 150);
+        EXPECT_EQ(black, 0) << side;
+        EXPECT_LT(apart / lit, 0.05) << side;  // single ones erred by 2.7 times
+    }
+}
+
+// Each beam that brings light is one that was tested.
 TEST(BeamSquare, CountsTheBeamsThatItMeets) {
     const Scene scene(folded_pool());
     const auto estimator = build(scene, averaged(0.02F), {});
@@ -204,7 +265,7 @@ TEST(BeamSquare, CountsTheBeamsThatItMeets) {
     context->add_to(counters);
     EXPECT_GT(lit, 0U);
     EXPECT_GE(counters.at("beam_point_hits"), lit);
-    EXPECT_LT(counters.at("beam_point_hits"), counters.at("beam_point_tests"));
+    EXPECT_LE(counters.at("beam_point_hits"), counters.at("beam_point_tests"));
 }
 
 }  // namespace

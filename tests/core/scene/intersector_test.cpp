@@ -170,6 +170,28 @@ TEST(Intersector, RaysThatGoTogetherHitWhatTheyHitAlone) {
     EXPECT_LE(elsewhere, 2);  // rounding at an edge
 }
 
+/// Leaves minus ones where the variables of the next function will lie.
+[[gnu::noinline]] void soil_the_stack() {
+    std::array<volatile float, 4096> left;
+    for (volatile float& value : left) value = -1;
+}
+
+// What lay in the place of the rays that it lacks is none of them; Embree aborted there.
+TEST(Intersector, APacketNeedNotBeFull) {
+    const Scene scene = scene_of({exact(Primitive::rectangle, Transform::Identity())});
+    std::array<Ray, Scene::most_together> rays;
+    rays.fill({Vec3(0.1F, 0.2F, 2), -Vec3::UnitZ()});
+    std::array<std::optional<SurfacePoint>, Scene::most_together> hits;
+    for (std::size_t count = 1; count <= rays.size(); ++count) {
+        soil_the_stack();
+        scene.intersect_together(std::span(rays).first(count), hits);
+        for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_TRUE(hits[i]);
+            EXPECT_EQ(hits[i]->distance, 2);
+        }
+    }
+}
+
 struct Placement {
     double scale;
     Vec3d centre;

@@ -80,7 +80,10 @@ TEST_F(JobStores, SaySoWhenARecordIsBroken) {
           R"({"trial": "a-1", "status": "done", "seed": "1"})",
           R"({"trial": "a-1", "status": "done", "seed": -1})",
           R"({"trial": "a-1", "status": "done", "metrics": {"rmse": [1]}})",
-          R"({"trial": "a-1", "status": "done", "machine": {"cpu": 1}})"}) {
+          R"({"trial": "a-1", "status": "done", "machine": {"cpu": 1}})",
+          R"({"trial": "a-1", "status": "done", "metrics": "x"})",
+          R"({"trial": "a-1", "status": "done", "counters": [1]})",
+          R"({"trial": "a-1", "status": "done", "mask_metrics": 1})"}) {
         write_atomic_file(folder_ / "trials/a-1/record.json", text);
         EXPECT_THROW(store_.record("a-1"), InputError) << text;
     }

@@ -52,6 +52,13 @@ TEST(SweepSummary, ErrorsOverOtherPixelsAreNotCompared) {
         EXPECT_NE(told.find(best), std::string::npos) << told;
 }
 
+// A few pixels more or less that no particle met.
+TEST(SweepSummary, ASeedsOwnUnreachedPixelsMakeNoOtherSetting) {
+    const std::string told =
+        text({row("1", "1000", "0.2", "0.2011"), row("1", "1000", "0.1", "0.1998")});
+    EXPECT_NE(told.find("best RMSE  ring: 0.1 (photonmap)\nenergy"), std::string::npos) << told;
+}
+
 TEST(SweepSummary, WhatIsTheSameEverywhereIsLeftOut) {
     const std::string told = text({row("1", "1000", "0.2"), row("1", "10000", "0.1")});
     EXPECT_NE(told.find("best RMSE  ring: 0.1 (photonmap, photons 10000)\n"), std::string::npos)

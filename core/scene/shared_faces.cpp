@@ -1,0 +1,124 @@
+#include "core/scene/shared_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/base/interrupt.h"
+#include "core/geometry/box_tree.h"
+#include "core/geometry/tessellate.h"
+#include "core/scene/intersector.h"
+
+namespace caustics {
+namespace {
+
+constexpr std::size_t most_middles = 4000;  // of a shape
+constexpr std::size_t most_triangles = 200'000;
+constexpr float reach_share = 1e-4F;  // of the caster's diagonal: how far off its face others are
+constexpr float least_cosine = 0.99F;
+
+BoxTree boxes_of(const Scene& scene) {
+    std::vector<Box> boxes;
+    for (const Shape& shape : scene.shapes()) boxes.push_back(bounds(shape));
+    return BoxTree(std::move(boxes));
+}
+
+Box widened(const Box& box, float by) {
+    const Vec3 aside = Vec3::Constant(by);
+    return {box.min() - aside, box.max() + aside};
+}
+
+bool is_large(const Shape& shape) { return shape.mesh.triangles.size() > most_triangles; }
+
+/// The middle of a triangle, and its normal.
+struct Middle {
+    Vec3 place;
+    Vec3 normal;
+};
+
+std::vector<Middle> middles_of(const TriangleMesh& mesh) {
+    std::vector<Middle> middles;
+    const std::size_t stride = 1 + mesh.triangles.size() / most_middles;
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
+        const auto& [a, b, c] = mesh.triangles[i];
+        const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+        const Vec3 normal = (q - p).cross(r - p).stableNormalized();
+        if (!normal.isZero(0)) middles.push_back({(p + q + r) / 3, normal});
+    }
+    return middles;
+}
+
+/// Of a caster's faces; none where triangles do not lie on it.
+std::vector<Middle> middles_of(const Shape& shape) {
+    if (is_large(shape)) return {};
+    if (shape.primitive == Primitive::mesh) return middles_of(shape.mesh);
+    if (shape.primitive == Primitive::rectangle || shape.primitive == Primitive::disk)
+        return middles_of(tessellate_shape(shape, 8));
+    return {};
+}
+
+class FaceSearch {
+public:
+    explicit FaceSearch(const Scene& scene) : scene_(scene), boxes_(boxes_of(scene)) {}
+
+    std::vector<SharedFace> run() {
+        for (std::uint32_t i = 0; i < scene_.shapes().size(); ++i)
+            if (is_caster(scene_.shapes()[i].bsdf)) search(i);
+        std::ranges::sort(
+            found_, {}, [](const SharedFace& face) { return std::pair(face.caster, face.other); });
+        return std::move(found_);
+    }
+
+private:
+    void search(std::uint32_t caster) {
+        throw_if_interrupted();
+        const Shape& shape = scene_.shapes()[caster];
+        const std::vector<Middle> middles = middles_of(shape);
+        if (middles.empty()) return;
+        const Box box = bounds(shape);
+        const float reach = reach_share * box.diagonal().norm();
+        boxes_.any_at(widened(box, reach), [&](std::uint32_t other) {
+            if (other != caster && !is_large(scene_.shapes()[other]) && !is_found(other, caster) &&
+                lie_on(middles, other, reach))
+                found_.push_back({caster, other});
+            return false;
+        });
+    }
+
+    bool is_found(std::uint32_t caster, std::uint32_t other) const {
+        return std::ranges::any_of(found_, [&](const SharedFace& face) {
+            return face.caster == caster && face.other == other;
+        });
+    }
+
+    bool lie_on(const std::vector<Middle>& middles, std::uint32_t other, float reach) const {
+        const std::vector<Shape>& all = scene_.shapes();
+        const Box box = widened(bounds(all[other]), reach);
+        const auto is_near = [&](const Middle& middle) { return box.contains(middle.place); };
+        if (std::ranges::none_of(middles, is_near)) return false;
+        const std::vector<Shape> alone = {all[other]};
+        const Intersector rays(alone);
+        return std::ranges::any_of(middles, [&](const Middle& middle) {
+            return is_near(middle) && is_at(rays, middle, reach);
+        });
+    }
+
+    static bool is_at(const Intersector& rays, const Middle& middle, float reach) {
+        Ray ray{middle.place + reach * middle.normal, -middle.normal};
+        ray.max_distance = 2 * reach;
+        const auto met = rays.intersect(ray);
+        return met && std::abs(met->distance - reach) <= 2 * met->offset &&
+               std::abs(met->geometric_normal.dot(middle.normal)) >= least_cosine;
+    }
+
+    const Scene& scene_;
+    BoxTree boxes_;
+    std::vector<SharedFace> found_;
+};
+
+}  // namespace
+
+std::vector<SharedFace> shared_faces(const Scene& scene) { return FaceSearch(scene).run(); }
+
+}  // namespace caustics
