@@ -19,11 +19,11 @@ typename Lanes::Floats cosine_power(typename Lanes::Floats t, float exponent) {
     const Floats cosine = Lanes::sub(one, t);
     Floats k = Lanes::exponent_of(cosine);
     Floats mantissa = Lanes::mantissa_of(cosine);
-    const auto upper = Lanes::less(Lanes::all(1.41421356F), mantissa);
-    k = Lanes::where(upper, Lanes::add(k, one), k);
-    mantissa = Lanes::where(upper, Lanes::mul(mantissa, Lanes::all(0.5F)), mantissa);
-    const Floats f = Lanes::where(Lanes::equal(k, Lanes::all(0)), Lanes::sub(Lanes::all(0), t),
-                                  Lanes::sub(mantissa, one));
+    const auto upper = Lanes::is_less(Lanes::all(1.41421356F), mantissa);
+    k = Lanes::chosen(upper, Lanes::add(k, one), k);
+    mantissa = Lanes::chosen(upper, Lanes::mul(mantissa, Lanes::all(0.5F)), mantissa);
+    const Floats f = Lanes::chosen(Lanes::is_equal(k, Lanes::all(0)), Lanes::sub(Lanes::all(0), t),
+                                   Lanes::sub(mantissa, one));
     // log2(1 + f) = 2 artanh(s) / ln 2, s = f / (2 + f).
     constexpr float artanh[] = {1.0F / 9, 1.0F / 7, 1.0F / 5, 1.0F / 3, 1};
     const Floats s = Lanes::div(f, Lanes::add(Lanes::all(2), f));
@@ -38,8 +38,8 @@ typename Lanes::Floats cosine_power(typename Lanes::Floats t, float exponent) {
                               5.55041087e-2F, 2.40226507e-1F, 6.93147181e-1F, 1};
     const Floats value =
         Lanes::times_power_of_2(polynomial(Lanes::sub(Lanes::max(power, least), n), exp2), n);
-    const Floats kept = Lanes::where(Lanes::less(power, least), Lanes::all(0), value);
-    return Lanes::where(Lanes::less(t, one), kept, Lanes::all(0));
+    const Floats kept = Lanes::chosen(Lanes::is_less(power, least), Lanes::all(0), value);
+    return Lanes::chosen(Lanes::is_less(t, one), kept, Lanes::all(0));
 }
 
 }  // namespace caustics::photonmap

@@ -48,7 +48,6 @@ struct Avx2Lanes {
     static Floats max(Floats a, Floats b) { return _mm256_max_ps(a, b); }
     static uint32_t less(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
     static uint32_t not_above(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_LE_OQ)); }
-    static uint32_t equal(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_EQ_OQ)); }
     static Floats exponent_of(Floats a) {
         const __m256i biased = _mm256_srli_epi32(_mm256_castps_si256(a), 23);
         return _mm256_cvtepi32_ps(_mm256_sub_epi32(biased, _mm256_set1_epi32(127)));
@@ -62,6 +61,13 @@ struct Avx2Lanes {
         return mul(a, _mm256_castsi256_ps(_mm256_slli_epi32(biased, 23)));
     }
     static size_t count(uint32_t mask) { return static_cast<size_t>(_mm_popcnt_u32(mask)); }
+    /// What comparisons say, where it chooses only: its bits need not leave the registers.
+    using Choice = __m256;
+    static Choice is_less(Floats a, Floats b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
+    static Choice is_equal(Floats a, Floats b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
+    static Floats chosen(Choice choice, Floats a, Floats b) {
+        return _mm256_blendv_ps(b, a, choice);
+    }
     static Floats where(uint32_t mask, Floats a, Floats b) {
         return _mm256_blendv_ps(b, a, _mm256_castsi256_ps(all_bits(mask)));
     }

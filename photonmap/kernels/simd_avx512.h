@@ -40,13 +40,19 @@ struct Avx512Lanes {
     static Floats max(Floats a, Floats b) { return _mm512_max_ps(a, b); }
     static uint32_t less(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
     static uint32_t not_above(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
-    static uint32_t equal(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
     static Floats exponent_of(Floats a) { return _mm512_getexp_ps(a); }
     static Floats mantissa_of(Floats a) {
         return _mm512_getmant_ps(a, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_src);
     }
     static Floats times_power_of_2(Floats a, Floats n) { return _mm512_scalef_ps(a, n); }
     static size_t count(uint32_t mask) { return static_cast<size_t>(_mm_popcnt_u32(mask)); }
+    /// What comparisons say, where it chooses only.
+    using Choice = __mmask16;
+    static Choice is_less(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+    static Choice is_equal(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
+    static Floats chosen(Choice choice, Floats a, Floats b) {
+        return _mm512_mask_blend_ps(choice, b, a);
+    }
     static Floats where(uint32_t mask, Floats a, Floats b) {
         return _mm512_mask_blend_ps(static_cast<__mmask16>(mask), b, a);
     }

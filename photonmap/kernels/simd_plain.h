@@ -35,7 +35,6 @@ struct PlainSimd {
     static Floats max(Floats a, Floats b) { return a > b ? a : b; }
     static uint32_t less(Floats a, Floats b) { return a < b ? 1U : 0U; }
     static uint32_t not_above(Floats a, Floats b) { return a <= b ? 1U : 0U; }
-    static uint32_t equal(Floats a, Floats b) { return a == b ? 1U : 0U; }
     /// Of a positive normal number, m 2^e with m in [1, 2).
     static Floats exponent_of(Floats a) {
         return static_cast<float>(static_cast<int32_t>(bits_of(a) >> 23U) - 127);
@@ -46,6 +45,11 @@ struct PlainSimd {
         return a * float_of(static_cast<uint32_t>(static_cast<int32_t>(n) + 127) << 23U);
     }
     static size_t count(uint32_t mask) { return mask; }
+    /// What comparisons say, where it chooses only.
+    using Choice = bool;
+    static Choice is_less(Floats a, Floats b) { return a < b; }
+    static Choice is_equal(Floats a, Floats b) { return a == b; }
+    static Floats chosen(Choice choice, Floats a, Floats b) { return choice ? a : b; }
     static Floats where(uint32_t mask, Floats a, Floats b) { return mask != 0 ? a : b; }
     static void compress(float* to, uint32_t, Floats a) { *to = a; }
     static void compress(uint32_t* to, uint32_t, Words a) { *to = a; }
