@@ -27,6 +27,20 @@ struct ArrivingRay {
     Vec3 direction;    ///< unit, the way the light goes
 };
 
+// Corners of a sliver that lie on a curved surface do not tell how it lies there: its plane may stand on the surface, and a
+// start that is moved along that plane's normal stays inside.
+bool is_sliver(const std::array<VertexRay, 3>& rays, Vec3& longest) {
+    constexpr float least_height = 0.1F;  // of the longest side
+    longest = Vec3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 side = rays[(i + 1) % 3].position - rays[i].position;
+        if (side.squaredNorm() > longest.squaredNorm()) longest = side;
+    }
+    const Vec3 twice_area =
+        (rays[1].position - rays[0].position).cross(rays[2].position - rays[0].position);
+    return twice_area.norm() < least_height * longest.squaredNorm();
+}
+
 ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     const Beam& beam = set.beams[hit.beam];
     const auto rays = set.triangle(beam, hit.triangle, hit.place());
@@ -41,9 +55,14 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     ray.direction.normalize();
     ray.start.geometric_normal =
         triangle_normal(rays[0].position, rays[1].position, rays[2].position);
-    // Light after several events may be bent all at one place.
-    if (ray.start.geometric_normal.isZero(0)) ray.start.geometric_normal = ray.direction;
     ray.start.offset = beam.offset;
+    if (Vec3 longest; is_sliver(rays, longest)) {
+        // Light after several events may be bent all at one place.
+        const Vec3 along = longest.stableNormalized();
+        const Vec3 across = ray.direction - ray.direction.dot(along) * along;
+        ray.start.geometric_normal = across.isZero(0) ? ray.direction : across.normalized();
+        ray.start.offset *= 2;
+    }
     return ray;
 }
 

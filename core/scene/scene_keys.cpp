@@ -33,7 +33,7 @@ Objects sensors() {
         whole("split_depth",
               "Specular events from the eye that follow reflection and refraction both, however "
               "faint: no specks on glass.",
-              "events", "0", "0 to 6");
+              "events", "2", "0 to 6");
     return {
         {"perspective",
          "The sensor, a pinhole that looks along +z with +y up; holds a film and a sampler.",

@@ -42,8 +42,15 @@ void read_film(const JsonNode& node, Camera& camera) {
     if (filters.size() > 1) node.fail("a film takes one reconstruction filter");
 }
 
-PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
+// Of files. Faint reflections of glass that are left to roulette are specks at few samples a pixel.
+PixelSampling usual_sampling() {
     PixelSampling sampling;
+    sampling.split_depth = 2;
+    return sampling;
+}
+
+PixelSampling read_sampler(const JsonNode& node, const std::string& type) {
+    PixelSampling sampling = usual_sampling();
     sampling.stratified = type == "stratified";
     const auto count = node.find("sample_count");
     if (count) sampling.sample_count = static_cast<int>(count->as_integer_in(1, 1 << 20));
@@ -102,6 +109,7 @@ void read_sensor(const JsonNode& node, SceneDesc& desc) {
         camera.to_world.linear() = linear / std::sqrt(scale);
         scene_file::require_near(*to_world, {camera.to_world.translation()});
     }
+    desc.sampling = usual_sampling();
     bool has_film = false;
     bool has_sampler = false;
     const auto children = node.children();

@@ -137,7 +137,7 @@ TEST(RestPhotons, CompleteTheLightOfPoints) {
     BeamTreeParams params;
     params.max_bounces = 2;
     std::vector<ReceiverPoint> points;
-    constexpr int cells = 60;
+    constexpr int cells = 120;
     for (int i = 0; i < cells * cells; ++i)
         points.push_back(floor_point({(static_cast<float>(i % cells) + 0.5F) / cells * 4 - 2,
                                       (static_cast<float>(i / cells) + 0.5F) / cells * 4 - 2, 0}));
@@ -199,7 +199,7 @@ std::vector<RestPhoton> random_photons(std::size_t count) {
 // The sum over a grid that reaches beyond all discs is the photons' flux, however they lie.
 TEST(PhotonDiscs, SpreadAllLightOfAPlane) {
     const PhotonDiscs discs(random_photons(2'000), 20, 2);
-    constexpr int cells = 400;
+    constexpr int cells = 120;
     constexpr float side = 2.0F / cells;
     double sum = 0;
     std::vector<std::uint32_t> stack;
