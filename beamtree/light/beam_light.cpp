@@ -27,43 +27,42 @@ struct ArrivingRay {
     Vec3 direction;    ///< unit, the way the light goes
 };
 
-// Corners of a sliver that lie on a curved surface do not tell how it lies there: its plane may stand on the surface, and a
-// start that is moved along that plane's normal stays inside.
-bool is_sliver(const std::array<VertexRay, 3>& rays, Vec3& longest) {
-    constexpr float least_height = 0.1F;  // of the longest side
-    longest = Vec3::Zero();
+Vec3 longest_side(const std::array<VertexRay, 3>& rays) {
+    Vec3 longest = Vec3::Zero();
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 side = rays[(i + 1) % 3].position - rays[i].position;
         if (side.squaredNorm() > longest.squaredNorm()) longest = side;
     }
-    const Vec3 twice_area =
-        (rays[1].position - rays[0].position).cross(rays[2].position - rays[0].position);
-    return twice_area.norm() < least_height * longest.squaredNorm();
+    return longest;
+}
+
+// Where light leaves the triangle of its rays. Corners of a sliver that lie on a curved surface do not tell how it lies there: its
+// plane may stand on the surface, and a start that is moved along that plane's normal stays inside.
+SegmentEnd start_on(const std::array<VertexRay, 3>& rays, const Vec3& position,
+                    const Vec3& direction, float offset) {
+    constexpr float least_height = 0.1F;  // of the longest side
+    const Vec3 &a = rays[0].position, &b = rays[1].position, &c = rays[2].position;
+    const Vec3 longest = longest_side(rays);
+    if (longest.isZero(0)) return {position, direction, offset};  // bent all at one place
+    if ((b - a).cross(c - a).norm() >= least_height * longest.squaredNorm())
+        return {position, triangle_normal(a, b, c), offset};
+    const Vec3 along = longest.stableNormalized();
+    const Vec3 across = direction - direction.dot(along) * along;
+    return {position, across.isZero(0) ? direction : across.normalized(), 2 * offset};
 }
 
 ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
     const Beam& beam = set.beams[hit.beam];
     const auto rays = set.triangle(beam, hit.triangle, hit.place());
-    ArrivingRay ray;
-    ray.start.position = Vec3::Zero();
-    ray.direction = Vec3::Zero();
+    Vec3 position = Vec3::Zero();
+    Vec3 direction = Vec3::Zero();
     for (std::size_t i = 0; i < 3; ++i) {
         const float weight = hit.weights[static_cast<Eigen::Index>(i)];
-        ray.start.position += weight * rays[i].position;
-        ray.direction += weight * rays[i].direction;
+        position += weight * rays[i].position;
+        direction += weight * rays[i].direction;
     }
-    ray.direction.normalize();
-    ray.start.geometric_normal =
-        triangle_normal(rays[0].position, rays[1].position, rays[2].position);
-    ray.start.offset = beam.offset;
-    if (Vec3 longest; is_sliver(rays, longest)) {
-        // Light after several events may be bent all at one place.
-        const Vec3 along = longest.stableNormalized();
-        const Vec3 across = ray.direction - ray.direction.dot(along) * along;
-        ray.start.geometric_normal = across.isZero(0) ? ray.direction : across.normalized();
-        ray.start.offset *= 2;
-    }
-    return ray;
+    direction.normalize();
+    return {start_on(rays, position, direction, beam.offset), direction};
 }
 
 // Whether what light meets first on its way to a part of a cell is the receiver: the same shape about where the part lies, or

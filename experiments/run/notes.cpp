@@ -108,6 +108,13 @@ std::optional<std::string> flat_pieces(const Scene& scene, const Method& method)
     return {};
 }
 
+/// That a note which names one pair is of others, too.
+std::string of_more_pairs(std::size_t pairs, const char* at_least = "") {
+    if (pairs == 1) return "";
+    if (pairs == 2) return " (and 1 pair more)";
+    return fmt::format(" (and {} pairs more{})", pairs - 1, at_least);
+}
+
 std::optional<std::string> what_crosses(const Scene& scene) {
     const auto pairs = crossing_dielectrics(scene);
     if (pairs.empty()) return {};
@@ -116,10 +123,7 @@ std::optional<std::string> what_crosses(const Scene& scene) {
         "that "
         "comes there is not to be trusted",
         scene.shapes()[pairs[0].first].name, scene.shapes()[pairs[0].second].name,
-        pairs.size() == 1   ? ""
-        : pairs.size() == 2 ? " (and 1 pair more)"
-                            : fmt::format(" (and {} pairs more{})", pairs.size() - 1,
-                                          pairs.size() < most_crossing_pairs ? "" : ", at least"));
+        of_more_pairs(pairs.size(), pairs.size() < most_crossing_pairs ? "" : ", at least"));
 }
 
 std::optional<std::string> what_shares_faces(const Scene& scene) {
@@ -132,9 +136,7 @@ std::optional<std::string> what_shares_faces(const Scene& scene) {
         "one "
         "surface of both)",
         scene.shapes()[faces[0].caster].name, scene.shapes()[faces[0].other].name,
-        faces.size() == 1   ? ""
-        : faces.size() == 2 ? " (and 1 pair more)"
-                            : fmt::format(" (and {} pairs more)", faces.size() - 1));
+        of_more_pairs(faces.size()));
 }
 
 std::string where_it_lies(const Scene& scene, const LightOnCaster& light) {

@@ -260,8 +260,6 @@ TEST(BeamBounces, LeaveNoDarkLinesBehindFlatGlass) {
         EXPECT_NEAR(static_cast<double>(found.value.mean()) / expected, 1, 0.005);
 }
 
-// Behind a ball under a lamp on its axis, at places that are alike by symmetry: on the planes of the mesh's edges, where
-// beams that run sideways change the planes on which they are tested, and beside them.
 // Near the focus polygons leave the ball as slivers, whose planes do not lie along its surface: their light met the ball itself.
 // The first two places were black.
 TEST(BeamBounces, LeaveNoCracksBehindABall) {
@@ -284,6 +282,8 @@ TEST(BeamBounces, LeaveNoCracksBehindABall) {
     EXPECT_EQ(dark, 0);
 }
 
+// Behind a ball under a lamp on its axis, at places that are alike by symmetry: on the planes of the mesh's edges, where
+// beams that run sideways change the planes on which they are tested, and beside them.
 TEST(BeamBounces, AreAlikeAllRoundABall) {
     SceneDesc desc;
     desc.shapes = {floor_of(1), support::sphere("ball", {0, 0, 0.6}, 0.3, support::glass(1.5F))};

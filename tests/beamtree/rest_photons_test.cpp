@@ -199,7 +199,7 @@ std::vector<RestPhoton> random_photons(std::size_t count) {
 // The sum over a grid that reaches beyond all discs is the photons' flux, however they lie.
 TEST(PhotonDiscs, SpreadAllLightOfAPlane) {
     const PhotonDiscs discs(random_photons(2'000), 20, 2);
-    constexpr int cells = 120;
+    constexpr int cells = 400;
     constexpr float side = 2.0F / cells;
     double sum = 0;
     std::vector<std::uint32_t> stack;
