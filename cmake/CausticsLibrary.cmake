@@ -161,7 +161,8 @@ endfunction()
 # Makes one GoogleTest program; each of its tests becomes the ctest `kd_tree.Suite.Name`. The macro
 # CAUSTICS_SOURCE_DIR is the project's root, where tests find scenes. With SHARED_MESHES the tests
 # also carry the label `shared` and see the macro CAUSTICS_SHARED_DIR; they are left out where that
-# folder does not exist (the ctest shared.meshes_present says so).
+# folder does not exist (the ctest shared.meshes_present says so). The target `unit_tests` builds those
+# labelled `unit`.
 function(caustics_test name)
     cmake_parse_arguments(PARSE_ARGV 1 arg "SHARED_MESHES" "TIMEOUT"
         "SOURCES;DEPENDS;LABELS;DEFINES")
@@ -192,6 +193,9 @@ function(caustics_test name)
         "CAUSTICS_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" ${arg_DEFINES})
     set_target_properties(${program} PROPERTIES
         RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+    if("unit" IN_LIST arg_LABELS)
+        add_dependencies(unit_tests ${program})
+    endif()
     gtest_discover_tests(${program}
         TEST_PREFIX "${name}."
         TEST_LIST ${program}_tests

@@ -50,10 +50,10 @@ public:
         std::vector<bool> kept(set.beams.size(), true);
         const bool goes_on = level.bounces() < static_cast<std::size_t>(settings_.max_bounces);
         if (goes_on) {
-            NextSets next = next_sets(
-                scene_, boxes_, surface_, level,
-                {settings_.prune * mean_flux, settings_.least_divided * mean_flux, budget_}, rest_,
-                traced_.balance, settings_.threads, part.of(own));
+            NextSets next = next_sets(scene_, boxes_, surface_, level,
+                                      {mean_flux, settings_.prune * mean_flux,
+                                       settings_.least_divided * mean_flux, budget_},
+                                      rest_, traced_.balance, settings_.threads, part.of(own));
             append(next.rest, traced_.rest);
             const double beams = count_of(next.sets);
             for (Level& one : next.sets) {

@@ -21,7 +21,9 @@ struct CutEdge {
 /// Most halvings of an edge that cut_edge() is asked for: where it is cut is then known to a 16,000th.
 constexpr int most_halvings = 14;
 /// Finds by so many bisections where along an edge light does another thing. Neighbours that bisect it as often find
-/// the same points, because both begin at the same end.
-CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b, int halvings);
+/// the same points, because both begin at the same end. With `ends_at_third` a third thing between ends the search, and
+/// the edge has no points.
+CutEdge cut_edge(const Path& path, const PathPoint& a, const PathPoint& b, int halvings,
+                 bool ends_at_third);
 
 }  // namespace caustics::beamtree

@@ -1,6 +1,7 @@
 #include "beamtree/tracing/expected_least.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "beamtree/beams/caster_sample.h"
 #include "core/base/parallel.h"
@@ -80,13 +81,20 @@ public:
         std::vector<BeamBudget> counts(drawn_.size(),
                                        BeamBudget(BeamBudget::no_limit, budget.least()));
         parallel_chunks(threads_, drawn_.size(), 1, [&](const Chunk& chunk) {
-            const Lot& lot = drawn_[chunk.index];
-            TraceSettings own = settings;
-            own.least_divided =
-                least_to_divide(settings, lot.of_polygons, up_to_.size() * lights_.size());
-            trace(lot, own, counts[chunk.index]);
+            follow(drawn_[chunk.index], settings, counts[chunk.index]);
         });
         for (const BeamBudget& one : counts) budget.add(one);
+    }
+    /// Whether they have at most so many beams, however weak. Ends with the first that are too many.
+    bool have_at_most(std::uint64_t most, const TraceSettings& settings) {
+        std::atomic<std::uint64_t> counted{0};
+        parallel_chunks(threads_, drawn_.size(), 1, [&](const Chunk& chunk) {
+            if (counted > most) return;
+            BeamBudget own(most);
+            follow(drawn_[chunk.index], settings, own);
+            counted += own.is_over() ? most + 1 : own.count();
+        });
+        return counted <= most;
     }
 
 private:
@@ -96,6 +104,12 @@ private:
         std::size_t of_polygons;  ///< that the caster has
     };
 
+    void follow(const Lot& lot, const TraceSettings& settings, BeamBudget& budget) {
+        TraceSettings own = settings;
+        own.least_divided =
+            least_to_divide(settings, lot.of_polygons, up_to_.size() * lights_.size());
+        trace(lot, own, budget);
+    }
     TracedBeams trace(const Lot& lot, const TraceSettings& settings, BeamBudget& budget) {
         return trace_beams(scene_, boxes_, lot.polygons, nullptr, lights_[lot.light], settings,
                            budget, {progress_, 0});
@@ -140,6 +154,7 @@ double expected_least(const Scene& scene, const SceneBoxes& boxes,
                               .least_divided = settings.least_divided,
                               .divided_share = settings.divided_share};
     const auto most = static_cast<std::uint64_t>(a_polygon * static_cast<double>(count)) + 1;
+    if (draws.have_at_most(most, alone)) return 0;
     const double mean = draws.mean_light();
     for (double share = first_try; share > last_try; share *= step) {
         BeamBudget budget(most, share * mean);

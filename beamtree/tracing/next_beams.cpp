@@ -8,8 +8,12 @@
 namespace caustics::beamtree {
 namespace {
 
-// Where corners' weights do not give the mean, this many parts of a side do.
-constexpr int parts_of_side = 5;
+// Corners' light is a bound to a few times: between them a surface may reflect less.
+constexpr double corners_slack = 4;
+// Where corners' weights do not give the mean, so many parts of a side do: the most for a beam with the light of
+// the first events' mean.
+constexpr int fewest_parts = 2;
+constexpr int most_parts = 5;
 
 // What media have left of a beam's light. Where they absorb much, all light that passes is weak.
 double left_of(const BeamCorners& corners) {
@@ -129,14 +133,12 @@ double NextBeams::flux(const Piece& piece) const {
     return static_cast<double>(weight.mean()) * size(piece);
 }
 
-// Its corners' light is a bound to a few times: between them a surface may reflect less.
 double NextBeams::most_light(const Piece& piece) const {
-    constexpr double slack = 4;
     double strength = 0;
     for (const PathPoint& corner : piece)
         strength = std::max(strength, static_cast<double>(corner.origin.weight.mean()) /
                                           static_cast<double>(corner.origin.left));
-    return slack * strength * size(piece);
+    return corners_slack * strength * size(piece);
 }
 
 bool NextBeams::is_too_weak(const Piece& piece) const {
@@ -153,44 +155,65 @@ int NextBeams::halvings(const Piece& piece) const {
 
 void NextBeams::count_search(const Piece& piece) { least_.budget.count(most_light(piece)); }
 
-// As LightBender::flux: by the corners' weights where they are alike; near total reflection the way is
-// gone from places inside as well.
-Spectrum NextBeams::flux(std::uint32_t parent, const BeamCorners& corners, Event event) const {
+// Each place stands for as much light, whatever the beam has.
+int NextBeams::parts_of_side(double light) const {
+    const double wanted = most_parts * std::sqrt(light / least_.mean);
+    return static_cast<int>(std::ceil(
+        std::clamp(wanted, static_cast<double>(fewest_parts), static_cast<double>(most_parts))));
+}
+
+// As LightBender::flux: by the corners' weights where they are alike, or where the beam is too dim whatever is between.
+Spectrum NextBeams::flux(std::uint32_t parent, const BeamCorners& corners, Event event,
+                         double dim) const {
     std::array<Spectrum, 3> weights;
     for (std::size_t i = 0; i < 3; ++i)
         weights[i] = corners[i].origin->weight * corners[i].arrival->weight[event];
+    const double whole = measure(set_.light, corners[0].origin->position,
+                                 corners[1].origin->position, corners[2].origin->position);
+    const Spectrum sum = weights[0] + weights[1] + weights[2];
+    const Spectrum by_corners = sum * (static_cast<float>(whole) / 3);
+    const auto mean = static_cast<double>(by_corners.mean());
+    if (!weights_differ({weights[0].mean(), weights[1].mean(), weights[2].mean()}) ||
+        corners_slack * mean < dim)
+        return by_corners;
+    return weight_inside(parent, corners, event, parts_of_side(mean)) * static_cast<float>(whole);
+}
+
+// Near total reflection the way is gone from places inside as well.
+Spectrum NextBeams::weight_inside(std::uint32_t parent, const BeamCorners& corners, Event event,
+                                  int parts) const {
     const std::array<const RayOrigin*, 3> at = {corners[0].origin, corners[1].origin,
                                                 corners[2].origin};
-    const float whole =
-        static_cast<float>(measure(set_.light, at[0]->position, at[1]->position, at[2]->position));
-    if (!weights_differ({weights[0].mean(), weights[1].mean(), weights[2].mean()}))
-        return (weights[0] + weights[1] + weights[2]) * (whole / 3);
     const Path path(scene_, surface_, level_, parent);
     Spectrum sum = black();
     const auto add = [&](int i, int j, float to_middle) {
-        const float u = (static_cast<float>(i) + to_middle) / parts_of_side;
-        const float v = (static_cast<float>(j) + to_middle) / parts_of_side;
+        const auto n = static_cast<float>(parts);
+        const float u = (static_cast<float>(i) + to_middle) / n;
+        const float v = (static_cast<float>(j) + to_middle) / n;
         const PathPoint point = path.inside(at, {1 - u - v, u, v});
         if (goes_on(point) && same_piece(point.next, *corners[0].arrival))
             sum += point.origin.weight * point.next.weight[event];
     };
-    for (int i = 0; i < parts_of_side; ++i)
-        for (int j = 0; i + j < parts_of_side; ++j) {
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; i + j < parts; ++j) {
             add(i, j, 1.0F / 3);
-            if (i + j + 2 <= parts_of_side) add(i, j, 2.0F / 3);
+            if (i + j + 2 <= parts) add(i, j, 2.0F / 3);
         }
-    return sum * (whole / (parts_of_side * parts_of_side));
+    return sum / static_cast<float>(parts * parts);
 }
 
 void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event event, float share,
                     float part) {
     const RayArrival& first = *corners[0].arrival;
+    const double left = left_of(corners);
+    const float own_share = share * part;
     Beam beam;
-    beam.flux = flux(parent, corners, event);
+    beam.flux = flux(
+        parent, corners, event,
+        left * std::max(least_.of_polygon * static_cast<double>(own_share), least_.budget.least()));
     const auto mean = static_cast<double>(beam.flux.mean());
     if (!(mean > 0)) return;
-    const double clear = mean / left_of(corners);
-    const float own_share = share * part;
+    const double clear = mean / left;
     const double worth = clear / static_cast<double>(own_share);
     if (worth < least_.of_polygon || clear < least_.budget.least()) {
         leave_out({parent, {corners[0].origin, corners[1].origin, corners[2].origin}, event, mean},

@@ -21,6 +21,7 @@ using BeamCorners = std::array<BeamCorner, 3>;
 
 /// What a beam must have of light to be followed, were media clear.
 struct LeastLight {
+    double mean;         ///< of the first events' beams [W]
     double of_polygon;   ///< over its share of its polygon [W]
     double to_divide;    ///< to be divided to see what it meets [W]
     BeamBudget& budget;  ///< counts beams
@@ -74,7 +75,12 @@ public:
 private:
     /// Of a part of a polygon, were media clear, whatever it meets [W].
     double most_light(const Piece& piece) const;
-    Spectrum flux(std::uint32_t parent, const BeamCorners& corners, Event event) const;
+    /// Of a beam [W]; one below `dim` is not looked at closely.
+    Spectrum flux(std::uint32_t parent, const BeamCorners& corners, Event event, double dim) const;
+    /// Of a beam, over its light before all events, from places inside it: so many parts of a side.
+    Spectrum weight_inside(std::uint32_t parent, const BeamCorners& corners, Event event,
+                           int parts) const;
+    int parts_of_side(double light) const;
     NextChunk& chunk_of(std::uint32_t shape, Event event);
 
     const Scene& scene_;

@@ -63,8 +63,8 @@ public:
           level_(level),
           set_(level.traced.set),
           budget_(std::move(budget)),
-          next_(scene, surface, level, {least.of_polygon, least.to_divide, budget_}, rest,
-                balance_) {}
+          next_(scene, surface, level, {least.mean, least.of_polygon, least.to_divide, budget_},
+                rest, balance_) {}
 
     // `goes_on` is asked after each beam.
     template <typename GoesOn>
@@ -218,11 +218,15 @@ private:
         cut(beam, Path(scene_, surface_, level_, beam), piece_of(rays), share_of(beam),
             most_splits);
     }
-    std::array<CutEdge, 3> cut_edges(const Path& path, const Piece& piece) const {
-        const auto& [a, b, c] = piece;
+    // With `up_to_third` none after one that hides a third thing is cut.
+    std::array<CutEdge, 3> cut_edges(const Path& path, const Piece& piece, bool up_to_third) const {
         const int halvings = next_.halvings(piece);
-        return {cut_edge(path, a, b, halvings), cut_edge(path, b, c, halvings),
-                cut_edge(path, c, a, halvings)};
+        std::array<CutEdge, 3> edges;
+        for (std::size_t i = 0; i < 3; ++i) {
+            edges[i] = cut_edge(path, piece[i], piece[(i + 1) % 3], halvings, up_to_third);
+            if (up_to_third && edges[i].hides_another) break;
+        }
+        return edges;
     }
     // Whether an edge is too long for what it meets up to where it is cut.
     static bool cuts_coarsely(const Piece& piece, const std::array<CutEdge, 3>& edges) {
@@ -256,15 +260,15 @@ private:
             search(beam, path, piece, share, splits);
             return;
         }
-        const std::array<CutEdge, 3> edges = cut_edges(path, piece);
+        const std::array<CutEdge, 3> edges = cut_edges(path, piece, splits > 0);
         more = more || std::ranges::any_of(edges, &CutEdge::hides_another);
+        if (splits > 0 && more) {
+            quarter(beam, path, piece, share, splits - 1);
+            return;
+        }
         coarse = coarse || cuts_coarsely(piece, edges);
         if (coarse && may_search(piece, share)) {
             search(beam, path, piece, share, splits);
-            return;
-        }
-        if (splits > 0 && more) {
-            quarter(beam, path, piece, share, splits - 1);
             return;
         }
         const double carried = add_parts(beam, piece, edges, share);
