@@ -30,12 +30,14 @@ def main():
     parser.add_argument("--format", choices=("svg", "pdf", "png"), default="svg", help="of the plots (default: svg)")
     parser.add_argument("--width", metavar="INCHES", type=float, default=3.5, help="of a figure of one panel (default: 3.5)")
     parser.add_argument("--slope", metavar="EXPONENT", type=float, help="draws a guide of that slope, such as -0.5")
+    parser.add_argument("--interval", action="store_true", help="points are means over the seeds, bands their 95 %% intervals by "
+                        "Student's t (default: medians and ranges)")
     parser.add_argument("--bare", action="store_true", help="without the words above the axes, for a paper's own caption")
     arguments = parser.parse_args()
     if not 1 <= arguments.width <= 40:
         parser.error(f"--width: {arguments.width:g} is not from 1 to 40 inches")
-    if not arguments.output and (arguments.metric or arguments.x or arguments.filter or arguments.format != "svg"):
-        parser.error("--metric, --x, --filter and --format need -o: DIR/report is of all records")
+    if not arguments.output and (arguments.metric or arguments.x or arguments.filter or arguments.interval or arguments.format != "svg"):
+        parser.error("--metric, --x, --filter, --interval and --format need -o: DIR/report is of all records")
     output = arguments.output or os.path.join(arguments.directory, "report")
     own = [os.path.join(output, "plots")] + ([] if arguments.output else [output])
     return report("plot_records", "the plots", output, lambda: write_report(arguments, output, own))
@@ -51,7 +53,7 @@ def write_report(arguments, output, own):
         keep(table, condition)
     from report import record_plots  # here, so that a broken table is named even without matplotlib
 
-    look = record_plots.Look(arguments.format, arguments.width, arguments.slope, arguments.bare)
+    look = record_plots.Look(arguments.format, arguments.width, arguments.slope, arguments.bare, arguments.interval)
     plots, left_out = record_plots.make(table, kinds(arguments, table, record_plots.KINDS), look)
     os.makedirs(os.path.join(output, "plots"), exist_ok=True)
     for name, _, text in plots:

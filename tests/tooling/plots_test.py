@@ -1,6 +1,7 @@
 """tools/plot_records.py from outside: medians by hand, same bytes twice, and every broken table named in one line."""
 import csv
 import html
+import math
 import os
 import pathlib
 import re
@@ -236,6 +237,23 @@ class Plots(unittest.TestCase):
         self.assertNotIn("median and range", text)
         with open(out / "svg" / "summary.csv", newline="", encoding="utf-8") as file:
             self.assertEqual({(row["nearest"], row["photons"], row["mesh_resolution"]) for row in csv.DictReader(file)}, {("25", "1000", "32")})
+
+    def test_intervals_are_students_of_the_mean_over_the_seeds(self):
+        sys.path.insert(0, str(TOOL.parent))
+        from report import records
+        # Repeats of a seed make the same picture again: three values, not four.
+        cell = records.Cell("pool", "photonmap", {}, [{"seed": seed, "rmse": rmse} for seed, rmse in
+                                                      (("1", "1"), ("2", "2"), ("2", "2"), ("3", "6"))])
+        spread = cell.mean("rmse")
+        reach = 4.302652730 * math.sqrt(7 / 3)  # of two degrees of freedom; the variance of 1, 2, 6 is 7
+        for value, wanted in ((spread.median, 3), (spread.low, 3 - reach), (spread.high, 3 + reach)):
+            self.assertAlmostEqual(value, wanted, places=6)
+        self.assertIsNone(cell.mean("relmse"))
+        self.table(product())
+        out = self.directory / "figures"
+        result = self.run_tool("-o", str(out), "--metric", "rmse", "--x", "photons", "--interval")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("mean and its 95 % interval over 3 seeds", (out / "index.html").read_text(encoding="utf-8"))
 
     def test_figures_that_cannot_be_are_refused(self):
         self.table(product())

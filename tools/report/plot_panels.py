@@ -152,11 +152,11 @@ def panel_title(names, key, panels):
     return ", ".join(words) if words or panels == 1 else f"{', '.join(names)}: not set"
 
 
-def note(cells):
+def note(cells, interval=False):
     seeds = sorted({cell.seeds() for cell in cells})
     if seeds == [1]:
         return "one seed"
-    return f"median and range over {'–'.join(str(n) for n in dict.fromkeys((seeds[0], seeds[-1])))} seeds"
+    return f"{'mean and its 95 % interval' if interval else 'median and range'} over {'–'.join(str(n) for n in dict.fromkeys((seeds[0], seeds[-1])))} seeds"
 
 
 def counted(value):

@@ -1,6 +1,7 @@
 """Draws the plots of records.csv (SVG).
 
-In every plot a point is the median over the seeds of one cell and the band or bar its range.
+In every plot a point is the median over the seeds of one cell and the band or bar its range; or, where that is asked for,
+the mean and its 95 % interval.
 """
 import dataclasses
 import io
@@ -35,13 +36,17 @@ FORMATS = ("svg", "pdf", "png")
 
 @dataclasses.dataclass(frozen=True)
 class Look:
-    """How figures are drawn: the file's format, the width of one panel alone [inch], the exponent of a guide (or None), and
-    whether the words above the axes are left to the paper's caption."""
+    """How figures are drawn: the file's format, the width of one panel alone [inch], the exponent of a guide (or None),
+    whether the words above the axes are left to the paper's caption, and whether points are means with their intervals."""
     format: str = "svg"
     width: float = COLUMN
     slope: float | None = None
     bare: bool = False
+    interval: bool = False
     time: str = ""
+
+    def spread(self, cell, column):
+        return cell.mean(column) if self.interval else cell.spread(column)
 
 
 def make(records, kinds=KINDS, look=Look()):
@@ -62,7 +67,7 @@ def make(records, kinds=KINDS, look=Look()):
                     number = f"-{first // PANELS_PER_PAGE + 1}" if len(panels) > PANELS_PER_PAGE else ""
                     figure = draw(kind, scene, panels[first:first + PANELS_PER_PAGE], series, look, cells)
                     name = f"{kind.name()}-{urllib.parse.quote(scene, safe='')}{number}.{look.format}"
-                    plots.append((name, f"{scene}: {kind.y} against {QUANTITIES.get(kind.x, kind.x)}; {note(cells)}", saved(figure, look.format)))
+                    plots.append((name, f"{scene}: {kind.y} against {QUANTITIES.get(kind.x, kind.x)}; {note(cells, look.interval)}", saved(figure, look.format)))
         if kinds is KINDS:
             cells = [cell for cell in records.cells if cell.spread("mean_ratio")]
             if cells:
@@ -82,8 +87,8 @@ def draw(kind, scene, panels, series, look, others=()):
     figure, grid, foot = canvas(rows, columns, groups, look.width if columns == 1 else look.width / COLUMN * PAGE, look.bare)
     axes = [ax for line in grid for ax in line]
     for ax, (title, members), level in zip(axes, panels, levels):
-        draw_levels(kind, ax, level, series)
-        draw_panel(kind, ax, members, series)
+        draw_levels(kind, ax, level, series, look)
+        draw_panel(kind, ax, members, series, look)
         ax.set_title(title, loc="left", fontsize=7.5, pad=3)
     set_scales(kind, axes[0], [*cells, *(cell for each in levels for _, cell in each)])
     if look.slope is not None:
@@ -98,7 +103,7 @@ def draw(kind, scene, panels, series, look, others=()):
         if i % columns == 0:
             ax.set_ylabel(f"{kind.y} [{unit(kind.y)}]")
     formula = FORMULAS.get(kind.y, "") + (trust(cells) if kind.y == "rmse" else "")
-    words = ("", "") if look.bare else (f"{scene}: {note(cells)}", formula)
+    words = ("", "") if look.bare else (f"{scene}: {note(cells, look.interval)}", formula)
     label_figure(figure, *words, look.time if kind.x == "time" else X_LABELS.get(kind.x, kind.x), foot, LEFT)
     legends(figure, groups)
     return figure
@@ -163,11 +168,11 @@ def label_figure(figure, title, below_title, x, foot, left):
     figure.text((left + width - RIGHT) / 2 / width, (foot + 0.04) / height, x, va="bottom", ha="center")
 
 
-def draw_levels(kind, ax, levels, series):
+def draw_levels(kind, ax, levels, series, look):
     """Methods without photons: what their best setting reaches, and its range."""
     for key, cell in levels:
         colour, _, line = series.styles[key]
-        spread = cell.spread(kind.y)
+        spread = look.spread(cell, kind.y)
         ax.axhspan(spread.low, spread.high, color=colour, alpha=0.12, linewidth=0)
         ax.axhline(spread.median, color=colour, linestyle=line, linewidth=0.9)
 
@@ -187,17 +192,17 @@ def draw_slope(ax, slope):
     ax.set_ylim(y0, y1)
 
 
-def draw_panel(kind, ax, cells, series):
+def draw_panel(kind, ax, cells, series, look):
     for key, group in series.split(cells).items():
         colour, marker, line = series.styles[key]
         group = sorted(group, key=kind.x_of)
         x = [kind.x_of(cell) for cell in group]
-        spreads = [cell.spread(kind.y) for cell in group]
+        spreads = [look.spread(cell, kind.y) for cell in group]
         y = [spread.median for spread in spreads]
         if kind.x == "time":
             ax.plot(x, y, linestyle=line, color=colour, linewidth=0.7)
             for cell, spread in zip(group, spreads):
-                bars(ax, cell.spread("time_s"), spread, colour, *(photon_mark(cell) or (marker, 4.5)))
+                bars(ax, look.spread(cell, "time_s"), spread, colour, *(photon_mark(cell) or (marker, 4.5)))
         else:
             ax.plot(x, y, linestyle=line, marker=marker, color=colour)
             low, high = [spread.low for spread in spreads], [spread.high for spread in spreads]

@@ -10,6 +10,8 @@ import math
 import re
 import statistics
 
+from report.intervals import half_interval
+
 STATUSES = ("done", "failed", "timeout", "interrupted", "unsupported")
 FIXED_PARAMETERS = ("nearest", "alpha", "mesh_resolution", "threads", "isa", "code_version")
 OPTIONAL_PARAMETERS = ("spp", "indirect")
@@ -55,7 +57,7 @@ class RecordsError(Exception):
 
 @dataclasses.dataclass
 class Spread:
-    """Median and range of one quantity over the records of a cell."""
+    """Median and range, or mean and interval, of one quantity over the records of a cell."""
     median: float
     low: float
     high: float
@@ -73,6 +75,15 @@ class Cell:
         """The spread of a measure, or None where it does not apply to any record of the cell."""
         values = [float(record[column]) for record in self.records if record.get(column)]
         return Spread(statistics.median(values), min(values), max(values)) if values else None
+
+    def mean(self, column):
+        """The mean over the seeds and its 95 % interval (Student; none of one seed), as spread()."""
+        seeds = [[float(record[column]) for record in rows if record.get(column)] for rows in by_seed(self.records).values()]
+        values = [statistics.mean(several) for several in seeds if several]
+        if not values:
+            return None
+        reach = half_interval(values) or 0
+        return Spread(statistics.mean(values), statistics.mean(values) - reach, statistics.mean(values) + reach)
 
     def reference_error(self):
         """The reference's own standard error [W m⁻² sr⁻¹], or None: the table has it as a share of the mean radiance of
