@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/geometry/segment.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -13,6 +16,11 @@ namespace {
 // How far beside its triangle, in its own edges, the foot of a light may lie: two triangles that bulge outwards leave
 // a wedge open between what lies straight above them.
 constexpr double beside = 0.01;
+
+constexpr std::size_t most_looked_at = 400;
+
+// What a polygon leaves of its surface falls with the square of its size.
+double finer_by(double over_gap) { return 1.5 * std::sqrt(over_gap); }
 
 struct Gap {
     double polygon;  ///< height of the light above the polygon [m]
@@ -46,7 +54,45 @@ std::optional<Gap> gap_round(const Scene& scene, const LitCaster& surface, std::
     return Gap{std::abs(height), static_cast<double>(hit->distance)};
 }
 
+// How far a polygon's middle is from its surface, over what another surface before that is, if there is one.
+std::optional<double> wall_over(const Scene& scene, const CasterMesh& caster,
+                                const std::array<Vec3, 3>& corners) {
+    const auto& [a, b, c] = corners;
+    const Vec3 middle = (a + b + c) / 3;
+    const Vec3 normal = (b - a).cross(c - a).stableNormalized();
+    const float far = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+    for (const Vec3& away : {normal, Vec3(-normal)}) {
+        const auto other = scene.intersect({middle, away, far});
+        if (!other || other->shape == caster.shape) continue;
+        Ray on = spawn_ray({other->position, other->geometric_normal, other->offset}, away);
+        on.max_distance = far - other->distance;
+        const auto own = scene.intersect(on);
+        if (own && own->shape == caster.shape)
+            return 1 + static_cast<double>(other->distance) / static_cast<double>(own->distance);
+    }
+    return {};
+}
+
 }  // namespace
+
+WallsBehind walls_behind_polygons(const Scene& scene, const CasterMesh& caster) {
+    WallsBehind walls;
+    if (!caster.tessellated) return walls;
+    const auto& triangles = caster.mesh.triangles;
+    const std::size_t stride = 1 + triangles.size() / most_looked_at;
+    double looked_at = 0;
+    for (std::size_t i = 0; i < triangles.size(); i += stride) {
+        std::array<Vec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = caster.mesh.positions[triangles[i][k]];
+        ++looked_at;
+        const std::optional<double> over = wall_over(scene, caster, corners);
+        if (!over) continue;
+        ++walls.share;
+        walls.finer = std::max(walls.finer, finer_by(*over));
+    }
+    if (looked_at > 0) walls.share /= looked_at;
+    return walls;
+}
 
 void refuse_light_behind_polygons(const Scene& scene, const LitCaster& surface) {
     const CasterMesh& caster = surface.caster();
@@ -55,8 +101,7 @@ void refuse_light_behind_polygons(const Scene& scene, const LitCaster& surface) 
         const std::optional<Gap> gap = gap_round(scene, surface, i);
         if (!gap) continue;
         const Vec3d at = surface.world(surface.light().position);
-        // What a polygon leaves of its surface falls with the square of its size.
-        const double finer = 1.5 * std::sqrt(1 + gap->polygon / gap->surface);
+        const double finer = finer_by(1 + gap->polygon / gap->surface);
         throw UnsupportedScene(fmt::format(
             "{}: the light at ({:g}, {:g}, {:g}) is {:.2g} m from the curved surface, and behind "
             "the "

@@ -8,4 +8,13 @@ namespace caustics::beamtree {
 /// wall inside a ball, or in a trough of waves. Polygons lit from their other side send its light nowhere.
 void refuse_light_behind_polygons(const Scene& scene, const LitCaster& surface);
 
+/// Walls that are thinner than polygons are flat: another surface lies between a polygon and the curved exact shape it
+/// stands for, so that its light starts on the wrong side of that.
+struct WallsBehind {
+    double share = 0;  ///< of the caster's polygons
+    double finer = 1;  ///< how many times as fine polygons would have to be
+};
+/// By some hundreds of a caster's polygons.
+WallsBehind walls_behind_polygons(const Scene& scene, const CasterMesh& caster);
+
 }  // namespace caustics::beamtree

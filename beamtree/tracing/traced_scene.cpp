@@ -52,6 +52,10 @@ BuildReport TracedScene::report() const {
         for (const RestPhoton& photon : rest) flux += static_cast<double>(photon.flux.mean());
         report.resolved["flux_share_rest"] = balance.lit > 0 ? flux / balance.lit : 0;
     }
+    if (walls.share > 0) {
+        report.resolved["walls_behind_polygons"] = walls.share;
+        report.resolved["walls_need_finer"] = walls.finer;
+    }
     if (least_light > 0) report.resolved["least_light"] = least_light;
     double bounces = 0;
     for (const BeamSet& set : sets)
@@ -78,6 +82,10 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     options.phase("beams");
     TracedScene traced;
     traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons, options.threads);
+    for (const CasterMesh& caster : traced.casters) {
+        const WallsBehind walls = walls_behind_polygons(scene, caster);
+        if (walls.share > traced.walls.share) traced.walls = walls;
+    }
     if (disperses(scene)) traced.wavelengths = params.wavelengths;
     const TraceSettings settings{.intensity = intensity,
                                  .max_bounces = params.max_bounces,

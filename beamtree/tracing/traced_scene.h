@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "beamtree/beams/beam_params.h"
+#include "beamtree/beams/behind_polygons.h"
 #include "beamtree/beams/flux_balance.h"
 #include "beamtree/tracing/beam_tracing.h"
 
@@ -20,6 +21,7 @@ struct TracedScene {
     double least_light =
         0;  ///< of beams of several events that the budget has room for [W]; 0: it has for all
     std::uint64_t unreceived = 0;  ///< beams that pass all receivers' bounds: not kept
+    WallsBehind walls;             ///< of the caster that has most of them
     int wavelengths = 0;           ///< of each light; 0: nothing disperses it
 
     /// polygons, beams, their bytes and what was left out; how normals and meshes were come by.

@@ -16,6 +16,7 @@
 #include "core/scene/crossing_dielectrics.h"
 #include "core/scene/eye_medium.h"
 #include "core/scene/lights_on_casters.h"
+#include "core/scene/media_conflicts.h"
 #include "core/scene/shared_faces.h"
 
 namespace caustics::experiments {
@@ -108,6 +109,17 @@ std::optional<std::string> flat_pieces(const Scene& scene, const Method& method)
     return {};
 }
 
+std::optional<std::string> thin_walls(const BuildReport& report) {
+    const double share = resolved(report, "walls_behind_polygons").value_or(0);
+    if (share < least_share_told) return {};
+    return fmt::format(
+        "behind {:.0f} % of the polygons of a caster, before the curved shape they stand for, lies "
+        "another surface: walls are thinner than polygons are flat, and light of beams that goes "
+        "through them is not to be trusted (a mesh_resolution {:.0f} times as fine; photonmap sees "
+        "the shapes themselves)",
+        100 * share, std::ceil(resolved(report, "walls_need_finer").value_or(1)));
+}
+
 /// That a note which names one pair is of others, too.
 std::string of_more_pairs(std::size_t pairs, const char* at_least = "") {
     if (pairs == 1) return "";
@@ -115,8 +127,9 @@ std::string of_more_pairs(std::size_t pairs, const char* at_least = "") {
     return fmt::format(" (and {} pairs more{})", pairs - 1, at_least);
 }
 
-std::optional<std::string> what_crosses(const Scene& scene) {
-    const auto pairs = crossing_dielectrics(scene);
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+std::optional<std::string> what_crosses(const Scene& scene, const Pairs& pairs) {
     if (pairs.empty()) return {};
     return fmt::format(
         "the dielectrics {} and {}{} cross: which medium is inside both is not known, and light "
@@ -124,6 +137,25 @@ std::optional<std::string> what_crosses(const Scene& scene) {
         "comes there is not to be trusted",
         scene.shapes()[pairs[0].first].name, scene.shapes()[pairs[0].second].name,
         of_more_pairs(pairs.size(), pairs.size() < most_crossing_pairs ? "" : ", at least"));
+}
+
+/// But for those that cross, of which another note tells.
+std::optional<std::string> what_disagrees(const Scene& scene, const Pairs& crossing) {
+    std::vector<MediaConflict> conflicts = media_conflicts(scene);
+    std::erase_if(conflicts, [&](const MediaConflict& each) {
+        return std::ranges::count(crossing, std::pair(each.first, each.second)) > 0;
+    });
+    if (conflicts.empty()) return {};
+    const MediaConflict& one = conflicts.front();
+    const std::string what =
+        one.first_ior == one.second_ior
+            ? "what it absorbs"
+            : fmt::format("n = {:.4g} and {:.4g}", one.first_ior, one.second_ior);
+    return fmt::format(
+        "the dielectrics {} and {}{} disagree on the medium between them, {}: light there goes as "
+        "at no real pair (ext_ior and ext_absorption say what is round a dielectric)",
+        scene.shapes()[one.first].name, scene.shapes()[one.second].name,
+        of_more_pairs(conflicts.size()), what);
 }
 
 std::optional<std::string> what_shares_faces(const Scene& scene) {
@@ -315,7 +347,9 @@ std::vector<std::string> notes_on(const Scene& scene) {
                 "averaged over hard edges too, and light that they send to the wrong side of the "
                 "surface is lost (face_normals: true shades the triangles flat)",
                 caster.text()));
-    if (const auto crossing = what_crosses(scene)) all.push_back(*crossing);
+    const Pairs crossing = crossing_dielectrics(scene);
+    if (const auto note = what_crosses(scene, crossing)) all.push_back(*note);
+    if (const auto note = what_disagrees(scene, crossing)) all.push_back(*note);
     if (const auto faces = what_shares_faces(scene)) all.push_back(*faces);
     for (const LightOnCaster& light : lights_on_casters(scene))
         all.push_back(where_it_lies(scene, light));
@@ -346,6 +380,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
         all.push_back(*far);
     if (!captured) return all;
+    if (const auto walls = thin_walls(report)) all.push_back(*walls);
     if (const auto pieces = flat_pieces(scene, method)) all.push_back(*pieces);
     if (const auto steps = steps_of_colour(scene, method)) all.push_back(*steps);
     if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));

@@ -213,6 +213,34 @@ TEST(Notes, NameDielectricsThatCross) {
     EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"left and middle", "1 pair more", "cross"}));
 }
 
+TEST(Notes, NameDielectricsThatDisagree) {
+    SceneDesc desc = flat_mirror();
+    desc.shapes.push_back(support::sphere("glass", {0, 0, 3}, 0.3, support::glass(1.5F)));
+    desc.shapes.push_back(support::sphere("water", {0, 0, 3}, 0.2, support::glass(1.333F)));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)),
+                          {"glass and water", "disagree", "n = 1.5 and 1", "ext_ior"}));
+    std::get<Dielectric>(desc.shapes.back().bsdf.model).ext_ior = 1.5F;
+    EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    // Of those that cross another note tells.
+    desc.shapes.back() = support::sphere("water", {0.2, 0, 3}, 0.2, support::glass(1.333F));
+    EXPECT_EQ(notes_on(Scene(desc)).size(), 1U);
+}
+
+TEST(Notes, NameWallsThinnerThanPolygonsAreFlat) {
+    const auto bulb = [](double wall) {
+        SceneDesc desc = flat_mirror();
+        desc.shapes.push_back(support::sphere("bulb", {0, 0, 3}, 0.5, support::glass(1.5F)));
+        desc.shapes.push_back(support::sphere("air", {0, 0, 3}, 0.5 - wall, support::glass(1)));
+        std::get<Dielectric>(desc.shapes.back().bsdf.model).ext_ior = 1.5F;
+        return desc;
+    };
+    const std::vector<std::string> given = {"mesh_resolution=16", "max_bounces=2"};
+    EXPECT_TRUE(any_holds(notes_of(bulb(1e-3), "beamtree", given),
+                          {"100 %", "walls", "mesh_resolution", "photonmap"}));
+    for (const std::string& note : notes_of(bulb(0.05), "beamtree", given))
+        EXPECT_EQ(note.find("walls"), std::string::npos) << note;
+}
+
 TEST(Notes, NameTheLightThatBeamsLose) {
     for (const std::string method : {"beamtree", "causticpolygons"}) {
         const std::vector<std::string> coarse = {"mesh_resolution=2", "max_bounces=4", "prune=0.1"};
