@@ -54,21 +54,37 @@ std::optional<Gap> gap_round(const Scene& scene, const LitCaster& surface, std::
     return Gap{std::abs(height), static_cast<double>(hit->distance)};
 }
 
-// How far a polygon's middle is from its surface, over what another surface before that is, if there is one.
-std::optional<double> wall_over(const Scene& scene, const CasterMesh& caster,
-                                const std::array<Vec3, 3>& corners) {
+// The middle of a triangle's longest edge, which lies farthest from the surface.
+Vec3 lowest(const std::array<Vec3, 3>& corners) {
+    std::size_t longest = 0;
+    const auto length = [&](std::size_t i) { return (corners[(i + 1) % 3] - corners[i]).norm(); };
+    for (const std::size_t i : {1U, 2U})
+        if (length(i) > length(longest)) longest = i;
+    return (corners[longest] + corners[(longest + 1) % 3]) / 2;
+}
+
+// How far a polygon lies from its surface, over how far another surface below that does, where that is less than twice
+// as far.
+std::optional<double> depth_over_wall(const Scene& scene, const CasterMesh& caster,
+                                      const std::array<Vec3, 3>& corners) {
     const auto& [a, b, c] = corners;
-    const Vec3 middle = (a + b + c) / 3;
+    const Vec3 middle = lowest(corners);
     const Vec3 normal = (b - a).cross(c - a).stableNormalized();
-    const float far = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+    const float far = (b - a).norm() + (c - a).norm();
     for (const Vec3& away : {normal, Vec3(-normal)}) {
-        const auto other = scene.intersect({middle, away, far});
-        if (!other || other->shape == caster.shape) continue;
-        Ray on = spawn_ray({other->position, other->geometric_normal, other->offset}, away);
-        on.max_distance = far - other->distance;
-        const auto own = scene.intersect(on);
-        if (own && own->shape == caster.shape)
-            return 1 + static_cast<double>(other->distance) / static_cast<double>(own->distance);
+        const auto first = scene.intersect({middle, away, far});
+        if (!first) continue;
+        float depth = first->distance;
+        if (first->shape != caster.shape) {
+            Ray on = spawn_ray({first->position, first->geometric_normal, first->offset}, away);
+            on.max_distance = far;
+            const auto own = scene.intersect(on);
+            if (!own || own->shape != caster.shape) continue;
+            depth += own->distance;
+        }
+        const auto wall = scene.intersect({middle - depth * away, away, 2 * depth});
+        if (wall && wall->shape != caster.shape)
+            return static_cast<double>(depth) / static_cast<double>(2 * depth - wall->distance);
     }
     return {};
 }
@@ -85,7 +101,7 @@ WallsBehind walls_behind_polygons(const Scene& scene, const CasterMesh& caster) 
         std::array<Vec3, 3> corners;
         for (std::size_t k = 0; k < 3; ++k) corners[k] = caster.mesh.positions[triangles[i][k]];
         ++looked_at;
-        const std::optional<double> over = wall_over(scene, caster, corners);
+        const std::optional<double> over = depth_over_wall(scene, caster, corners);
         if (!over) continue;
         ++walls.share;
         walls.finer = std::max(walls.finer, finer_by(*over));

@@ -8,8 +8,8 @@ namespace caustics::beamtree {
 /// wall inside a ball, or in a trough of waves. Polygons lit from their other side send its light nowhere.
 void refuse_light_behind_polygons(const Scene& scene, const LitCaster& surface);
 
-/// Walls that are thinner than polygons are flat: another surface lies between a polygon and the curved exact shape it
-/// stands for, so that its light starts on the wrong side of that.
+/// Walls that are not much thicker than polygons are flat: another surface lies below a curved exact shape by less than
+/// twice as much as the polygon that stands for it, so that some of its light starts on the wrong side of that.
 struct WallsBehind {
     double share = 0;  ///< of the caster's polygons
     double finer = 1;  ///< how many times as fine polygons would have to be

@@ -113,10 +113,10 @@ std::optional<std::string> thin_walls(const BuildReport& report) {
     const double share = resolved(report, "walls_behind_polygons").value_or(0);
     if (share < least_share_told) return {};
     return fmt::format(
-        "behind {:.0f} % of the polygons of a caster, before the curved shape they stand for, lies "
-        "another surface: walls are thinner than polygons are flat, and light of beams that goes "
-        "through them is not to be trusted (a mesh_resolution {:.0f} times as fine; photonmap sees "
-        "the shapes themselves)",
+        "another surface lies so close below a curved caster that {:.0f} % of the polygons that "
+        "stand for it reach it, or nearly: light of beams that goes through such thin walls is not "
+        "to be trusted (take a mesh_resolution {:.0f} times as fine, or photonmap, which sees the "
+        "shapes themselves)",
         100 * share, std::ceil(resolved(report, "walls_need_finer").value_or(1)));
 }
 

@@ -21,7 +21,7 @@ std::vector<WallsBehind> walls_of(double inner_radius, int resolution) {
     return walls;
 }
 
-// A polygon's middle lies below its sphere by up to about radius (pi / resolution)^2 / 2: 1 mm of 64 cells.
+// Edges across cells lie below the sphere by up to about radius (pi / resolution)^2 / 4: 0.3 mm of 64 cells.
 TEST(WallsBehindPolygons, AreThoseThinnerThanPolygonsAreFlat) {
     const auto thin = walls_of(radius - 1e-4, 64);
     EXPECT_GT(thin[0].share, 0.9);
