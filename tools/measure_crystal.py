@@ -44,8 +44,8 @@ against 256. The last column is the error at equal time over that of `split_dept
 
 `beamtree` with `dispersion` bins and intervals (experiments/sweeps/dispersion_beams.json) against `lighttrace`. Errors level off where
 they are not of the wavelengths any more. The last column: the time of the cheapest bins whose error is at most 5 % above that of
-the intervals, over the intervals' time. On prism and gem nearly all of the time goes into cutting beams at their further surfaces (the eye
-pass takes 0.1 to 1 s), which hardly grows with the wavelengths.
+the intervals, over the intervals' time. On prism and gem most of the time goes into cutting beams at their further surfaces (the eye pass
+takes 0.1 to 1 s), and intervals send every ray three times; on gem it ends where `max_beams` has no room, which comes sooner in more parts.
 
 | scene | dispersion | wavelengths | caustic rmse | s | bins over it |
 |---|---|---|---|---|---|
