@@ -198,15 +198,23 @@ CellReach reach_of(const PixelCell& cell, const SliceFrame& frame) {
 }
 
 void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
-                    const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,
-                    std::vector<BeamHit>& hits, SearchCounts& counts) {
+                    const BeamNumber& number, const TestPlane& trees_plane,
+                    const BeamSquare& square, std::vector<BeamHit>& hits, SearchCounts& counts) {
     const std::size_t count = rays[3] == nullptr ? 1 : 2;
     std::array<OnPlane, 2> triangles;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto projected = project({rays[0], rays[1 + i], rays[2 + i]}, plane);
-        if (!projected) return find_in_beam(set, rays, number, plane, hits, counts);
-        triangles[i] = *projected;
-    }
+    const auto project_all = [&](const TestPlane& onto) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto projected = project({rays[0], rays[1 + i], rays[2 + i]}, onto);
+            if (!projected) return false;
+            triangles[i] = *projected;
+        }
+        return true;
+    };
+    // Of a large square, light of which some begins beyond the trees' plane comes down to the receiver's.
+    const bool on_trees_plane = project_all(trees_plane);
+    if (!on_trees_plane && !project_all(square.plane))
+        return find_in_beam(set, rays, number, trees_plane, hits, counts);
+    const TestPlane& plane = on_trees_plane ? trees_plane : square.plane;
     // Two triangles that keep their orientation are one caustic polygon.
     const bool together = triangles[0].area * triangles[1].area > 0;
     ++counts.beam_point_tests;

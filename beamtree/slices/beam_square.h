@@ -33,11 +33,11 @@ CellReach reach_of(const PixelCell& cell, const SliceFrame& frame);
 
 /// The part of a beam's caustic polygon that lies on the square. Appends a hit
 /// for each of the beam's triangles that has one, with the share of the square it covers, and the
-/// middle of that part as the place where the light left. Polygons that the plane cuts, and those
-/// that run towards the horizon, are asked at the point of `plane` as in find_in_beam.
+/// middle of that part as the place where the light left. Polygons that the trees' plane cuts are taken on the
+/// receiver's plane, and those that this cuts, too, or that run towards the horizon, are asked at the point as in find_in_beam.
 /// `rays` are the beam's or copies of them (test_beam).
 void find_on_square(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
-                    const BeamNumber& number, const TestPlane& plane, const BeamSquare& square,
-                    std::vector<BeamHit>& hits, SearchCounts& counts);
+                    const BeamNumber& number, const TestPlane& trees_plane,
+                    const BeamSquare& square, std::vector<BeamHit>& hits, SearchCounts& counts);
 
 }  // namespace caustics::beamtree

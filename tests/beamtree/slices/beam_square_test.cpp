@@ -248,6 +248,34 @@ TEST(BeamSquare, IsAPointWithinALargePolygon) {
     }
 }
 
+// Light that leaves a block of glass to all sides: planes of sideways light cut the polygons of some of it. A quarter of the
+// light was lost.
+TEST(BeamSquare, HoldsTheLightThatBeginsBeyondItsMiddle) {
+    SceneDesc desc;
+    const Transform place(Eigen::Translation3d(0, 0, 1.2) *
+                          Eigen::AngleAxisd(0.65, Vec3d(1, 2, 3).normalized()) *
+                          Eigen::Scaling(0.5));
+    desc.shapes = {support::mesh("block", tessellate_cube(1), place, support::glass(1.5F)),
+                   support::horizontal("floor", 0, 4, true, support::diffuse(0.5F))};
+    desc.lights = {support::directional_light({0.4, 0.2, -1}, 1)};
+    const Scene scene(std::move(desc));
+    const auto mean_of = [&](int count, const Vec2& centre, float half) {
+        BeamTreeParams params = averaged(2 * half / static_cast<float>(count));
+        params.max_bounces = 8;
+        std::vector<ReceiverPoint> points;
+        for (const Vec2& p : middles(count, half, centre))
+            points.push_back(support::probe(scene, 1, {p.x(), p.y(), 0}, Vec3d::UnitZ(), 0));
+        double total = 0;
+        for (const Estimate& one : support::irradiance(*build(scene, params, {}), points))
+            total += static_cast<double>(one.value.mean());
+        return total / count / count;
+    };
+    for (const Vec2& centre : {Vec2(0.3F, 0.2F), Vec2(0.7F, 0.2F)})
+        for (const float half : {1.0F, 2.0F})
+            EXPECT_NEAR(mean_of(1, centre, half) / mean_of(20, centre, half), 1, 0.02)
+                << centre.x() << " " << half;
+}
+
 // Each beam that brings light is one that was tested.
 TEST(BeamSquare, CountsTheBeamsThatItMeets) {
     const Scene scene(folded_pool());
