@@ -138,7 +138,7 @@ void expect_same_flux(const Scene& scene, double half, const Params& params, dou
         Rng rng(9, Stage::test, index);
         support::Moments irradiance;
         std::vector<ReceiverPoint> points;
-        const int n = support::sanitized ? 6 : 12;
+        const int n = support::sanitized ? 9 : 12;
         for (int i = 0; i < n * n; ++i) {
             const double u = (i % n + static_cast<double>(rng.next())) / n;
             const double v = (i / n + static_cast<double>(rng.next())) / n;
