@@ -264,7 +264,8 @@ TEST(BeamSquare, HoldsTheLightThatBeginsBeyondItsMiddle) {
         params.max_bounces = 8;
         std::vector<ReceiverPoint> points;
         for (const Vec2& p : middles(count, half, centre))
-            points.push_back(support::probe(scene, 1, {p.x(), p.y(), 0}, Vec3d::UnitZ(), 0));
+            points.push_back(
+                support::probe(scene, 1, Vec3(p.x(), p.y(), 0).cast<double>(), Vec3d::UnitZ(), 0));
         double total = 0;
         for (const Estimate& one : support::irradiance(*build(scene, params, {}), points))
             total += static_cast<double>(one.value.mean());
