@@ -8,6 +8,7 @@
 
 #include "core/base/interrupt.h"
 #include "core/geometry/tessellate.h"
+#include "core/mesh/triangle_middles.h"
 #include "core/scene/intersector.h"
 
 namespace caustics {
@@ -46,25 +47,19 @@ public:
     void run(std::map<Pair, MediaConflict>& found) {
         const bool is_mesh = shape_.primitive == Primitive::mesh;
         const TriangleMesh own = is_mesh ? TriangleMesh() : tessellate_shape(shape_, resolution);
-        const TriangleMesh& mesh = is_mesh ? shape_.mesh : own;
         if (!is_mesh) alone_.emplace(std::vector<Shape>{shape_});
         const float reach =
             (is_mesh ? reach_of_mesh : reach_of_exact) * bounds(shape_).diagonal().norm();
-        const std::size_t stride = 1 + mesh.triangles.size() / most_;
-        for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
-            const auto& [a, b, c] = mesh.triangles[i];
-            const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-            const Vec3 normal = (q - p).cross(r - p).stableNormalized();
-            if (!normal.isZero(0)) look_from((p + q + r) / 3, normal, reach);
-        }
+        for (const TriangleMiddle& middle : triangle_middles(is_mesh ? shape_.mesh : own, most_))
+            look_from(middle, reach);
         for (const auto& [pair, conflict] : conflicts_)
             if (static_cast<double>(counts_[pair]) >= least_share * static_cast<double>(places_))
                 found.emplace(pair, conflict);
     }
 
 private:
-    void look_from(const Vec3& middle, const Vec3& normal, float reach) {
-        Ray ray{middle + reach * normal, -normal};
+    void look_from(const TriangleMiddle& middle, float reach) {
+        Ray ray{middle.place + reach * middle.normal, -middle.normal};
         ray.max_distance = 2 * reach;
         const auto at = alone_ ? alone_->intersect(ray) : scene_.intersect(ray);
         if (!at || (!alone_ && at->shape != index_)) return;

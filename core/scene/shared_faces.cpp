@@ -8,6 +8,7 @@
 #include "core/base/interrupt.h"
 #include "core/geometry/box_tree.h"
 #include "core/geometry/tessellate.h"
+#include "core/mesh/triangle_middles.h"
 #include "core/scene/intersector.h"
 
 namespace caustics {
@@ -31,30 +32,12 @@ Box widened(const Box& box, float by) {
 
 bool is_large(const Shape& shape) { return shape.mesh.triangles.size() > most_triangles; }
 
-/// The middle of a triangle, and its normal.
-struct Middle {
-    Vec3 place;
-    Vec3 normal;
-};
-
-std::vector<Middle> middles_of(const TriangleMesh& mesh) {
-    std::vector<Middle> middles;
-    const std::size_t stride = 1 + mesh.triangles.size() / most_middles;
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
-        const auto& [a, b, c] = mesh.triangles[i];
-        const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-        const Vec3 normal = (q - p).cross(r - p).stableNormalized();
-        if (!normal.isZero(0)) middles.push_back({(p + q + r) / 3, normal});
-    }
-    return middles;
-}
-
 /// Of a caster's faces; none where triangles do not lie on it.
-std::vector<Middle> middles_of(const Shape& shape) {
+std::vector<TriangleMiddle> middles_of(const Shape& shape) {
     if (is_large(shape)) return {};
-    if (shape.primitive == Primitive::mesh) return middles_of(shape.mesh);
+    if (shape.primitive == Primitive::mesh) return triangle_middles(shape.mesh, most_middles);
     if (shape.primitive == Primitive::rectangle || shape.primitive == Primitive::disk)
-        return middles_of(tessellate_shape(shape, 8));
+        return triangle_middles(tessellate_shape(shape, 8), most_middles);
     return {};
 }
 
@@ -74,7 +57,7 @@ private:
     void search(std::uint32_t caster) {
         throw_if_interrupted();
         const Shape& shape = scene_.shapes()[caster];
-        const std::vector<Middle> middles = middles_of(shape);
+        const std::vector<TriangleMiddle> middles = middles_of(shape);
         if (middles.empty()) return;
         const Box box = bounds(shape);
         const float reach = reach_share * box.diagonal().norm();
@@ -92,19 +75,22 @@ private:
         });
     }
 
-    bool lie_on(const std::vector<Middle>& middles, std::uint32_t other, float reach) const {
+    bool lie_on(const std::vector<TriangleMiddle>& middles, std::uint32_t other,
+                float reach) const {
         const std::vector<Shape>& all = scene_.shapes();
         const Box box = widened(bounds(all[other]), reach);
-        const auto is_near = [&](const Middle& middle) { return box.contains(middle.place); };
+        const auto is_near = [&](const TriangleMiddle& middle) {
+            return box.contains(middle.place);
+        };
         if (std::ranges::none_of(middles, is_near)) return false;
         const std::vector<Shape> alone = {all[other]};
         const Intersector rays(alone);
-        return std::ranges::any_of(middles, [&](const Middle& middle) {
+        return std::ranges::any_of(middles, [&](const TriangleMiddle& middle) {
             return is_near(middle) && is_at(rays, middle, reach);
         });
     }
 
-    static bool is_at(const Intersector& rays, const Middle& middle, float reach) {
+    static bool is_at(const Intersector& rays, const TriangleMiddle& middle, float reach) {
         Ray ray{middle.place + reach * middle.normal, -middle.normal};
         ray.max_distance = 2 * reach;
         const auto met = rays.intersect(ray);
