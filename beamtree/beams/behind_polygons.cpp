@@ -84,7 +84,8 @@ std::optional<double> depth_over_wall(const Scene& scene, const CasterMesh& cast
         }
         const auto wall = scene.intersect({middle - depth * away, away, 2 * depth});
         if (wall && wall->shape != caster.shape)
-            return static_cast<double>(depth) / static_cast<double>(2 * depth - wall->distance);
+            return static_cast<double>(depth) /
+                   static_cast<double>(std::max(2 * depth - wall->distance, wall->offset));
     }
     return {};
 }

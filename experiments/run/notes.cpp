@@ -112,12 +112,14 @@ std::optional<std::string> flat_pieces(const Scene& scene, const Method& method)
 std::optional<std::string> thin_walls(const BuildReport& report) {
     const double share = resolved(report, "walls_behind_polygons").value_or(0);
     if (share < least_share_told) return {};
+    constexpr double most_told = 16;  // beyond, or where surfaces are at one place, no mesh serves
+    const double finer = std::ceil(resolved(report, "walls_need_finer").value_or(1));
     return fmt::format(
         "another surface lies so close below a curved caster that {:.0f} % of the polygons that "
         "stand for it reach it, or nearly: light of beams that goes through such thin walls is not "
-        "to be trusted (take a mesh_resolution {:.0f} times as fine, or photonmap, which sees the "
-        "shapes themselves)",
-        100 * share, std::ceil(resolved(report, "walls_need_finer").value_or(1)));
+        "to be trusted (take {}photonmap, which sees the shapes themselves)",
+        100 * share,
+        finer > most_told ? "" : fmt::format("a mesh_resolution {:.0f} times as fine, or ", finer));
 }
 
 /// That a note which names one pair is of others, too.

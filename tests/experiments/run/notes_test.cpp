@@ -237,6 +237,8 @@ TEST(Notes, NameWallsThinnerThanPolygonsAreFlat) {
     const std::vector<std::string> given = {"mesh_resolution=16", "max_bounces=2"};
     EXPECT_TRUE(any_holds(notes_of(bulb(1e-3), "beamtree", given),
                           {"100 %", "walls", "mesh_resolution", "photonmap"}));
+    for (const std::string& note : notes_of(bulb(0), "beamtree", given))
+        EXPECT_EQ(note.find("times as fine"), std::string::npos) << note;
     for (const std::string& note : notes_of(bulb(0.05), "beamtree", given))
         EXPECT_EQ(note.find("walls"), std::string::npos) << note;
 }
