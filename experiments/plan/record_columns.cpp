@@ -7,7 +7,9 @@ namespace {
 using Kind = RecordColumn::Kind;
 
 constexpr RecordColumn columns[] = {
-    {"trial", "/trial", Kind::text, "", "name of its folder: readable words, then `config_hash`"},
+    {"trial", "/trial", Kind::text, "",
+     "name of its folder: scene, method, every value that the sweep file sets (also those that do "
+     "not vary: folders of several sweeps may be merged), then `config_hash`"},
     {"status", "/status", Kind::text, "",
      "`done`; `failed` (`message` says why, `log.txt` when); `timeout` (gave no result within "
      "`timeout_s`); `unsupported` (the method cannot serve the scene); `interrupted` (at work when "

@@ -88,7 +88,8 @@ public:
             plan_, store_, [&](const Trial& trial) { return known_status(trial) == "done"; },
             references_, figures));
         write_stdout(fmt::format(
-            "records    {}{}\nfigures    {}\n{}", (options_.folder / "records.csv").string(),
+            "records    {}{}\nfigures    {} (reference | picture | signed error)\n{}",
+            (options_.folder / "records.csv").string(),
             others_ == 0 ? "" : fmt::format(" (without {} trials of other sweeps)", others_),
             figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall)));
         return status_.count("failed") + status_.count("timeout") + left_ == 0 ? 0 : 1;

@@ -4,6 +4,7 @@
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_avx2.h"
 #include "photonmap/kernels/square_loop.h"
+#include "photonmap/kernels/two_of.h"
 
 namespace caustics::photonmap {
 
@@ -38,7 +39,7 @@ __m128 pair(const SineCosine* table, unsigned first, unsigned second) {
 
 /// Eight entries, which are bytes 0, 2, 4, ... of `cells`. Loads one by one are faster than gathers
 /// of eight on many processors, and never slower by much.
-Angles look_up(const SineCosine* table, uint64_t low, uint64_t high) {
+[[gnu::always_inline]] inline Angles look_up(const SineCosine* table, uint64_t low, uint64_t high) {
     const auto cell = [](uint64_t cells, int i) {
         return static_cast<unsigned>(cells >> (16 * i)) & 255U;
     };
@@ -51,7 +52,8 @@ Angles look_up(const SineCosine* table, uint64_t low, uint64_t high) {
             _mm256_shuffle_ps(a, b, _MM_SHUFFLE(3, 1, 3, 1))};
 }
 
-Vectors directions(const DirectionTables& tables, const uint16_t* code) {
+[[gnu::always_inline]] inline Vectors directions(const DirectionTables& tables,
+                                                 const uint16_t* code) {
     const __m128i codes = _mm_loadu_si128(reinterpret_cast<const __m128i*>(code));
     const auto low = static_cast<uint64_t>(_mm_cvtsi128_si64(codes));
     const auto high = static_cast<uint64_t>(_mm_extract_epi64(codes, 1));
@@ -177,22 +179,62 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
 }
 
 /// The formula of phong_factors.
+class PhongSums {
+public:
+    PhongSums(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons)
+        : tables_(tables), lobe_(lobe), photons_(photons) {}
+
+    void add_eight(size_t i) {
+        const Arrival arrival = arrival_of(i);
+        add(i, arrival, power<Avx2Lanes>(arrival.t));
+    }
+    void add_sixteen(size_t i) {
+        const Arrival first = arrival_of(i), second = arrival_of(i + 8);
+        const auto both = power<TwoOf<Avx2Lanes>>({first.t, second.t});
+        add(i, first, both.first);
+        add(i + 8, second, both.second);
+    }
+    void add_to(double* rgb) const { sums_.add_to(rgb); }
+
+private:
+    struct Arrival {
+        Floats t;  ///< 1 - cosine of the angle to the mirrored direction
+        Floats lanes;
+    };
+
+    Arrival arrival_of(size_t i) const {
+        const Vectors wi = directions(tables_, photons_.direction + i);
+        const Vectors apart{_mm256_sub_ps(mirrored_.x, wi.x), _mm256_sub_ps(mirrored_.y, wi.y),
+                            _mm256_sub_ps(mirrored_.z, wi.z)};
+        return {product(all(0.5F), dot(apart, apart)),
+                facing(counted(photons_, i), dot(normal_, wi))};
+    }
+    template <typename Lanes>
+    typename Lanes::Floats power(typename Lanes::Floats t) const {
+        if (Lanes::less(t, Lanes::all(1)) == 0) return Lanes::all(0);
+        return cosine_power<Lanes>(t, lobe_.exponent);
+    }
+    void add(size_t i, const Arrival& arrival, Floats power) {
+        sums_.add(photons_, i, arrival.lanes,
+                  Vectors{sum(diffuse_.x, product(specular_.x, power)),
+                          sum(diffuse_.y, product(specular_.y, power)),
+                          sum(diffuse_.z, product(specular_.z, power))});
+    }
+
+    const DirectionTables& tables_;
+    const Lobe& lobe_;
+    const ShadedPhotons& photons_;
+    const Vectors normal_ = all_of(lobe_.normal), mirrored_ = all_of(lobe_.mirrored);
+    const Vectors diffuse_ = all_of(lobe_.diffuse), specular_ = all_of(lobe_.specular);
+    Sums sums_;
+};
+
 void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
                double* rgb) {
-    const Vectors n = all_of(lobe.normal), mirrored = all_of(lobe.mirrored);
-    const Vectors diffuse = all_of(lobe.diffuse), specular = all_of(lobe.specular);
-    Sums sums;
-    for (size_t i = 0; i < photons.count; i += 8) {
-        const Vectors wi = directions(tables, photons.direction + i);
-        const Vectors apart{_mm256_sub_ps(mirrored.x, wi.x), _mm256_sub_ps(mirrored.y, wi.y),
-                            _mm256_sub_ps(mirrored.z, wi.z)};
-        const Floats t = product(all(0.5F), dot(apart, apart));
-        const Floats power = cosine_power<Avx2Lanes>(t, lobe.exponent);
-        sums.add(photons, i, facing(counted(photons, i), dot(n, wi)),
-                 Vectors{sum(diffuse.x, product(specular.x, power)),
-                         sum(diffuse.y, product(specular.y, power)),
-                         sum(diffuse.z, product(specular.z, power))});
-    }
+    PhongSums sums(tables, lobe, photons);
+    size_t i = 0;
+    for (; i + 8 < photons.count; i += 16) sums.add_sixteen(i);
+    if (i < photons.count) sums.add_eight(i);
     sums.add_to(rgb);
 }
 

@@ -48,17 +48,16 @@ struct Avx2Lanes {
     static Floats max(Floats a, Floats b) { return _mm256_max_ps(a, b); }
     static uint32_t less(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
     static uint32_t not_above(Floats a, Floats b) { return bits(_mm256_cmp_ps(a, b, _CMP_LE_OQ)); }
-    static Floats exponent_of(Floats a) {
-        const __m256i biased = _mm256_srli_epi32(_mm256_castps_si256(a), 23);
-        return _mm256_cvtepi32_ps(_mm256_sub_epi32(biased, _mm256_set1_epi32(127)));
+    static Floats split(Floats a, Floats* mantissa) {
+        const __m256i word = _mm256_castps_si256(a);
+        const __m256i least = _mm256_castps_si256(all(0.70710678F));
+        const __m256i e = _mm256_srai_epi32(_mm256_sub_epi32(word, least), 23);
+        *mantissa = _mm256_castsi256_ps(_mm256_sub_epi32(word, _mm256_slli_epi32(e, 23)));
+        return _mm256_cvtepi32_ps(e);
     }
-    static Floats mantissa_of(Floats a) {
-        const __m256 fraction = _mm256_and_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(0x7FFFFF)));
-        return _mm256_or_ps(fraction, all(1));
-    }
-    static Floats times_power_of_2(Floats a, Floats n) {
-        const __m256i biased = _mm256_add_epi32(_mm256_cvttps_epi32(n), _mm256_set1_epi32(127));
-        return mul(a, _mm256_castsi256_ps(_mm256_slli_epi32(biased, 23)));
+    static Floats times_power_of_2(Floats a, Floats shifted) {
+        const __m256i power = _mm256_slli_epi32(_mm256_castps_si256(shifted), 23);
+        return _mm256_castsi256_ps(_mm256_add_epi32(_mm256_castps_si256(a), power));
     }
     static size_t count(uint32_t mask) { return static_cast<size_t>(_mm_popcnt_u32(mask)); }
     /// What comparisons say, where it chooses only: its bits need not leave the registers.

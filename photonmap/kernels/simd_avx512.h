@@ -40,11 +40,17 @@ struct Avx512Lanes {
     static Floats max(Floats a, Floats b) { return _mm512_max_ps(a, b); }
     static uint32_t less(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
     static uint32_t not_above(Floats a, Floats b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
-    static Floats exponent_of(Floats a) { return _mm512_getexp_ps(a); }
-    static Floats mantissa_of(Floats a) {
-        return _mm512_getmant_ps(a, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_src);
+    static Floats split(Floats a, Floats* mantissa) {
+        const __m512i word = _mm512_castps_si512(a);
+        const __m512i least = _mm512_castps_si512(all(0.70710678F));
+        const __m512i e = _mm512_srai_epi32(_mm512_sub_epi32(word, least), 23);
+        *mantissa = _mm512_castsi512_ps(_mm512_sub_epi32(word, _mm512_slli_epi32(e, 23)));
+        return _mm512_cvtepi32_ps(e);
     }
-    static Floats times_power_of_2(Floats a, Floats n) { return _mm512_scalef_ps(a, n); }
+    static Floats times_power_of_2(Floats a, Floats shifted) {
+        const __m512i power = _mm512_slli_epi32(_mm512_castps_si512(shifted), 23);
+        return _mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(a), power));
+    }
     static size_t count(uint32_t mask) { return static_cast<size_t>(_mm_popcnt_u32(mask)); }
     /// What comparisons say, where it chooses only.
     using Choice = __mmask16;

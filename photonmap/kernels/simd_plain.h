@@ -35,14 +35,17 @@ struct PlainSimd {
     static Floats max(Floats a, Floats b) { return a > b ? a : b; }
     static uint32_t less(Floats a, Floats b) { return a < b ? 1U : 0U; }
     static uint32_t not_above(Floats a, Floats b) { return a <= b ? 1U : 0U; }
-    /// Of a positive normal number, m 2^e with m in [1, 2).
-    static Floats exponent_of(Floats a) {
-        return static_cast<float>(static_cast<int32_t>(bits_of(a) >> 23U) - 127);
+    /// A positive normal number in two: 2^e, of which e is returned, times `mantissa`, which is from
+    /// sqrt(1/2) to sqrt(2).
+    static Floats split(Floats a, Floats* mantissa) {
+        const uint32_t above = bits_of(a) - bits_of(0.70710678F);
+        const auto e = static_cast<int32_t>(above) >> 23;
+        *mantissa = float_of(bits_of(a) - (static_cast<uint32_t>(e) << 23U));
+        return static_cast<float>(e);
     }
-    static Floats mantissa_of(Floats a) { return float_of((bits_of(a) & 0x7FFFFFU) | 0x3F800000U); }
-    /// a 2^n, n whole, from -126 to 127.
-    static Floats times_power_of_2(Floats a, Floats n) {
-        return a * float_of(static_cast<uint32_t>(static_cast<int32_t>(n) + 127) << 23U);
+    /// a 2^n for n + 1.5 x 2^23, n whole; a and the result are normal numbers.
+    static Floats times_power_of_2(Floats a, Floats shifted) {
+        return float_of(bits_of(a) + (bits_of(shifted) << 23U));
     }
     static size_t count(uint32_t mask) { return mask; }
     /// What comparisons say, where it chooses only.
