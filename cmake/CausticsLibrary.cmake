@@ -11,6 +11,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     list(APPEND CAUSTICS_WARNINGS -Wno-maybe-uninitialized)
     # GCC 12 sees overlapping copies in std::string's operator+ at -O3 (its bug 105651).
     list(APPEND CAUSTICS_WARNINGS -Wno-restrict)
+    # In a batch it takes source files for headers, whose types may have no member of a file's own type.
+    if(CAUSTICS_BATCHES)
+        list(APPEND CAUSTICS_WARNINGS -Wno-subobject-linkage)
+    endif()
 else()
     # GCC's pragmas say that a loop's arrays do not overlap, which others find out at run time.
     list(APPEND CAUSTICS_WARNINGS -Wno-unknown-pragmas)
@@ -82,7 +86,8 @@ endfunction()
 # Language, warnings, instrumentation and include root of one target of ours.
 function(caustics_configure_target target)
     target_compile_features(${target} PUBLIC cxx_std_20)
-    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF
+        UNITY_BUILD ${CAUSTICS_BATCHES} UNITY_BUILD_BATCH_SIZE 8)
     target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
     target_compile_options(${target} PRIVATE ${CAUSTICS_WARNINGS} ${CAUSTICS_COMPILE_OPTIONS})
     target_link_options(${target} PRIVATE ${CAUSTICS_LINK_OPTIONS})
@@ -187,6 +192,10 @@ function(caustics_test name)
     set(program test_${name})
     add_executable(${program} ${arg_SOURCES})
     caustics_configure_target(${program})
+    if(CAUSTICS_BATCHES AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        # A file's constants would be shadowed by its neighbours' variables.
+        target_compile_options(${program} PRIVATE -Wno-shadow -Wshadow=local)
+    endif()
     caustics_use_precompiled(${program} caustics_precompiled_tests)
     target_link_libraries(${program} PRIVATE ${depends} fmt::fmt GTest::gtest_main)
     target_compile_definitions(${program} PRIVATE

@@ -10,11 +10,11 @@
 namespace caustics::beamtree {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float no_bound = std::numeric_limits<float>::infinity();
 
 // What float arithmetic may lose of a place, as a share of the largest coordinate: eleven roundings
 // of 2^-24 or so.
-constexpr float rounding = 1e-6F;
+constexpr float box_rounding = 1e-6F;
 // Triangles of a branch, which one thread makes.
 constexpr std::uint32_t branch_size = 8192;
 
@@ -43,7 +43,7 @@ public:
         for (int axis = 0; axis < 2; ++axis)
             for (int plane = 0; plane < 2; ++plane)
                 largest = std::max({largest, -all.low(axis, plane), all.high(axis, plane)});
-        margin_ = rounding * largest;
+        margin_ = box_rounding * largest;
     }
 
     SliceNodes run(int threads) {
@@ -70,7 +70,7 @@ private:
     struct Made {
         std::uint32_t reference = 0;
         SliceBox box;
-        float begun_from = infinity;
+        float begun_from = no_bound;
     };
     /// A part of the tree that one thread makes, with numbers of its own.
     struct Branch {
@@ -165,8 +165,8 @@ private:
         }
         for (std::uint32_t i = taken; i < slice_width; ++i)
             for (int axis = 0; axis < 2; ++axis) {
-                wide.low[axis][i] = infinity;
-                wide.high[axis][i] = -infinity;
+                wide.low[axis][i] = no_bound;
+                wide.high[axis][i] = -no_bound;
             }
         into.nodes[index] = wide;
         return made;
@@ -210,7 +210,7 @@ private:
         const std::uint32_t first = first_of_[from_.nodes[node].first_beam];
         const std::uint32_t taken = size(node);
         SliceLeaf leaf{};
-        std::fill_n(leaf.slack, slice_width, -infinity);
+        std::fill_n(leaf.slack, slice_width, -no_bound);
         Made made{reference(into.leaves.size(), taken) | slice_leaf_bit, {}};
         for (std::uint32_t i = 0; i < taken; ++i) {
             const SlicedTriangle& triangle = triangles_[first + i];

@@ -129,8 +129,8 @@ std::size_t part(std::span<BoxedBeam> beams) {
 }
 
 // Nodes with more beams are parted on all threads, which take so many at a time; others each by one thread.
-constexpr std::size_t branch_size = 8192;
-constexpr std::size_t together = 2048;
+constexpr std::size_t own_branch_size = 8192;
+constexpr std::size_t parted_together = 2048;
 
 /// Parts nodes of many beams.
 class WideParting {
@@ -139,7 +139,7 @@ public:
 
     // As part(), but that beams keep their order.
     std::size_t part(std::span<BoxedBeam> beams) {
-        const std::size_t chunks = chunk_count(beams.size(), together);
+        const std::size_t chunks = chunk_count(beams.size(), parted_together);
         std::vector<KeyRange> ranges(chunks);
         each(beams, [&](std::size_t i, std::span<BoxedBeam> some) { ranges[i].extend(some); });
         KeyRange range;
@@ -171,7 +171,7 @@ private:
 
     template <typename Do>
     void each(std::span<BoxedBeam> beams, const Do& act) const {
-        parallel_chunks(threads_, beams.size(), together, [&](const Chunk& chunk) {
+        parallel_chunks(threads_, beams.size(), parted_together, [&](const Chunk& chunk) {
             act(chunk.index, beams.subspan(chunk.first, chunk.end - chunk.first));
         });
     }
@@ -184,13 +184,13 @@ private:
         std::partial_sum(lefts.begin(), lefts.end() - 1, before.begin() + 1);
         each(beams, [&](std::size_t i, std::span<BoxedBeam> some) {
             std::size_t to_left = before[i];
-            std::size_t to_right = left + i * together - before[i];
+            std::size_t to_right = left + i * parted_together - before[i];
             for (const BoxedBeam& beam : some)
                 parted_[is_left(beam) ? to_left++ : to_right++] = beam;
         });
         each(beams, [&](std::size_t i, std::span<BoxedBeam> some) {
-            std::copy_n(parted_.begin() + static_cast<std::ptrdiff_t>(i * together), some.size(),
-                        some.begin());
+            std::copy_n(parted_.begin() + static_cast<std::ptrdiff_t>(i * parted_together),
+                        some.size(), some.begin());
         });
     }
 
@@ -230,7 +230,7 @@ void graft(std::vector<Hierarchy::Node>& nodes, std::size_t root,
 Hierarchy binned_slices(std::span<BoxedBeam> beams, std::uint32_t leaf_size, int threads) {
     Hierarchy tree;
     tree.nodes.push_back({0, static_cast<std::uint32_t>(beams.size()), 0, 0});
-    const std::size_t most = std::max<std::size_t>(branch_size, leaf_size);
+    const std::size_t most = std::max<std::size_t>(own_branch_size, leaf_size);
     if (beams.size() > most) {
         WideParting wide(beams.size(), threads);
         split(tree.nodes, beams, most, [&](std::span<BoxedBeam> some) { return wide.part(some); });

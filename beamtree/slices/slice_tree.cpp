@@ -15,10 +15,10 @@
 namespace caustics::beamtree {
 namespace {
 
-constexpr float rounding = 1e-6F;  // more than a share is rounded by
+constexpr float share_rounding = 1e-6F;  // more than a share is rounded by
 // Groups of points that walk by turns.
 constexpr std::size_t groups_together = 8;
-constexpr std::size_t together = 1024;  // beams or rays that threads take at a time
+constexpr std::size_t taken_together = 1024;  // beams or rays that threads take at a time
 
 WalkSlices walk_for([[maybe_unused]] Isa isa) {
 #ifdef CAUSTICS_X86_KERNELS
@@ -72,7 +72,7 @@ public:
         for (std::size_t set = 0; set < asked.size(); ++set) {
             slices_[set].resize(asked[set].size());
             drifts_[set].resize(asked[set].size());
-            parallel_chunks(threads, asked[set].size(), together, [&](const Chunk& chunk) {
+            parallel_chunks(threads, asked[set].size(), taken_together, [&](const Chunk& chunk) {
                 for (std::size_t i = chunk.first; i < chunk.end; ++i)
                     if (asked[set][i] != 0)
                         slice(from.sets[set], static_cast<std::uint32_t>(i), slices_[set][i],
@@ -109,8 +109,8 @@ public:
                     lowest = std::min(lowest, height);
                 }
             }
-            triangle.begun_from = static_cast<float>(frame_.share(highest)) - rounding;
-            triangle.whole_from = static_cast<float>(frame_.share(lowest)) + rounding;
+            triangle.begun_from = static_cast<float>(frame_.share(highest)) - share_rounding;
+            triangle.whole_from = static_cast<float>(frame_.share(lowest)) + share_rounding;
             triangle.beam = place;
         }
     }
@@ -143,7 +143,7 @@ Hierarchy split(SlicedBeams& from, const Slicer& slicer, int threads) {
     for (const BeamNumber& number : from.beams)
         most_triangles =
             std::max(most_triangles, from.sets[number.set].beams[number.beam].triangle_count());
-    parallel_chunks(threads, boxed.size(), together, [&](const Chunk& chunk) {
+    parallel_chunks(threads, boxed.size(), taken_together, [&](const Chunk& chunk) {
         for (std::size_t i = chunk.first; i < chunk.end; ++i)
             boxed[i] = {slicer.box(from.beams[i]), static_cast<std::uint32_t>(i)};
     });
@@ -164,7 +164,7 @@ std::vector<SlicedTriangle> triangles_of(const SlicedBeams& from, const Slicer& 
     for (const BeamNumber& number : from.beams)
         first.push_back(first.back() + from.sets[number.set].beams[number.beam].triangle_count());
     std::vector<SlicedTriangle> triangles(first.back());
-    parallel_chunks(threads, from.beams.size(), together, [&](const Chunk& chunk) {
+    parallel_chunks(threads, from.beams.size(), taken_together, [&](const Chunk& chunk) {
         for (std::size_t i = chunk.first; i < chunk.end; ++i)
             slicer.triangles(from.beams[i], static_cast<std::uint32_t>(i),
                              triangles.data() + first[i]);

@@ -16,7 +16,7 @@ constexpr int most_draws = 512;
 // Beams that are enough to judge by.
 constexpr std::size_t enough = 2'000;
 // Of a first event's light: less tells little, and costs most.
-constexpr double least_share = 0.03;
+constexpr double least_share_kept = 0.03;
 
 /// The casters of a scene, each made ready when it is drawn first.
 class Casters {
@@ -68,7 +68,7 @@ public:
         double light = 0;
         for (const BeamSet& set : first.sets)
             for (const Beam& beam : set.beams) light += static_cast<double>(beam.flux.mean());
-        BeamBudget bright(BeamBudget::no_limit, least_share * light / together);
+        BeamBudget bright(BeamBudget::no_limit, least_share_kept * light / together);
         return trace(max_bounces, bright);
     }
 

@@ -105,7 +105,7 @@ private:
             return false;
         }
         const Spectrum after =
-            flight_.flux * evaluate(bsdf(hit), hit.uv, n, here_->wi, *out) * (cosine / pdf);
+            flight_.flux * evaluate(bsdf(hit), hit.uv, n, *out, here_->wi) * (cosine / pdf);
         // Of what arrived: a mirror that was asked first and passed the flux on has made it larger.
         const float kept = std::min(1.0F, after.sum() / arriving_);
         if (!(u3 < kept)) {

@@ -22,7 +22,6 @@ constexpr std::array<std::string_view, 16> ignored_keywords = {
     "o", "g", "s",   "mg",    "usemtl",   "mtllib",   "usemap",     "maplib",
     "l", "p", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 
-constexpr auto max_float = static_cast<double>(std::numeric_limits<float>::max());
 constexpr std::size_t lines_between_looks = 1 << 14;          // for Ctrl-C
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 constexpr std::string_view white_space = " \t\r\v\f";
@@ -98,7 +97,8 @@ private:
         const std::optional<double> value = parse<double>(word);
         if (!value) fail(quoted_word(word) + " is not a number");
         // Negated, so that NaN is caught too.
-        if (!(std::abs(*value) <= max_float)) fail(quoted_word(word) + " is not a finite number");
+        if (!(std::abs(*value) <= static_cast<double>(std::numeric_limits<float>::max())))
+            fail(quoted_word(word) + " is not a finite number");
         return *value;
     }
 

@@ -19,7 +19,6 @@
 namespace caustics {
 namespace {
 
-constexpr auto max_float = static_cast<double>(std::numeric_limits<float>::max());
 constexpr std::size_t values_between_looks = 1 << 14;  // for Ctrl-C
 
 // Which properties of a vertex are kept, and under which name. A group is kept whole or not at all.
@@ -144,7 +143,7 @@ private:
         kept_.clear();
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const double value = row_[columns_[i]];
-            if (!(std::abs(value) <= max_float))
+            if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
                 fail(element, index,
                      names_[i] + " is " + number_text(value) + ", not a finite number");
             kept_.push_back(static_cast<float>(value));

@@ -6,7 +6,7 @@ namespace {
 
 using Kind = RecordColumn::Kind;
 
-constexpr RecordColumn columns[] = {
+constexpr RecordColumn fixed_columns[] = {
     {"trial", "/trial", Kind::text, "",
      "name of its folder: scene, method, every value that the sweep file sets (also those that do "
      "not vary: folders of several sweeps may be merged), then `config_hash`"},
@@ -156,6 +156,6 @@ constexpr RecordColumn columns[] = {
 
 }  // namespace
 
-std::span<const RecordColumn> record_columns_of_all() { return columns; }
+std::span<const RecordColumn> record_columns_of_all() { return fixed_columns; }
 
 }  // namespace caustics::experiments

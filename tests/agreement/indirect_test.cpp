@@ -117,6 +117,17 @@ TEST(IndirectLight, IsEvenInASphere) {
     }
 }
 
+// Phong's law of 1975 is not the same from both sides: of light that arrives along the normal, cosine 1, it leaves
+// L = k_d / pi + k_s cos^e a, whose irradiance is k_d + 2 pi k_s / (e + 2).
+TEST(IndirectLight, FollowsALawThatIsNotReciprocal) {
+    constexpr double diffuse = 0.3, specular = 0.3, exponent = 2;
+    const Scene scene =
+        sphere_with_lamp(support::phong(static_cast<float>(diffuse), static_cast<float>(specular),
+                                        static_cast<float>(exponent), Phong::Model::classic),
+                         Vec3d::Zero());
+    expect_even(scene, inside(scene, 0, 1), diffuse + 2 * pi_d * specular / (exponent + 2), 2);
+}
+
 // One that is a mirror, too: direct light, caustics and indirect light are all of it.
 TEST(IndirectLight, LeavesTheMirrorsLightToCaustics) {
     constexpr double rho = 0.5, weight = 0.4, reflectance = 0.9;

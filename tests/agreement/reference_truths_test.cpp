@@ -21,8 +21,7 @@ using support::flat_pool::depth;
 using support::flat_pool::index;
 constexpr double eye_height = 0.9;
 constexpr double half_view = 0.9;
-constexpr int width = 20;
-constexpr int height = 20;
+constexpr int side = 20;
 constexpr double sigma = 0.0016;
 
 // Water z = 0 over a floor, which a camera under the water sees from straight above.
@@ -32,21 +31,21 @@ SceneDesc pool(double half_water) {
                    support::horizontal("water", 0, half_water, true,
                                        support::glass(static_cast<float>(index)))};
     desc.camera = support::camera({0, 0, eye_height - depth}, {0, 0, -depth}, {0, 1, 0},
-                                  360 / pi_d * std::atan(half_view / eye_height), width, height);
+                                  360 / pi_d * std::atan(half_view / eye_height), side, side);
     return desc;
 }
 
 // The radiance of a floor of which the irradiance is known by the distance from the axis; each pixel
 // the mean over 8 x 8 of its points.
-Film truth(const std::function<double(double)>& irradiance) {
+Film picture_of(const std::function<double(double)>& irradiance) {
     constexpr int n = 8;
-    Film film(width, height);
+    Film film(side, side);
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         double sum = 0;
         for (int k = 0; k < n * n; ++k) {
-            const double x = static_cast<double>(i % width) + (k % n + 0.5) / n;
-            const double y = static_cast<double>(i / width) + (k / n + 0.5) / n;
-            sum += irradiance(half_view * std::hypot(2 * x / width - 1, 2 * y / height - 1));
+            const double x = static_cast<double>(i % side) + (k % n + 0.5) / n;
+            const double y = static_cast<double>(i / side) + (k / n + 0.5) / n;
+            sum += irradiance(half_view * std::hypot(2 * x / side - 1, 2 * y / side - 1));
         }
         film.set_rgb("caustic", i,
                      Spectrum::Constant(static_cast<float>(albedo / pi_d * sum / (n * n))));
@@ -64,12 +63,12 @@ Film picture(SceneDesc desc, const Params& params, int eye_samples) {
 
 // The picture is the truth, and neither 1 % more nor 1 % less.
 void expect_is(const Film& found, const std::function<double(double)>& irradiance) {
-    EXPECT_EQ(support::disagreement(found, truth(irradiance), sigma), "");
+    EXPECT_EQ(support::disagreement(found, picture_of(irradiance), sigma), "");
     for (const double factor : {0.99, 1.01})
-        EXPECT_NE(
-            support::PictureScores(found, truth([&](double r) { return factor * irradiance(r); }))
-                .complaint(sigma),
-            "")
+        EXPECT_NE(support::PictureScores(
+                      found, picture_of([&](double r) { return factor * irradiance(r); }))
+                      .complaint(sigma),
+                  "")
             << factor;
 }
 

@@ -11,7 +11,7 @@
 namespace caustics::beamtree {
 namespace {
 
-SceneDesc glass_ball(int resolution) {
+SceneDesc meshed_glass_ball(int resolution) {
     SceneDesc desc = ball_desc(resolution);
     desc.shapes[0].bsdf = support::glass(1.5F);
     return desc;
@@ -19,7 +19,7 @@ SceneDesc glass_ball(int resolution) {
 
 // Some hundred polygons: their scatter is a few percent of what all have.
 TEST(SceneSample, TellsOfAllBeams) {
-    const Scene scene(glass_ball(24));
+    const Scene scene(meshed_glass_ball(24));
     const TracedScene all = trace_scene(scene, "beams", {}, {});
     const SceneSample sample = sample_scene(scene, "beams", {}, {});
     EXPECT_EQ(sample.polygons, all.report().counters.at("polygons"));
@@ -28,14 +28,14 @@ TEST(SceneSample, TellsOfAllBeams) {
 }
 
 TEST(SceneSample, DoesNotGrowWithTheScene) {
-    const SceneSample few = sample_scene(Scene(glass_ball(16)), "beams", {}, {});
-    const SceneSample many = sample_scene(Scene(glass_ball(200)), "beams", {}, {});
+    const SceneSample few = sample_scene(Scene(meshed_glass_ball(16)), "beams", {}, {});
+    const SceneSample many = sample_scene(Scene(meshed_glass_ball(200)), "beams", {}, {});
     EXPECT_GT(many.polygons, 100 * few.polygons);
     EXPECT_LT(many.polygons_sampled, 2 * few.polygons_sampled);
 }
 
 TEST(SceneSample, CountsThePolygonsOfExactShapes) {
-    SceneDesc desc = glass_ball(8);
+    SceneDesc desc = meshed_glass_ball(8);
     const auto place = [&](Primitive primitive, double x) {
         Shape shape = support::sphere("shape", {x, 0, 2}, 0.1, support::glass(1.5F));
         shape.primitive = primitive;
@@ -53,10 +53,10 @@ TEST(SceneSample, CountsThePolygonsOfExactShapes) {
 }
 
 TEST(SceneSample, OfNothingIsNothing) {
-    SceneDesc dark = glass_ball(8);
+    SceneDesc dark = meshed_glass_ball(8);
     dark.lights.clear();
     EXPECT_EQ(sample_scene(Scene(dark), "beams", {}, {}).polygons_sampled, 0U);
-    SceneDesc bare = glass_ball(8);
+    SceneDesc bare = meshed_glass_ball(8);
     bare.shapes.erase(bare.shapes.begin());
     EXPECT_EQ(sample_scene(Scene(bare), "beams", {}, {}).polygons, 0U);
 }
@@ -64,7 +64,7 @@ TEST(SceneSample, OfNothingIsNothing) {
 // Where only is asked what a method can serve, both take it, and bring no light.
 template <typename Params>
 void expect_sample(const DescribedMethod<Params>& method) {
-    const Scene scene(glass_ball(24));
+    const Scene scene(meshed_glass_ball(24));
     const auto least = method.configure(JsonNode::parse_text("{}", "test"))->with_least_work();
     const auto built = least->build(scene, {}, 0);
     EXPECT_GT(built->build_report().counters.at("polygons_sampled"), 0U);

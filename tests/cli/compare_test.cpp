@@ -15,13 +15,13 @@ using support::causticbench;
 using support::ProgramResult;
 namespace fs = std::filesystem;
 
-const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+const std::string ball_scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
 
 class Compare : public testing::Test {
 protected:
     std::string render(const std::string& name, const std::vector<std::string>& more = {}) const {
         const std::string file = folder_ / name;
-        std::vector<std::string> arguments = {"render",  scene,         "--method", "photonmap",
+        std::vector<std::string> arguments = {"render",  ball_scene,    "--method", "photonmap",
                                               "--param", "photons=500", "-o",       file};
         arguments.insert(arguments.end(), more.begin(), more.end());
         EXPECT_EQ(causticbench(arguments).exit_code, 0);

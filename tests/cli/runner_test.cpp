@@ -21,7 +21,7 @@ using support::causticbench;
 using support::ProgramResult;
 namespace fs = std::filesystem;
 
-const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+const std::string swept_scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
 
 class Runner : public testing::Test {
 protected:
@@ -29,7 +29,7 @@ protected:
         const fs::path file = folder_ / "sweep.json";
         write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
                                                "methods": {}}})",
-                                            scene, methods));
+                                            swept_scene, methods));
         return file;
     }
     std::vector<std::string> arguments(const std::string& file,
@@ -85,7 +85,7 @@ TEST_F(Runner, MakesARowOfATrialThatEatsMemory) {
             {{"type": "hdrfilm", "width": 4, "height": 4}},
             {{"type": "hdrfilm", "width": 11000, "height": 11000}}]}}}},
         "methods": [{{"method": "none"}}]}})",
-                                        scene));
+                                        swept_scene));
     const ProgramResult result = sweep(file, {"--memory", "200"});
     EXPECT_EQ(result.exit_code, 1) << result.err;
     const std::vector<json> table = rows();
@@ -194,7 +194,7 @@ TEST_F(Runner, GoesOnWithoutPicturesThatAreGone) {
                       fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "seeds": [1, 2],
         "methods": [{{"method": "photonmap", "param": {{"emitted": 100}}}}],
         "reference": {{"method": "lighttrace", "param": {{"paths": 100}}}}}})",
-                                  scene));
+                                  swept_scene));
     ASSERT_EQ(sweep(file).exit_code, 0);
     const std::vector<json> before = rows();
     for (const json& row : before)
@@ -227,7 +227,7 @@ TEST_F(Runner, WarnsOfTrialsThatAreNotInTheTable) {
     const std::string other = folder_ / "other.json";
     write_atomic_file(other, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
                                              "methods": [{{"method": "none"}}]}})",
-                                         scene));
+                                         swept_scene));
     const ProgramResult result = sweep(other);
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(rows().size(), 1U);
@@ -250,7 +250,7 @@ TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
         "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3]}},
                  "kind": {{"pointer": "/ball/bsdf", "values": [{{"type": "dielectric"}}]}}}},
         "methods": [{{"method": "photonmap", "param": {{"photons": 100, "filter": "cone"}}}}]}})",
-                                        scene));
+                                        swept_scene));
     ASSERT_EQ(sweep(file).exit_code, 0);
     const std::string id = rows()[0].at("trial");
     const ProgramResult result =
@@ -271,7 +271,7 @@ TEST_F(Runner, ExplainsHowToMakeATrialAgain) {
 TEST_F(Runner, ExplainsTrialsThatLoadPhotonMapsFromWhereverItIsAsked) {
     const auto run = [&](const std::string& line) {
         return support::shell(
-            fmt::format("cd '{}'; S='{}'; {}", folder_.path().string(), scene, line));
+            fmt::format("cd '{}'; S='{}'; {}", folder_.path().string(), swept_scene, line));
     };
     for (const std::string seed : {"1", "2"})
         ASSERT_EQ(run("$P render $S --spp 1 --method photonmap --param photons=100 --param "
@@ -286,7 +286,7 @@ TEST_F(Runner, ExplainsTrialsThatLoadPhotonMapsFromWhereverItIsAsked) {
                       fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
         "methods": [{{"method": "photonmap", "param": {{"load": "caustic1"}}}}],
         "indirect": [{{"method": "globalphotonmap", "param": {{"load": "all1"}}}}]}})",
-                                  scene));
+                                  swept_scene));
     ASSERT_EQ(run("$P sweep sweep.json -o out; mkdir elsewhere").exit_code, 0);
     const ProgramResult again = run("cd elsewhere; $P explain ../out ball > line && sh line");
     ASSERT_EQ(again.exit_code, 0) << again.err;

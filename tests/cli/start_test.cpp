@@ -15,14 +15,15 @@ namespace {
 using support::ProgramResult;
 using support::shell;
 
-const std::string scenes = CAUSTICS_SOURCE_DIR "/experiments/scenes/";
+const std::string scene_folder = CAUSTICS_SOURCE_DIR "/experiments/scenes/";
 
 /// Libraries that the program loads, at its start and later, as the loader tells (ld.so(8)).
 class Start : public testing::Test {
 protected:
     /// $D is the test's folder, $S that of the scenes.
     ProgramResult run(const std::string& line) const {
-        return shell(fmt::format("D='{}'; S='{}'; {}", folder_.path().string(), scenes, line));
+        return shell(
+            fmt::format("D='{}'; S='{}'; {}", folder_.path().string(), scene_folder, line));
     }
 
     std::size_t libraries_of(const std::string& words) const {

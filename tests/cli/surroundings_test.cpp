@@ -19,7 +19,7 @@ using support::ProgramResult;
 using support::shell;
 namespace fs = std::filesystem;
 
-const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+const std::string scene_path = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
 
 /// Streams that are closed or full, small limits, folders that are gone.
 class Surroundings : public testing::Test {
@@ -27,11 +27,11 @@ protected:
     void SetUp() override {
         write_atomic_file(sweep_, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
                                                   "methods": [{{"method": "none"}}]}})",
-                                              scene));
+                                              scene_path));
     }
     /// $D is the test's folder.
     ProgramResult run(const std::string& line) const {
-        return shell(fmt::format("D='{}'; S='{}'; {}", folder_.path().string(), scene, line));
+        return shell(fmt::format("D='{}'; S='{}'; {}", folder_.path().string(), scene_path, line));
     }
     std::size_t temporary_files() const {
         const auto all = fs::recursive_directory_iterator(folder_.path());
@@ -136,7 +136,7 @@ TEST_F(Surroundings, OneFileIsOneWhateverItsName) {
 }
 
 TEST_F(Surroundings, NoFileThatIsReadIsReplaced) {
-    nlohmann::json content = nlohmann::json::parse(read_whole_file(scene));
+    nlohmann::json content = nlohmann::json::parse(read_whole_file(scene_path));
     content["floor"]["bsdf"] = {{"$include", "bsdf.json"}};
     content["gem"] = {{"type", "obj"}, {"filename", "gem.obj"}};
     content["gem"]["bsdf"] = {{"type", "dielectric"}};
@@ -252,7 +252,7 @@ TEST_F(Surroundings, HostileNamesAreNamesAndNothingElse) {
                                             "-o pwned",
                                             "%n$x\\"};
     std::string scenes;
-    nlohmann::json content = nlohmann::json::parse(read_whole_file(scene));
+    nlohmann::json content = nlohmann::json::parse(read_whole_file(scene_path));
     for (const std::string& name : names) {
         content["sensor"]["fov"] = 30 + scenes.size();  // the same scene twice would be one trial
         write_atomic_file(folder_ / (name + ".json"), content.dump());

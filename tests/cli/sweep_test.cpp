@@ -21,7 +21,7 @@ using support::causticbench;
 using support::ProgramResult;
 namespace fs = std::filesystem;
 
-const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+const std::string ball_file = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
 
 using Row = std::map<std::string, std::string>;
 
@@ -65,7 +65,7 @@ protected:
                       R"({{"version": 1, "scenes": ["{}"], "spp": 4, "seeds": [1, 2], "methods": {},
                 "set": {{"glass": {{"pointer": "/ball/bsdf/int_ior", "values": [1.3, 1.5]}}}},
                 "reference": {{"method": "lighttrace", "param": {{"paths": 20000}}, "spp": 4}}}})",
-                      scene, methods));
+                      ball_file, methods));
         return file;
     }
     ProgramResult sweep(const std::string& file, const std::vector<std::string>& more = {}) {
@@ -95,7 +95,7 @@ TEST_F(Sweeps, RecordCountsAndWhyACausticIsEmpty) {
         "set": {{"lamp": {{"pointer": "/light/intensity", "values": [0, 10]}}}},
         "methods": [{{"method": "photonmap", "param": {{"emitted": 500}}}}],
         "reference": {{"method": "lighttrace", "param": {{"paths": 500}}}}}})",
-                                        scene));
+                                        ball_file));
     ASSERT_EQ(sweep(file).exit_code, 0);
     const std::vector<Row> table = rows();
     ASSERT_EQ(table.size(), 2U);

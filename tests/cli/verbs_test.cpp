@@ -17,7 +17,7 @@ using support::causticbench;
 using support::ProgramResult;
 namespace fs = std::filesystem;
 
-const std::string scene = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
+const std::string scene_of_ball = CAUSTICS_SOURCE_DIR "/tests/experiments/scenes/ball.json";
 
 std::vector<std::string> lines(const std::string& text) {
     std::vector<std::string> all;
@@ -53,9 +53,9 @@ TEST(Render, GivesTheSameBytesOnAnyNumberOfThreads) {
     const auto render = [&](const std::string& name, const std::string& threads,
                             const std::string& seed) {
         const std::string file = folder / name;
-        const ProgramResult result =
-            causticbench({"render", scene, "--method", "photonmap", "--param", "photons=2000",
-                          "--threads", threads, "--seed", seed, "-o", file, "-o", file + ".png"});
+        const ProgramResult result = causticbench(
+            {"render", scene_of_ball, "--method", "photonmap", "--param", "photons=2000",
+             "--threads", threads, "--seed", seed, "-o", file, "-o", file + ".png"});
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_TRUE(fs::exists(file + ".png"));
         return read_whole_file(file);
@@ -68,7 +68,7 @@ TEST(Render, GivesTheSameBytesOnAnyNumberOfThreads) {
 TEST(Render, AddsTheIndirectLayerWhereAMethodIsNamed) {
     const support::TemporaryFolder folder;
     const auto render = [&](const std::string& name, const std::vector<std::string>& more) {
-        std::vector<std::string> words = {"render",  scene,         "--method", "photonmap",
+        std::vector<std::string> words = {"render",  scene_of_ball, "--method", "photonmap",
                                           "--param", "photons=500", "--spp",    "1",
                                           "-o",      folder / name};
         words.insert(words.end(), more.begin(), more.end());
@@ -98,15 +98,16 @@ TEST(Probe, AnswersTheIndirectLayer) {
     std::ofstream(folder / "points.csv") << "x,y,z,nx,ny,nz\n0.3,0.2,0,0,0,1\n";
     const std::string points = folder / "points.csv";
     const ProgramResult answer =
-        causticbench({"probe", scene, "--layer", "indirect", "--indirect", "globalphotonmap",
-                      "--indirect-param", "photons=1000", "--points", points});
+        causticbench({"probe", scene_of_ball, "--layer", "indirect", "--indirect",
+                      "globalphotonmap", "--indirect-param", "photons=1000", "--points", points});
     EXPECT_EQ(answer.exit_code, 0) << answer.err;
     EXPECT_NE(answer.out.find("irradiance_r"), std::string::npos);
-    EXPECT_EQ(causticbench({"probe", scene, "--layer", "indirect", "--points", points}).exit_code,
-              2);
-    EXPECT_EQ(causticbench({"probe", scene, "--points", points}).exit_code, 2);
-    EXPECT_EQ(causticbench({"probe", scene, "--method", "none", "--indirect", "globalphotonmap",
-                            "--points", points})
+    EXPECT_EQ(
+        causticbench({"probe", scene_of_ball, "--layer", "indirect", "--points", points}).exit_code,
+        2);
+    EXPECT_EQ(causticbench({"probe", scene_of_ball, "--points", points}).exit_code, 2);
+    EXPECT_EQ(causticbench({"probe", scene_of_ball, "--method", "none", "--indirect",
+                            "globalphotonmap", "--points", points})
                   .exit_code,
               2);
 }
@@ -115,7 +116,7 @@ TEST(Probe, OfTheIndirectLayerNotesWhatIsAmissWithTheScene) {
     const support::TemporaryFolder folder;
     write_atomic_file(folder / "points.csv", "x,y,z,nx,ny,nz\n0.3,0.2,0,0,0,1\n");
     const ProgramResult answer =
-        causticbench({"probe", scene, "--set",
+        causticbench({"probe", scene_of_ball, "--set",
                       R"(/second={"type": "sphere", "center": [0.3, 0, 0.6], "radius": 0.4,
                                     "bsdf": {"type": "dielectric"}})",
                       "--layer", "indirect", "--indirect", "globalphotonmap", "--indirect-param",
@@ -128,10 +129,11 @@ TEST(Probe, OfTheIndirectLayerNotesWhatIsAmissWithTheScene) {
 TEST(Render, WritesTheWholeConfigurationIntoThePicture) {
     const support::TemporaryFolder folder;
     const std::string file = folder / "a.exr";
-    ASSERT_EQ(causticbench({"render", scene, "--method", "photonmap", "--param", "photons=500",
-                            "--set", "/floor/bsdf/reflectance=0.25", "--spp", "9", "-o", file})
-                  .exit_code,
-              0);
+    ASSERT_EQ(
+        causticbench({"render", scene_of_ball, "--method", "photonmap", "--param", "photons=500",
+                      "--set", "/floor/bsdf/reflectance=0.25", "--spp", "9", "-o", file})
+            .exit_code,
+        0);
     const Film film = read_exr(file);
     for (const char* layer : {"", "direct", "caustic", "specular", "albedo"})
         EXPECT_TRUE(film.has_layer(layer)) << layer;
@@ -150,7 +152,7 @@ TEST(Render, WritesTheWholeConfigurationIntoThePicture) {
 TEST(Render, TellsItsCountsAndWhyACausticIsEmpty) {
     const support::TemporaryFolder folder;
     const std::string file = folder / "a.exr";
-    std::vector<std::string> arguments = {"render",  scene,         "--method", "photonmap",
+    std::vector<std::string> arguments = {"render",  scene_of_ball, "--method", "photonmap",
                                           "--param", "emitted=200", "-o",       file};
     const ProgramResult lit = causticbench(arguments);
     EXPECT_NE(lit.err.find("200 light paths, "), std::string::npos) << lit.err;
@@ -168,8 +170,8 @@ TEST(Render, MakesThePictureOfATimeAgainByTheCommandThatItTells) {
     const support::TemporaryFolder folder;
     const std::string timed = folder / "timed.exr", again = folder / "again.exr";
     for (const std::string method : {"photonmap", "lighttrace", "beamtree", "causticpolygons"}) {
-        const ProgramResult result =
-            causticbench({"render", scene, "--method", method, "--seconds", "0.05", "-o", timed});
+        const ProgramResult result = causticbench(
+            {"render", scene_of_ball, "--method", method, "--seconds", "0.05", "-o", timed});
         ASSERT_EQ(result.exit_code, 0) << result.err;
         const std::string words = "the same picture again: causticbench render ";
         const std::size_t told = result.err.find(words);
@@ -216,7 +218,7 @@ TEST(Render, GivesTheTimeToANumberOfTheScene) {
 TEST(Render, RefusesATimeThatNothingCouldTake) {
     const support::TemporaryFolder folder;
     const auto error = [&](std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), {"render", scene, "-o", folder / "a.exr"});
+        arguments.insert(arguments.begin(), {"render", scene_of_ball, "-o", folder / "a.exr"});
         const ProgramResult result = causticbench(arguments);
         EXPECT_EQ(result.exit_code, 2) << result.err;
         return result.err;
@@ -247,7 +249,7 @@ TEST(Render, RefusesATimeThatNothingCouldTake) {
 }
 
 TEST(Info, TellsWhatTheSceneHolds) {
-    const ProgramResult result = causticbench({"info", scene});
+    const ProgramResult result = causticbench({"info", scene_of_ball});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     for (const char* word :
          {"exact sphere", "caster", "receiver", "point at", "16 x 12", "photonmap        yes",
@@ -258,8 +260,8 @@ TEST(Info, TellsWhatTheSceneHolds) {
 TEST(Info, DrawsBeams) {
     const support::TemporaryFolder folder;
     const std::string drawing = folder / "beams.png";
-    const ProgramResult result =
-        causticbench({"info", scene, "--beams", "--param", "mesh_resolution=8", "-o", drawing});
+    const ProgramResult result = causticbench(
+        {"info", scene_of_ball, "--beams", "--param", "mesh_resolution=8", "-o", drawing});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.out.find("exact sphere"), std::string::npos);
     EXPECT_TRUE(fs::exists(drawing));
@@ -270,7 +272,7 @@ TEST(PhotonMaps, AreSavedLoadedDescribedAndDrawn) {
     const std::string map = folder / "ball.photons";
     for (const auto& [param, picture] :
          {std::pair("save=" + map, "traced.exr"), std::pair("load=" + map, "loaded.exr")}) {
-        std::vector<std::string> arguments = {"render",  scene,           "--method", "photonmap",
+        std::vector<std::string> arguments = {"render",  scene_of_ball,   "--method", "photonmap",
                                               "--param", param,           "--param",  "nearest=20",
                                               "-o",      folder / picture};
         if (param[0] == 's') arguments.insert(arguments.end(), {"--param", "photons=1000"});
@@ -282,7 +284,7 @@ TEST(PhotonMaps, AreSavedLoadedDescribedAndDrawn) {
     EXPECT_EQ(loaded.metadata.at("load_hash").size(), 16U);
 
     const std::string drawing = folder / "photons.png";
-    const ProgramResult info = causticbench({"info", map, "--scene", scene, "-o", drawing});
+    const ProgramResult info = causticbench({"info", map, "--scene", scene_of_ball, "-o", drawing});
     EXPECT_EQ(info.exit_code, 0) << info.err;
     for (const char* word : {"format version 4", "1000 stored", "seed 1", "param photons=1000"})
         EXPECT_NE(info.out.find(word), std::string::npos) << word << "\n" << info.out;
@@ -296,8 +298,8 @@ TEST(Probe, KeepsTheRowsAndAddsItsAnswers) {
                       "radius,x,y,z,nx,ny,nz,wx,wy,wz\n"
                       "0.1,0,0,0,0,0,2,0,0,1\n"
                       "0.1,0,0,0,0,0,-1,0,0,-1\n");
-    const ProgramResult result = causticbench(
-        {"probe", scene, "--method", "lighttrace", "--param", "paths=20000", "--points", points});
+    const ProgramResult result = causticbench({"probe", scene_of_ball, "--method", "lighttrace",
+                                               "--param", "paths=20000", "--points", points});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const std::vector<std::string> table = lines(result.out);
     ASSERT_EQ(table.size(), 3U);
@@ -317,18 +319,19 @@ TEST(Probe, ReadsPointsFromStandardInputAndWritesToStandardOutput) {
     const support::TemporaryFolder folder;
     write_atomic_file(folder / "points.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n");
     const ProgramResult result = support::causticbench_reading(
-        folder / "points.csv", {"probe", scene, "--method", "none", "--points", "-", "-o", "-"});
+        folder / "points.csv",
+        {"probe", scene_of_ball, "--method", "none", "--points", "-", "-o", "-"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.out,
               "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b\n0,0,0,0,0,1,0,0,0\n");
     const ProgramResult empty = support::causticbench_reading(
-        "/dev/zero", {"probe", scene, "--method", "none", "--points", "-"});
+        "/dev/zero", {"probe", scene_of_ball, "--method", "none", "--points", "-"});
     EXPECT_EQ(empty.exit_code, 2);
     EXPECT_EQ(empty.err,
               "causticbench: error: standard input: cannot be read (neither a file nor a pipe)\n");
     write_atomic_file(folder / "half.csv", "x,y,z,nx,ny,nz,wz\n0,0,0,0,0,1,1\n");
     const ProgramResult half = support::causticbench_reading(
-        folder / "half.csv", {"probe", scene, "--method", "none", "--points", "-"});
+        folder / "half.csv", {"probe", scene_of_ball, "--method", "none", "--points", "-"});
     EXPECT_EQ(half.exit_code, 2);
     EXPECT_EQ(half.err,
               "causticbench: error: standard input: give all of the columns wx, wy, wz or none\n");
@@ -365,8 +368,8 @@ TEST(Verify, TheGalleryHolds) {
 
 TEST(Verify, ASceneHoldsAndSaysWhatWasChecked) {
     const ProgramResult result =
-        causticbench({"verify", scene, "--method", "photonmap", "--set", "/sensor/film/width=24",
-                      "--set", "/sensor/film/height=16"});
+        causticbench({"verify", scene_of_ball, "--method", "photonmap", "--set",
+                      "/sensor/film/width=24", "--set", "/sensor/film/height=16"});
     EXPECT_EQ(result.exit_code, 0) << result.out;
     for (const std::string what : {"holds light: ", "caustic: casters", "holds threads: photonmap",
                                    "holds against the reference: photonmap", "verify: all holds"})
@@ -374,17 +377,17 @@ TEST(Verify, ASceneHoldsAndSaysWhatWasChecked) {
 }
 
 TEST(Verify, TellsWhyThereIsNoCaustic) {
-    const ProgramResult result =
-        causticbench({"verify", scene, "--method", "photonmap", "--set", "/light/intensity=0"});
+    const ProgramResult result = causticbench(
+        {"verify", scene_of_ball, "--method", "photonmap", "--set", "/light/intensity=0"});
     EXPECT_NE(result.out.find("no caustic: "), std::string::npos) << result.out << result.err;
 }
 
 TEST(Verify, WantsASceneOrTheGallery) {
     EXPECT_EQ(causticbench({"verify"}).exit_code, 2);
-    EXPECT_EQ(causticbench({"verify", scene, "--gallery"}).exit_code, 2);
-    EXPECT_EQ(causticbench({"verify", scene, "--method", "photonmaps"}).exit_code, 2);
-    EXPECT_EQ(causticbench({"verify", scene, "--method", "none"}).exit_code, 2);
-    const ProgramResult unserved = causticbench({"verify", scene, "--method", "pathtrace"});
+    EXPECT_EQ(causticbench({"verify", scene_of_ball, "--gallery"}).exit_code, 2);
+    EXPECT_EQ(causticbench({"verify", scene_of_ball, "--method", "photonmaps"}).exit_code, 2);
+    EXPECT_EQ(causticbench({"verify", scene_of_ball, "--method", "none"}).exit_code, 2);
+    const ProgramResult unserved = causticbench({"verify", scene_of_ball, "--method", "pathtrace"});
     EXPECT_EQ(unserved.exit_code, 3) << "of what cannot serve the scene nothing is checked";
     EXPECT_NE(unserved.err.find("point light"), std::string::npos) << unserved.err;
 }

@@ -13,7 +13,7 @@ PhotonMapParams params_of(const std::string& json) {
 }
 
 /// The one line that refuses these parameters, or "" where they are taken.
-std::string refusal(const std::string& json) {
+std::string refusal_of_params(const std::string& json) {
     try {
         params_of(json);
         return "";
@@ -46,7 +46,8 @@ TEST(PhotonMapParams, EmittedReplacesPhotons) {
     const PhotonMapParams given = params_of(R"({"emitted": 5000})");
     EXPECT_EQ(given.emitted, 5'000U);
     EXPECT_EQ(given.photons, 0U);
-    EXPECT_NE(refusal(R"({"emitted": 5000, "photons": 10})").find("/emitted"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"emitted": 5000, "photons": 10})").find("/emitted"),
+              std::string::npos);
 }
 
 TEST(PhotonMapParams, ChooseTheEmissionAndTheInteraction) {
@@ -56,7 +57,8 @@ TEST(PhotonMapParams, ChooseTheEmissionAndTheInteraction) {
         params_of(R"({"emission": "stratified", "interaction": "split"})");
     EXPECT_EQ(given.emission, PhotonMapParams::Emission::stratified);
     EXPECT_EQ(given.interaction, Interaction::split);
-    EXPECT_NE(refusal(R"({"emission": "regular"})").find("stratified"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"emission": "regular"})").find("stratified"),
+              std::string::npos);
 }
 
 TEST(PhotonMapParams, ChooseTheFilterAndARadiusInPlaceOfTheNearest) {
@@ -65,7 +67,7 @@ TEST(PhotonMapParams, ChooseTheFilterAndARadiusInPlaceOfTheNearest) {
     EXPECT_EQ(params_of(R"({"filter": "epanechnikov"})").filter, FilterKind::epanechnikov);
     EXPECT_EQ(params_of(R"({"filter": "cone", "radius": 0.5})").radius, 0.5);
     for (const std::string other : {R"("nearest": 50)", R"("max_radius": 1)"}) {
-        const std::string line = refusal(R"({"radius": 0.1, )" + other + "}");
+        const std::string line = refusal_of_params(R"({"radius": 0.1, )" + other + "}");
         EXPECT_NE(line.find("/radius"), std::string::npos) << line;
         EXPECT_NE(line.find("in place of the nearest"), std::string::npos) << line;
     }
@@ -77,10 +79,10 @@ TEST(PhotonMapParams, AverageOverASquareWhereThatHasAMeaning) {
     EXPECT_EQ(params_of(R"({"footprint": 0.5, "radius": 0.1, "tables": true})").footprint, 0.5F);
     for (const std::string other : {R"("adaptive": true)", R"("estimator": "raw")",
                                     R"("filter": "gaussian", "filter_alpha": 1)"}) {
-        const std::string line = refusal(R"({"footprint": 0.1, )" + other + "}");
+        const std::string line = refusal_of_params(R"({"footprint": 0.1, )" + other + "}");
         EXPECT_NE(line.find("footprint"), std::string::npos) << line;
     }
-    EXPECT_NE(refusal(R"({"footprint": 0})").find("/footprint"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"footprint": 0})").find("/footprint"), std::string::npos);
 }
 
 TEST(PhotonMapParams, AdaptiveHasItsOwnLargestNumber) {
@@ -88,8 +90,10 @@ TEST(PhotonMapParams, AdaptiveHasItsOwnLargestNumber) {
     EXPECT_EQ(params_of(R"({"adaptive": true})").nearest, 200);
     EXPECT_EQ(params_of(R"({"adaptive": true, "nearest": 80})").nearest, 80);
     EXPECT_EQ(params_of(R"({"adaptive": false})").nearest, 50);
-    EXPECT_NE(refusal(R"({"adaptive": true, "nearest": 10})").find("/nearest"), std::string::npos);
-    EXPECT_NE(refusal(R"({"adaptive": true, "radius": 1})").find("adaptive"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"adaptive": true, "nearest": 10})").find("/nearest"),
+              std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"adaptive": true, "radius": 1})").find("adaptive"),
+              std::string::npos);
 }
 
 TEST(PhotonMapParams, SaveAndLoadNameFilesBesideTheFileThatNamesThem) {
@@ -101,14 +105,14 @@ TEST(PhotonMapParams, SaveAndLoadNameFilesBesideTheFileThatNamesThem) {
     const PhotonMapParams beside = photonmap_method().read(
         JsonNode::parse_text(R"({"load": "../a.photons"})", "params", "sweeps/b.json"));
     EXPECT_EQ(beside.load, "a.photons");
-    EXPECT_NE(refusal(R"({"save": ""})").find("/save"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"save": ""})").find("/save"), std::string::npos);
 }
 
 TEST(PhotonMapParams, NothingOfTheTracingCanBeGivenWithLoad) {
     for (const std::string key :
          {R"("photons": 5)", R"("emitted": 5)", R"("emission": "random")", R"("max_bounces": 16)",
           R"("interaction": "roulette")", R"("save": "b.photons")"}) {
-        const std::string line = refusal(R"({"load": "a.photons", )" + key + "}");
+        const std::string line = refusal_of_params(R"({"load": "a.photons", )" + key + "}");
         EXPECT_NE(line.find("with load"), std::string::npos) << key << ": " << line;
     }
 }
@@ -117,8 +121,8 @@ TEST(PhotonMapParams, CountPasses) {
     EXPECT_EQ(params_of("{}").passes, 1);
     EXPECT_EQ(params_of(R"({"passes": 64, "radius": 0.1})").passes, 64);
     EXPECT_EQ(params_of(R"({"passes": 1, "load": "a"})").passes, 1);
-    EXPECT_NE(refusal(R"({"passes": 2, "load": "a"})").find("/load"), std::string::npos);
-    EXPECT_NE(refusal(R"({"passes": 2, "save": "a"})").find("/save"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"passes": 2, "load": "a"})").find("/load"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"passes": 2, "save": "a"})").find("/save"), std::string::npos);
 }
 
 TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
@@ -132,14 +136,15 @@ TEST(PhotonMapParams, RefuseWhatIsUnknownOrOutOfRange) {
           R"({"adaptive": 1})",         R"({"passes": 0})",           R"({"passes": 2.5})",
           R"({"radius": 0})",           R"({"radius": -1})",          R"({"radius": 1e-30})",
           R"({"radius": "wide"})"}) {
-        const std::string line = refusal(json);
+        const std::string line = refusal_of_params(json);
         EXPECT_NE(line, "") << json;
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;
     }
-    EXPECT_NE(refusal(R"({"filter": "gaussian", "filter_alpha": 0})").find("from 0.001 to 100"),
-              std::string::npos)
+    EXPECT_NE(
+        refusal_of_params(R"({"filter": "gaussian", "filter_alpha": 0})").find("from 0.001 to 100"),
+        std::string::npos)
         << "as help says";
-    EXPECT_NE(refusal(R"({"max_radius": 1e30})").find("1.8e19"), std::string::npos);
+    EXPECT_NE(refusal_of_params(R"({"max_radius": 1e30})").find("1.8e19"), std::string::npos);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace caustics::photonmap {
 namespace {
 
 /// Bytes of a range that are in memory.
-std::size_t resident_bytes(const void* begin, std::size_t bytes) {
+std::size_t resident_bytes_of(const void* begin, std::size_t bytes) {
     const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     std::vector<unsigned char> pages((bytes + page - 1) / page);
     EXPECT_EQ(mincore(const_cast<void*>(begin), bytes, pages.data()), 0);
@@ -41,7 +41,7 @@ TEST(PhotonStore, TakesMemoryOnlyForWhatItHolds) {
     const std::size_t held = store.size() * sizeof(Photon);
     constexpr std::size_t block = PhotonStore::block_photons * sizeof(Photon);
     // A page of the largest kind may be open at the end.
-    EXPECT_LE(resident_bytes(store.photons().data(), held + 16 * block),
+    EXPECT_LE(resident_bytes_of(store.photons().data(), held + 16 * block),
               held + std::max<std::size_t>(block, 2U << 20U));
 }
 

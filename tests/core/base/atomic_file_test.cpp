@@ -98,7 +98,7 @@ TEST(AtomicFile, LeavesNothingOfAKilledProcess) {
     EXPECT_EQ(files_in(folder.path()), 0);
 }
 
-std::string refusal(const std::filesystem::path& file, std::string_view bytes) {
+std::string refusal_to_write(const std::filesystem::path& file, std::string_view bytes) {
     try {
         write_atomic_file(file, bytes);
     } catch (const InputError& error) {
@@ -110,10 +110,10 @@ std::string refusal(const std::filesystem::path& file, std::string_view bytes) {
 TEST(AtomicFile, NamesTheFileAndTheReason) {
     const support::TemporaryFolder folder;
     const std::filesystem::path nowhere = folder / "absent" / "a.txt";
-    EXPECT_EQ(refusal(nowhere, "x"),
+    EXPECT_EQ(refusal_to_write(nowhere, "x"),
               nowhere.string() + ": cannot be written (No such file or directory)");
     std::filesystem::create_directories(folder / "a_folder" / "in it");
-    const std::string onto_folder = refusal(folder / "a_folder", "x");
+    const std::string onto_folder = refusal_to_write(folder / "a_folder", "x");
     EXPECT_NE(onto_folder.find("a_folder: cannot be written ("), std::string::npos) << onto_folder;
     EXPECT_EQ(files_in(folder.path()), 1);
 }
@@ -152,7 +152,7 @@ TEST(AtomicFile, ReplacesNoPipeOrDevice) {
     const support::TemporaryFolder folder;
     const std::string pipe = folder / "pipe";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    EXPECT_NE(refusal(pipe, "x").find("pipe: cannot be written"), std::string::npos);
+    EXPECT_NE(refusal_to_write(pipe, "x").find("pipe: cannot be written"), std::string::npos);
     EXPECT_TRUE(std::filesystem::is_fifo(pipe));
     EXPECT_THROW(require_writable_place(pipe), InputError);
     EXPECT_NO_THROW(require_writable_place(folder / "new"));

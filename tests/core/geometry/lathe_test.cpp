@@ -128,7 +128,7 @@ TEST(Lathe, PartsShareTheirRings) {
     }
 }
 
-std::string refusal(const LatheProfile& bad, int sectors = 8) {
+std::string refusal_of(const LatheProfile& bad, int sectors = 8) {
     try {
         tessellate_lathe(bad, sectors);
     } catch (const InputError& error) {
@@ -152,18 +152,18 @@ TEST(Lathe, RefusesProfilesThatMakeNoSurface) {
          "and between points 2 and 3"},
         {{{0, 0}, {2, 0}, {1, 0}, {0, 2}}, "meets itself"}};
     for (const auto& [points, reason] : bad) {
-        const std::string message = refusal(profile(points));
+        const std::string message = refusal_of(profile(points));
         EXPECT_NE(message.find(reason), std::string::npos) << message;
     }
-    EXPECT_NE(refusal(semicircle(8), 2).find("2 sectors"), std::string::npos);
-    EXPECT_NE(refusal(semicircle(5000)).find("more than 4096 segments"), std::string::npos);
+    EXPECT_NE(refusal_of(semicircle(8), 2).find("2 sectors"), std::string::npos);
+    EXPECT_NE(refusal_of(semicircle(5000)).find("more than 4096 segments"), std::string::npos);
     // A curve swings over the axis where its points do not.
     LatheProfile curve = profile({{1, 0}, {0.01, 0.01}, {0.01, 1}, {1, 1.01}});
     curve.open = true;
-    EXPECT_EQ(refusal(curve), "accepted");
+    EXPECT_EQ(refusal_of(curve), "accepted");
     curve.catmull_rom = true;
     curve.segments = 8;
-    EXPECT_NE(refusal(curve).find("the curve crosses the axis"), std::string::npos);
+    EXPECT_NE(refusal_of(curve).find("the curve crosses the axis"), std::string::npos);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 using support::random_direction;
 
-Vec3d random_point(Rng& rng, double half) {
+Vec3d point_in_cube(Rng& rng, double half) {
     const double x = rng.next_fine(), y = rng.next_fine(), z = rng.next_fine();
     return half * (2 * Vec3d(x, y, z) - Vec3d::Ones());
 }
@@ -24,17 +24,17 @@ double random_scale(Rng& rng) { return std::pow(10.0, 7 * rng.next_fine() - 3.5)
 
 Shape random_triangle(Rng& rng) {
     const double size = random_scale(rng);
-    const Vec3d middle = random_point(rng, rng.next() < 0.5F ? size : random_scale(rng));
+    const Vec3d middle = point_in_cube(rng, rng.next() < 0.5F ? size : random_scale(rng));
     TriangleMesh mesh;
     for (int i = 0; i < 3; ++i)
-        mesh.positions.push_back((middle + random_point(rng, size)).cast<float>());
+        mesh.positions.push_back((middle + point_in_cube(rng, size)).cast<float>());
     mesh.triangles = {{0, 1, 2}};
     return support::mesh("triangle", mesh, Transform::Identity(), support::diffuse(0.5F));
 }
 
 Shape random_exact(Rng& rng) {
     const double size = random_scale(rng);
-    const Vec3d middle = random_point(rng, rng.next() < 0.5F ? size : 30 * size);
+    const Vec3d middle = point_in_cube(rng, rng.next() < 0.5F ? size : 30 * size);
     const Transform turned =
         Eigen::Translation3d(middle) *
         Eigen::AngleAxisd(3 * rng.next_fine(), random_direction(rng).cast<double>().normalized()) *
@@ -49,7 +49,7 @@ Shape random_exact(Rng& rng) {
 /// Rays from outside to places of the shape's bounds.
 Ray random_ray(const Box& box, Rng& rng) {
     const Vec3d size = box.sizes().cast<double>();
-    const Vec3d half = random_point(rng, 0.5);
+    const Vec3d half = point_in_cube(rng, 0.5);
     const Vec3d target = box.center().cast<double>() + size.cwiseProduct(half);
     const Vec3d from = target + 3 * size.norm() * random_direction(rng).cast<double>();
     return {from.cast<float>(), (target - from).normalized().cast<float>()};

@@ -10,7 +10,7 @@
 namespace caustics {
 namespace {
 
-constexpr double degree = pi_d / 180;
+constexpr double one_degree = pi_d / 180;
 
 Ior named(const std::string& name) {
     for (const NamedGlass& glass : named_glasses())
@@ -72,7 +72,7 @@ TEST(Ior, ALawWithoutDispersionIsANumber) {
 TEST(Ior, APrismTurnsItsColoursByAsMuchAsSnellSays) {
     Bsdf glass = support::glass(1.5F);
     std::get<Dielectric>(glass.model).int_ior = named("sf10");
-    const double half = 30 * degree;
+    const double half = 30 * one_degree;
     const Vec3 first = Vec3d(-std::cos(half), 0, std::sin(half)).cast<float>();
     const Vec3 second = Vec3d(std::cos(half), 0, std::sin(half)).cast<float>();
     const struct {
@@ -81,12 +81,12 @@ TEST(Ior, APrismTurnsItsColoursByAsMuchAsSnellSays) {
     } lines[] = {
         {404.6561F, 65.217}, {486.1327F, 61.676}, {587.5618F, 59.565}, {656.2725F, 58.728}};
     for (const auto& line : lines) {
-        const double turn = line.deviation * degree / 2;
+        const double turn = line.deviation * one_degree / 2;
         const Vec3 in = Vec3d(std::cos(turn), 0, std::sin(turn)).cast<float>();
         const SpecularSplit entry = split_specular(glass, first, first, -in, line.nm);
         const SpecularSplit exit = split_specular(glass, second, second, -entry.refracted, line.nm);
         const double angle =
-            std::acos(std::min(1.0, static_cast<double>(in.dot(exit.refracted)))) / degree;
+            std::acos(std::min(1.0, static_cast<double>(in.dot(exit.refracted)))) / one_degree;
         EXPECT_NEAR(angle, line.deviation, 5e-3) << line.nm;
     }
 }
@@ -108,7 +108,7 @@ double rainbow_angle(float nm, int inner) {
             const Vec3d d = direction.cast<double>();
             place -= 2 * place.dot(d) * d;
         }
-        const double back = std::acos(-direction.cast<double>().normalized().dot(in)) / degree;
+        const double back = std::acos(-direction.cast<double>().normalized().dot(in)) / one_degree;
         angle = inner == 1 ? std::max(angle, back) : std::min(angle, back);
     }
     return angle;

@@ -15,16 +15,16 @@ namespace {
 
 using support::random_direction;
 
-Vec3 at_angle(double angle) { return Vec3d(std::sin(angle), 0, std::cos(angle)).cast<float>(); }
+Vec3 direction_at(double angle) { return Vec3d(std::sin(angle), 0, std::cos(angle)).cast<float>(); }
 
 TEST(Optics, ReflectionMirrorsAboutTheNormal) {
-    EXPECT_LT((reflect(at_angle(0.4), Vec3::UnitZ()) - at_angle(-0.4)).norm(), 1e-6F);
+    EXPECT_LT((reflect(direction_at(0.4), Vec3::UnitZ()) - direction_at(-0.4)).norm(), 1e-6F);
 }
 
 TEST(Optics, RefractionObeysSnellsLaw) {
     for (const double eta : {1.5, 1 / 1.5, 1.33, 2.4, 1.000001})
         for (double angle = 0; angle < 1.57; angle += 0.05) {
-            const auto t = refract(at_angle(angle), Vec3::UnitZ(), static_cast<float>(eta));
+            const auto t = refract(direction_at(angle), Vec3::UnitZ(), static_cast<float>(eta));
             const double sine = std::sin(angle) / eta;
             if (std::abs(sine - 1) < 1e-4) continue;
             ASSERT_EQ(t.has_value(), sine < 1) << angle << " " << eta;
@@ -51,7 +51,7 @@ TEST(Optics, RefractionIsReversible) {
 }
 
 TEST(Optics, EqualIndicesPassStraight) {
-    const Vec3 w = at_angle(1.0);
+    const Vec3 w = direction_at(1.0);
     EXPECT_LT((*refract(w, Vec3::UnitZ(), 1) + w).norm(), 1e-6F);
     EXPECT_NEAR(fresnel_dielectric(w.z(), 1), 0, 1e-7F);
 }
@@ -74,12 +74,12 @@ TEST(Optics, FresnelMatchesItsClosedForms) {
         }
     }
     EXPECT_EQ(fresnel_dielectric(0.5F, 1 / 1.5F), 1.0F);
-    EXPECT_FALSE(refract(at_angle(1.0), Vec3::UnitZ(), 1 / 1.5F));
+    EXPECT_FALSE(refract(direction_at(1.0), Vec3::UnitZ(), 1 / 1.5F));
 }
 
 TEST(Optics, FresnelIsTheSameFromBothSides) {
     for (int i = 1; i < 50; ++i) {
-        const Vec3 w = at_angle(i * 0.03);
+        const Vec3 w = direction_at(i * 0.03);
         const Vec3 t = *refract(w, Vec3::UnitZ(), 1.5F);
         EXPECT_NEAR(fresnel_dielectric(w.z(), 1.5F), fresnel_dielectric(-t.z(), 1 / 1.5F), 2e-5F);
     }
@@ -134,11 +134,11 @@ TEST(Optics, DirectionsOnTheWrongSideAreDroppedBothWays) {
 TEST(Optics, AOneSidedMirrorIsBlackBehind) {
     Bsdf mirror = support::mirror(0.9F);
     const Vec3 n = Vec3::UnitZ();
-    EXPECT_FLOAT_EQ(split_specular(mirror, n, n, -at_angle(0.3)).reflected_weight[0], 0.9F);
+    EXPECT_FLOAT_EQ(split_specular(mirror, n, n, -direction_at(0.3)).reflected_weight[0], 0.9F);
     mirror.twosided = false;
-    EXPECT_FLOAT_EQ(split_specular(mirror, n, n, at_angle(0.3)).reflected_weight[0], 0.9F);
-    EXPECT_TRUE(is_black(split_specular(mirror, n, n, -at_angle(0.3)).reflected_weight));
-    const SpecularSplit none = split_specular(support::diffuse(0.5F), n, n, at_angle(0.3));
+    EXPECT_FLOAT_EQ(split_specular(mirror, n, n, direction_at(0.3)).reflected_weight[0], 0.9F);
+    EXPECT_TRUE(is_black(split_specular(mirror, n, n, -direction_at(0.3)).reflected_weight));
+    const SpecularSplit none = split_specular(support::diffuse(0.5F), n, n, direction_at(0.3));
     EXPECT_TRUE(is_black(none.reflected_weight) && is_black(none.refracted_weight));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t rows = 16;
 constexpr std::size_t columns = 24;
-constexpr int draws = 60'000;
+constexpr int draw_count = 60'000;
 
 std::size_t cell_of(const Vec3& w) {
     const double turn = std::atan2(static_cast<double>(w.y()), static_cast<double>(w.x()));
@@ -36,13 +36,13 @@ double p_value(const DirectionMixture& mixture, std::uint64_t seed) {
             const double r = std::sqrt(1 - z * z);
             const Vec3 w = Vec3d(r * std::cos(turn), r * std::sin(turn), z).cast<float>();
             expected[cell_of(w)] +=
-                draws * 4 * pi_d / (fine * fine) * static_cast<double>(mixture.pdf_w(w));
+                draw_count * 4 * pi_d / (fine * fine) * static_cast<double>(mixture.pdf_w(w));
         }
-    expected.back() = draws - std::accumulate(expected.begin(), expected.end(), 0.0);
-    EXPECT_GT(expected.back(), -0.003 * draws);
+    expected.back() = draw_count - std::accumulate(expected.begin(), expected.end(), 0.0);
+    EXPECT_GT(expected.back(), -0.003 * draw_count);
     expected.back() = std::max(0.0, expected.back());
     Rng rng(seed, Stage::test, 0);
-    for (int i = 0; i < draws; ++i) {
+    for (int i = 0; i < draw_count; ++i) {
         const auto wi = mixture.sample(rng);
         counts[wi ? cell_of(*wi) : rows * columns] += 1;
     }

@@ -17,7 +17,7 @@ Bsdf glass(float inside, float outside, float absorbs = 0, float outside_absorbs
     return bsdf;
 }
 
-Shape ball(double radius, const Bsdf& bsdf, const Vec3d& at = {0, 0, 0}) {
+Shape ball_of(double radius, const Bsdf& bsdf, const Vec3d& at = {0, 0, 0}) {
     return support::sphere("ball", at, radius, bsdf);
 }
 
@@ -32,31 +32,35 @@ std::vector<MediaConflict> conflicts_of(std::vector<Shape> shapes) {
 }
 
 TEST(MediaConflicts, NameWaterInGlassThatIsSaidToLieInAir) {
-    const auto conflicts = conflicts_of({ball(0.4, glass(1.333F, 1)), ball(0.5, glass(1.5F, 1))});
+    const auto conflicts =
+        conflicts_of({ball_of(0.4, glass(1.333F, 1)), ball_of(0.5, glass(1.5F, 1))});
     ASSERT_EQ(conflicts.size(), 1U);
     EXPECT_EQ(conflicts[0].first, 0U);
     EXPECT_EQ(conflicts[0].second, 1U);
     EXPECT_NEAR(conflicts[0].first_ior, 1, 1e-6);
     EXPECT_NEAR(conflicts[0].second_ior, 1.5, 1e-6);
     EXPECT_EQ(conflicts_of({cube(0.4, glass(1.333F, 1)), cube(0.5, glass(1.5F, 1))}).size(), 1U);
-    EXPECT_EQ(conflicts_of({cube(0.3, glass(1.333F, 1)), ball(0.9, glass(1.5F, 1))}).size(), 1U);
+    EXPECT_EQ(conflicts_of({cube(0.3, glass(1.333F, 1)), ball_of(0.9, glass(1.5F, 1))}).size(), 1U);
 }
 
 TEST(MediaConflicts, AreNoneWhereEachSaysWhatIsRoundIt) {
-    EXPECT_TRUE(conflicts_of({ball(0.4, glass(1.333F, 1.5F)), ball(0.5, glass(1.5F, 1))}).empty());
-    EXPECT_TRUE(conflicts_of({ball(0.4999, glass(1, 1.5F)), ball(0.5, glass(1.5F, 1))}).empty())
+    EXPECT_TRUE(
+        conflicts_of({ball_of(0.4, glass(1.333F, 1.5F)), ball_of(0.5, glass(1.5F, 1))}).empty());
+    EXPECT_TRUE(
+        conflicts_of({ball_of(0.4999, glass(1, 1.5F)), ball_of(0.5, glass(1.5F, 1))}).empty())
         << "a bulb";
     EXPECT_TRUE(conflicts_of({cube(0.4, glass(1.333F, 1.5F)), cube(0.5, glass(1.5F, 1))}).empty());
-    EXPECT_TRUE(
-        conflicts_of({ball(0.5, glass(1.5F, 1)), ball(0.5, glass(1.5F, 1.000277F), {2, 0, 0})})
-            .empty())
+    EXPECT_TRUE(conflicts_of(
+                    {ball_of(0.5, glass(1.5F, 1)), ball_of(0.5, glass(1.5F, 1.000277F), {2, 0, 0})})
+                    .empty())
         << "both words for air";
-    EXPECT_TRUE(conflicts_of({ball(0.5, glass(1.5F, 1))}).empty());
+    EXPECT_TRUE(conflicts_of({ball_of(0.5, glass(1.5F, 1))}).empty());
 }
 
 TEST(MediaConflicts, TellOfWhatAMediumAbsorbs) {
     const auto nested = [](float said, double radius) {
-        return conflicts_of({ball(0.5, glass(1.5F, 1, 3)), ball(radius, glass(1, 1.5F, 0, said))});
+        return conflicts_of(
+            {ball_of(0.5, glass(1.5F, 1, 3)), ball_of(radius, glass(1, 1.5F, 0, said))});
     };
     const auto conflicts = nested(0, 0.3);
     ASSERT_EQ(conflicts.size(), 1U);
@@ -67,9 +71,9 @@ TEST(MediaConflicts, TellOfWhatAMediumAbsorbs) {
 
 TEST(MediaConflicts, AreFoundUnderOpenWater) {
     const Shape water = support::horizontal("water", 1, 2, true, glass(1.333F, 1));
-    EXPECT_TRUE(conflicts_of({water, ball(0.3, glass(1.5F, 1.333F))}).empty());
-    EXPECT_EQ(conflicts_of({water, ball(0.3, glass(1.5F, 1))}).size(), 1U);
-    EXPECT_TRUE(conflicts_of({water, ball(0.3, glass(1.5F, 1), {0, 0, 2})}).empty()) << "above";
+    EXPECT_TRUE(conflicts_of({water, ball_of(0.3, glass(1.5F, 1.333F))}).empty());
+    EXPECT_EQ(conflicts_of({water, ball_of(0.3, glass(1.5F, 1))}).size(), 1U);
+    EXPECT_TRUE(conflicts_of({water, ball_of(0.3, glass(1.5F, 1), {0, 0, 2})}).empty()) << "above";
 }
 
 }  // namespace

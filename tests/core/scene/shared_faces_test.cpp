@@ -8,12 +8,12 @@
 namespace caustics {
 namespace {
 
-using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+using FacePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-Pairs sharing(std::vector<Shape> shapes) {
+FacePairs sharing(std::vector<Shape> shapes) {
     SceneDesc desc;
     desc.shapes = std::move(shapes);
-    Pairs pairs;
+    FacePairs pairs;
     for (const SharedFace& face : shared_faces(Scene(std::move(desc))))
         pairs.emplace_back(face.caster, face.other);
     return pairs;
@@ -31,23 +31,23 @@ Shape floor_at(double z) {
 }
 
 TEST(SharedFaces, NamesGlassThatStandsOnAFloor) {
-    EXPECT_EQ(sharing({floor_at(0), block(0)}), (Pairs{{1, 0}}));
-    EXPECT_EQ(sharing({floor_at(0), block(1e-4)}), Pairs{});
-    EXPECT_EQ(sharing({floor_at(0), block(-0.1)}), Pairs{}) << "it sinks in";
+    EXPECT_EQ(sharing({floor_at(0), block(0)}), (FacePairs{{1, 0}}));
+    EXPECT_EQ(sharing({floor_at(0), block(1e-4)}), FacePairs{});
+    EXPECT_EQ(sharing({floor_at(0), block(-0.1)}), FacePairs{}) << "it sinks in";
     // Far from the origin of coordinates, too, where floats are coarse.
-    EXPECT_EQ(sharing({floor_at(0), block(0, support::glass(1.5F), 4)}), (Pairs{{1, 0}}));
+    EXPECT_EQ(sharing({floor_at(0), block(0, support::glass(1.5F), 4)}), (FacePairs{{1, 0}}));
 }
 
 TEST(SharedFaces, NamesGlassOnGlassOnce) {
-    EXPECT_EQ(sharing({block(0), block(0.5), block(1.1)}), (Pairs{{0, 1}}));
-    EXPECT_EQ(sharing({block(0), block(0, support::glass(1.5F), 0.5)}), (Pairs{{0, 1}}))
+    EXPECT_EQ(sharing({block(0), block(0.5), block(1.1)}), (FacePairs{{0, 1}}));
+    EXPECT_EQ(sharing({block(0), block(0, support::glass(1.5F), 0.5)}), (FacePairs{{0, 1}}))
         << "side by side";
 }
 
 TEST(SharedFaces, NamesAMirrorOnAFloor) {
     const Shape mirror = support::horizontal("mirror", 0, 0.3, true, support::mirror());
-    EXPECT_EQ(sharing({floor_at(0), mirror}), (Pairs{{1, 0}}));
-    EXPECT_EQ(sharing({floor_at(-0.001), mirror}), Pairs{});
+    EXPECT_EQ(sharing({floor_at(0), mirror}), (FacePairs{{1, 0}}));
+    EXPECT_EQ(sharing({floor_at(-0.001), mirror}), FacePairs{});
 }
 
 // No middle of the large one lies on the small one; whichever comes first.
@@ -57,16 +57,16 @@ TEST(SharedFaces, NamesTheSmallOnTheLarge) {
                       Transform(Eigen::Translation3d(0, 0, -0.5) * Eigen::Scaling(20.0, 20.0, 0.5)),
                       support::glass(1.5F));
     const Shape stone = block(0, support::glass(1.7F), 7);
-    EXPECT_EQ(sharing({slab, stone}), (Pairs{{1, 0}}));
-    EXPECT_EQ(sharing({stone, slab}), (Pairs{{0, 1}}));
+    EXPECT_EQ(sharing({slab, stone}), (FacePairs{{1, 0}}));
+    EXPECT_EQ(sharing({stone, slab}), (FacePairs{{0, 1}}));
 }
 
 // Corners, edges and points that touch are no faces; nor do receivers matter among themselves.
 TEST(SharedFaces, LeavesAloneWhatMerelyTouches) {
     EXPECT_EQ(sharing({floor_at(0), support::sphere("ball", {0, 0, 1}, 1, support::glass(1.5F))}),
-              Pairs{});
-    EXPECT_EQ(sharing({block(0), block(0.5, support::glass(1.5F), 0.5)}), Pairs{}) << "an edge";
-    EXPECT_EQ(sharing({floor_at(0), block(0, support::diffuse(0.5F))}), Pairs{});
+              FacePairs{});
+    EXPECT_EQ(sharing({block(0), block(0.5, support::glass(1.5F), 0.5)}), FacePairs{}) << "an edge";
+    EXPECT_EQ(sharing({floor_at(0), block(0, support::diffuse(0.5F))}), FacePairs{});
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ const fs::path& folder() {
     return temporary.path();
 }
 
-void write(const std::string& name, const std::string& text) {
+void write_scene(const std::string& name, const std::string& text) {
     std::ofstream(folder() / name) << text;
 }
 
@@ -527,10 +527,10 @@ protected:
         // The header of a TGA picture of 12,000 x 12,000 pixels.
         const unsigned char huge[100] = {0, 0, 10, 0,    0,    0,    0,    0,  0,
                                          0, 0, 0,  0xE0, 0x2E, 0xE0, 0x2E, 24, 0};
-        write("huge.tga", {reinterpret_cast<const char*>(huge), sizeof huge});
-        write("stairs.pgm", {"P5 2 2 255\n\0\0\0\0", 15});
-        write("one.pgm", {"P5 1 2 65535\n\0\0\0\0", 17});
-        write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+        write_scene("huge.tga", {reinterpret_cast<const char*>(huge), sizeof huge});
+        write_scene("stairs.pgm", {"P5 2 2 255\n\0\0\0\0", 15});
+        write_scene("one.pgm", {"P5 1 2 65535\n\0\0\0\0", 17});
+        write_scene("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
         Film bright(1, 1);
         bright.set_rgb("", 0, Spectrum::Constant(1.5F));
         write_exr(bright, folder() / "bright.exr");
@@ -542,7 +542,7 @@ protected:
 TEST_P(BrokenScene, IsOneErrorLineWithFilePlaceAndAlternatives) {
     const Broken& broken = GetParam();
     const std::string name = std::string(broken.name) + ".json";
-    write(name, broken.text);
+    write_scene(name, broken.text);
     try {
         static_cast<void>(load_scene(folder() / name));
         FAIL() << "was accepted";
@@ -561,7 +561,7 @@ INSTANTIATE_TEST_SUITE_P(All, BrokenScene, testing::ValuesIn(broken_scenes()), n
 INSTANTIATE_TEST_SUITE_P(Meshes, BrokenScene, testing::ValuesIn(broken_meshes()), name_of);
 
 TEST(BrokenOverride, NamesThePlaceAndWhatIsThere) {
-    write("good.json", with(R"({"type": "disk"})"));
+    write_scene("good.json", with(R"({"type": "disk"})"));
     const auto error = [](const Overrides& overrides) -> std::string {
         try {
             static_cast<void>(load_scene(folder() / "good.json", overrides));
@@ -579,8 +579,8 @@ TEST(BrokenOverride, NamesThePlaceAndWhatIsThere) {
 }
 
 TEST(BrokenInclude, NamesTheIncludedFileAndTheWholePointer) {
-    write("ball.json", R"({"type": "sphere", "raduis": 1})");
-    write("including.json", with(R"({"$include": "ball.json"})"));
+    write_scene("ball.json", R"({"type": "sphere", "raduis": 1})");
+    write_scene("including.json", with(R"({"$include": "ball.json"})"));
     try {
         static_cast<void>(load_scene(folder() / "including.json"));
         FAIL();

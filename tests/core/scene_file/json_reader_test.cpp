@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 JsonNode node(const std::string& text) { return JsonNode::parse_text(text, "t.json"); }
 
 /// Writes a file of this test's folder and gives its place.
-fs::path write(const std::string& name, const std::string& text) {
+fs::path write_json(const std::string& name, const std::string& text) {
     static const support::TemporaryFolder folder("json_reader_test");
     const fs::path file = folder.path() / name;
     fs::create_directories(file.parent_path());
@@ -171,8 +171,8 @@ TEST(JsonSet, APointerIntoNothingNamesWhatIsThere) {
 }
 
 TEST(JsonInclude, IsReplacedByTheFileAndErrorsNameThatFile) {
-    write("parts/water.json", R"({"bsdf": {"iro": 1.33}, "mesh": "waves.ply"})");
-    const fs::path file = write("pool.json", R"({"water": {"$include": "parts/water.json"}})");
+    write_json("parts/water.json", R"({"bsdf": {"iro": 1.33}, "mesh": "waves.ply"})");
+    const fs::path file = write_json("pool.json", R"({"water": {"$include": "parts/water.json"}})");
     const fs::path water = file.parent_path() / "parts/water.json";
     const JsonNode root = JsonNode::parse_file(file);
     EXPECT_EQ(root.canonical(), R"({"water":{"bsdf":{"iro":1.33},"mesh":"waves.ply"}})");
@@ -184,8 +184,8 @@ TEST(JsonInclude, IsReplacedByTheFileAndErrorsNameThatFile) {
 }
 
 TEST(JsonInclude, SetReachesIntoIncludedFilesAndReplacedPartsForgetThem) {
-    write("inner.json", R"({"x": {"y": 1}})");
-    const fs::path file = write("outer.json", R"({"a": {"$include": "inner.json"}})");
+    write_json("inner.json", R"({"x": {"y": 1}})");
+    const fs::path file = write_json("outer.json", R"({"a": {"$include": "inner.json"}})");
     JsonNode root = JsonNode::parse_file(file);
     root.set("/a/x/y", "2");
     EXPECT_EQ(root.canonical(), R"({"a":{"x":{"y":2}}})");
@@ -197,36 +197,36 @@ TEST(JsonInclude, SetReachesIntoIncludedFilesAndReplacedPartsForgetThem) {
 }
 
 TEST(JsonInclude, TheSameFileMayBeIncludedTwiceButNotByItself) {
-    write("leaf.json", "3");
+    write_json("leaf.json", "3");
     const fs::path twice =
-        write("twice.json", R"([{"$include": "leaf.json"}, {"$include": "leaf.json"}])");
+        write_json("twice.json", R"([{"$include": "leaf.json"}, {"$include": "leaf.json"}])");
     EXPECT_EQ(JsonNode::parse_file(twice).canonical(), "[3,3]");
-    const fs::path a = write("a.json", R"({"b": {"$include": "b.json"}})");
-    write("b.json", R"({"a": {"$include": "./a.json"}})");
+    const fs::path a = write_json("a.json", R"({"b": {"$include": "b.json"}})");
+    write_json("b.json", R"({"a": {"$include": "./a.json"}})");
     const std::string error = error_of([&] { return JsonNode::parse_file(a); });
     EXPECT_NE(error.find("b.json: /a/$include: "), std::string::npos) << error;
     EXPECT_NE(error.find("includes itself"), std::string::npos) << error;
 }
 
 TEST(JsonInclude, FilesThatIncludeEachOtherTooOftenAreRefused) {
-    write("many9.json", "1");
+    write_json("many9.json", "1");
     for (int i = 0; i < 9; ++i) {
         std::string text = "[";
         for (int k = 0; k < 10; ++k)
             text += (k > 0 ? ", " : "") + std::string("{\"$include\": \"many") +
                     std::to_string(i + 1) + ".json\"}";
-        write("many" + std::to_string(i) + ".json", text + "]");
+        write_json("many" + std::to_string(i) + ".json", text + "]");
     }
-    const fs::path few = write("few.json", R"([{"$include": "many7.json"}])");
+    const fs::path few = write_json("few.json", R"([{"$include": "many7.json"}])");
     EXPECT_EQ(JsonNode::parse_file(few).as_array()[0].as_array().size(), 10U);
-    const fs::path many = write("many.json", R"([{"$include": "many0.json"}])");
+    const fs::path many = write_json("many.json", R"([{"$include": "many0.json"}])");
     const std::string error = error_of([&] { return JsonNode::parse_file(many); });
     EXPECT_NE(error.find("more than 10000 inclusions"), std::string::npos) << error;
 }
 
 TEST(JsonInclude, WhatIsWrongWithItIsNamed) {
     const auto error = [](const std::string& text) {
-        const fs::path file = write("bad.json", text);
+        const fs::path file = write_json("bad.json", text);
         return error_of([&] { return JsonNode::parse_file(file); });
     };
     EXPECT_NE(error(R"({"a": {"$include": "leaf.json", "x": 1}})")
@@ -242,7 +242,7 @@ TEST(JsonInclude, WhatIsWrongWithItIsNamed) {
     EXPECT_NE(device.find("/dev/zero: cannot be read (a pipe or device, not a regular file"),
               std::string::npos)
         << device;
-    write("broken.json", "{");
+    write_json("broken.json", "{");
     EXPECT_NE(error(R"({"a": {"$include": "broken.json"}})").find("broken.json: parse error"),
               std::string::npos);
 }
@@ -263,7 +263,7 @@ TEST(JsonNode, HoldsNoControlCharacters) {
 }
 
 TEST(JsonFile, AFolderOrNothingIsAnError) {
-    const fs::path file = write("x.json", "{}");
+    const fs::path file = write_json("x.json", "{}");
     EXPECT_NE(error_of([&] { return JsonNode::parse_file(file.parent_path()); }).find("folder"),
               std::string::npos);
     EXPECT_NE(error_of([&] { return JsonNode::parse_file(file / "y"); }).find("cannot be read"),

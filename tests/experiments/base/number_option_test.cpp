@@ -12,7 +12,8 @@ namespace {
 
 /// What the verb says of an option given as `text`: InputError's message, or nothing. That other
 /// things are missing is the parser's own complaint.
-std::string refusal(const std::string& verb, const std::string& option, const std::string& text) {
+std::string refusal_of_option(const std::string& verb, const std::string& option,
+                              const std::string& text) {
     CLI::App app;
     const std::vector<Verb> verbs = add_verbs(app);
     try {
@@ -50,7 +51,7 @@ TEST(NumberOptions, RefuseWhatIsNoDecimalNumberOfTheirRange) {
         const bool is_range_open = option.name == "--exposure";  // which takes a negative number
         for (const std::string text : {"nan", "inf", "-inf", "-1", "010", "0x10", "1e400", "1 ",
                                        "99999999999999999999", "1'000", "1_000", "1,5", "x"}) {
-            const std::string message = refusal(option.verb, option.name, text);
+            const std::string message = refusal_of_option(option.verb, option.name, text);
             if (text == "-1" && is_range_open) {
                 EXPECT_EQ(message, "") << option.verb << " " << option.name;
                 continue;
@@ -58,7 +59,8 @@ TEST(NumberOptions, RefuseWhatIsNoDecimalNumberOfTheirRange) {
             EXPECT_EQ(message.rfind(option.name + " \"" + text + "\": expected a ", 0), 0U)
                 << option.verb << ": " << message;
         }
-        EXPECT_EQ(refusal(option.verb, option.name, "1"), "") << option.verb << option.name;
+        EXPECT_EQ(refusal_of_option(option.verb, option.name, "1"), "")
+            << option.verb << option.name;
     }
     EXPECT_GE(count, 14U) << "a numeric option is not looked at";
 }
