@@ -140,7 +140,7 @@ private:
         const OrderedPaths paths{scene,          emission,
                                  params.emitted, params.max_bounces,
                                  options.seed,   Stage::illumination_map};
-        const auto collect = [](const Deposit& d, std::vector<Arrival>& arrivals) {
+        const auto collect = [](const Deposit& d, std::uint64_t, std::vector<Arrival>& arrivals) {
             arrivals.push_back({d.shape, d.front, d.uv, d.flux});
         };
         counts_ = trace_in_order<Arrival>(paths, options, collect, [this](const Arrival& a) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/material/optics.h"
@@ -15,27 +16,30 @@ namespace {
 // Sums of what paths brought to each of a number of cells (pixels or probe points).
 class Tally {
 public:
-    explicit Tally(std::size_t cells)
-        : sum_(cells, SpectrumSum::Zero()), squares_(cells, SpectrumSum::Zero()) {}
+    explicit Tally(std::size_t cells) : random_(cells) {}
 
-    // Of a random path.
-    void add(std::size_t cell, const Spectrum& value) {
+    // Of a random path; a path's values come one after the other. Where it comes to a cell again its values are one.
+    void add(std::uint64_t path, std::size_t cell, const Spectrum& value) {
+        Random& c = random_[cell];
         const SpectrumSum v = value.cast<double>();
-        sum_[cell] += v;
-        squares_[cell] += v * v;
+        if (c.path != path) c.of_path.setZero();
+        c.path = path;
+        c.sum += v;
+        c.squares += v * (v + 2 * c.of_path);
+        c.of_path += v;
         ++added_;
     }
     // Of a path of the batch, whose paths depend on each other.
     void add_to_batch(std::size_t cell, const Spectrum& value) {
-        batch_.resize(sum_.size(), SpectrumSum::Zero());
+        batch_.resize(random_.size(), SpectrumSum::Zero());
         batch_[cell] += value.cast<double>();
         ++added_;
     }
     // Batches are alike and independent.
     void end_batch() {
-        batch_.resize(sum_.size(), SpectrumSum::Zero());
-        batch_sum_.resize(sum_.size(), SpectrumSum::Zero());
-        batch_squares_.resize(sum_.size(), SpectrumSum::Zero());
+        batch_.resize(random_.size(), SpectrumSum::Zero());
+        batch_sum_.resize(random_.size(), SpectrumSum::Zero());
+        batch_squares_.resize(random_.size(), SpectrumSum::Zero());
         for (std::size_t cell = 0; cell < batch_.size(); ++cell) {
             batch_sum_[cell] += batch_[cell];
             batch_squares_[cell] += batch_[cell].square();
@@ -45,24 +49,29 @@ public:
     }
 
     std::uint64_t added() const { return added_; }
-    // Mean over n paths, `random` of them outside of batches; such a path brought at most one value to a cell
-    // (or, of whole paths, seldom two).
+    // Mean over n paths, `random` of them outside of batches.
     Estimate estimate(std::size_t cell, double n, double random) const {
+        const SpectrumSum &sum = random_[cell].sum, &squares = random_[cell].squares;
         if (batches_ == 0) {
-            const SpectrumSum mean = sum_[cell] / n;
-            const SpectrumSum variance = (squares_[cell] / n - mean.square()).max(0) / n;
+            const SpectrumSum mean = sum / n;
+            const SpectrumSum variance = (squares / n - mean.square()).max(0) / n;
             return {mean.cast<float>(), variance.sqrt().cast<float>()};
         }
-        const SpectrumSum mean = (batch_sum_[cell] + sum_[cell]) / n;
+        const SpectrumSum mean = (batch_sum_[cell] + sum) / n;
         const double count = batches_;
         SpectrumSum variance =
             (batch_squares_[cell] - batch_sum_[cell].square() / count).max(0) * count / (count - 1);
-        if (random > 0) variance += (squares_[cell] - sum_[cell].square() / random).max(0);
+        if (random > 0) variance += (squares - sum.square() / random).max(0);
         return {mean.cast<float>(), (variance.sqrt() / n).cast<float>()};
     }
 
 private:
-    std::vector<SpectrumSum> sum_, squares_;  // of random paths
+    struct Random {
+        SpectrumSum sum = SpectrumSum::Zero(), squares = SpectrumSum::Zero();
+        SpectrumSum of_path = SpectrumSum::Zero();  // what the last path has brought until now
+        std::uint64_t path = std::numeric_limits<std::uint64_t>::max();
+    };
+    std::vector<Random> random_;
     std::vector<SpectrumSum> batch_, batch_sum_, batch_squares_;
     int batches_ = 0;
     std::uint64_t added_ = 0;
@@ -78,6 +87,7 @@ struct LightTraceContext : QueryContext {
 };
 
 struct Arrival {
+    std::uint64_t path;
     std::size_t cell;
     Spectrum value;
 };
@@ -109,8 +119,8 @@ public:
         const auto cells =
             static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
         LightPathCounts counts;
-        const auto collect = [&](const Deposit& d, std::vector<Arrival>& out) {
-            if (const auto arrival = connect(d)) out.push_back(*arrival);
+        const auto collect = [&](const Deposit& d, std::uint64_t path, std::vector<Arrival>& out) {
+            if (const auto arrival = connect(d, path)) out.push_back(*arrival);
         };
         const Tally tally = trace(cells, options, collect, counts);
         CameraLayer layer;
@@ -141,7 +151,7 @@ public:
     bool is_statistical() const override { return true; }
 
 private:
-    // `collect` says what a deposit brings to which cells.
+    // `collect` says what a path's deposit brings to which cells.
     template <typename Collect>
     Tally trace(std::size_t cells, const RunOptions& options, const Collect& collect,
                 LightPathCounts& total) const {
@@ -163,9 +173,10 @@ private:
         paths.paths = params_.paths - paths.first;
         paths.strata.reset();
         paths.wavelength_shift.reset();
-        total.add(trace_in_order<Arrival>(
-            paths, part_of(options, paths), collect,
-            [&tally](const Arrival& arrival) { tally.add(arrival.cell, arrival.value); }));
+        total.add(trace_in_order<Arrival>(paths, part_of(options, paths), collect,
+                                          [&tally](const Arrival& arrival) {
+                                              tally.add(arrival.path, arrival.cell, arrival.value);
+                                          }));
         return tally;
     }
 
@@ -188,7 +199,7 @@ private:
 
     // The pixel average of the radiance a deposit sends to the pinhole: with film area dp at unit
     // distance, dp cos^3(theta) = dA cos(receiver) / distance^2.
-    std::optional<Arrival> connect(const Deposit& d) const {
+    std::optional<Arrival> connect(const Deposit& d, std::uint64_t path) const {
         const auto seen = film_.project(d.position);
         if (!seen) return {};
         const Camera& camera = scene_.camera();
@@ -208,7 +219,7 @@ private:
             static_cast<std::size_t>(seen->x);
         const Spectrum left =
             segment_transmittance(nullptr, &eye_absorption_, static_cast<float>(seen->distance));
-        return Arrival{pixel, d.flux * scattering * static_cast<float>(weight) * left};
+        return Arrival{path, pixel, d.flux * scattering * static_cast<float>(weight) * left};
     }
 
     template <typename Value>
@@ -223,10 +234,11 @@ private:
                     "the parameter radius");
         }
         const GatherGrid grid(points, radii);
-        const auto collect = [&](const Deposit& d, std::vector<Arrival>& arrivals) {
+        const auto collect = [&](const Deposit& d, std::uint64_t path,
+                                 std::vector<Arrival>& arrivals) {
             grid.for_each_containing(d, [&](std::size_t i) {
                 const float area = pi * radii[i] * radii[i];
-                arrivals.push_back({i, value(points[i], d) / area});
+                arrivals.push_back({path, i, value(points[i], d) / area});
             });
         };
         const Tally tally = trace(points.size(), options_, collect,

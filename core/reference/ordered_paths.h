@@ -33,7 +33,7 @@ struct OrderedPaths {
     static constexpr std::uint64_t chunk = 4096;
     static constexpr std::uint64_t chunks_per_round = 256;
 
-    /// Follows the paths of a chunk and calls sink(deposit) for what arrives.
+    /// Follows the paths of a chunk and calls sink(deposit, path) for what arrives, path by path.
     template <typename Sink>
     void trace_chunk(std::uint64_t index, LightPathCounts& counts, const Sink& sink) const {
         const std::uint64_t begin = first + index * chunk;
@@ -62,7 +62,7 @@ private:
             else
                 trace_light_path(scene, *particle, {max_bounces}, rng, counts, deposits);
             for (const Deposit& deposit : deposits)
-                if (!whole || deposit.diffuse_bounces > 0) sink(deposit);
+                if (!whole || deposit.diffuse_bounces > 0) sink(deposit, path);
         }
     }
 
@@ -87,12 +87,12 @@ private:
             counts.emitted += count;
             counts.aimed += starts.size();
             trace_light_paths(scene, starts, settings, counts, deposits);
-            for (const DepositOfMany& one : deposits) sink(one.deposit);
+            for (const DepositOfMany& one : deposits) sink(one.deposit, begin + one.start);
         }
     }
 };
 
-/// Traces all paths by any thread: `collect(deposit, arrivals)` appends to a vector of `Arrival` what a
+/// Traces all paths by any thread: `collect(deposit, path, arrivals)` appends to a vector of `Arrival` what a
 /// deposit brings, side by side; `take(arrival)` gets them one by one in the order of the paths, so
 /// that sums are the same for any number of threads.
 template <typename Arrival, typename Collect, typename Take>
@@ -108,8 +108,9 @@ LightPathCounts trace_in_order(const OrderedPaths& work, const RunOptions& optio
         parallel_for(options.threads, in_round, [&](std::size_t i, std::size_t) {
             arrivals[i].clear();
             counts[i] = {};
-            work.trace_chunk(first + i, counts[i],
-                             [&](const Deposit& d) { collect(d, arrivals[i]); });
+            work.trace_chunk(first + i, counts[i], [&](const Deposit& d, std::uint64_t path) {
+                collect(d, path, arrivals[i]);
+            });
         });
         for (std::size_t i = 0; i < in_round; ++i) {
             for (const Arrival& arrival : arrivals[i]) take(arrival);

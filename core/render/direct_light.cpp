@@ -1,10 +1,13 @@
 #include "core/render/direct_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "core/material/optics.h"
+#include "core/material/wavelength.h"
 
 namespace caustics {
 namespace {
@@ -26,21 +29,57 @@ struct StraightWay {
     Spectrum left = Spectrum::Ones();  ///< of light along it
 };
 
-// At the angle of the thinner side, whose light always passes.
-Spectrum passed(const Dielectric& glass, float cosine) {
-    const float ratio = glass.relative_ior(true, 0);
-    return glass.specular_transmittance *
-           (1 - fresnel_dielectric(std::abs(cosine), std::max(ratio, 1 / ratio)));
+// At the angle of the thinner side, whose light always passes; `nm`: wavelength, 0 for the d line.
+float passed(const Dielectric& glass, float cosine, float nm) {
+    const float ratio = glass.relative_ior(true, nm);
+    return 1 - fresnel_dielectric(std::abs(cosine), std::max(ratio, 1 / ratio));
 }
+
+/// What surfaces of dielectrics let pass, one after the other. Those that are dispersive let more of one wavelength
+/// pass than of another, so that only the end of the way tells what is left of the channels. Between bins the share
+/// is smooth.
+class PassedSurfaces {
+public:
+    void add(const Dielectric& glass, float cosine) {
+        shares_ *= glass.specular_transmittance;
+        if (!glass.is_dispersive()) {
+            shares_ *= passed(glass, cosine, 0);
+            return;
+        }
+        for (std::size_t i = 0; i < of_bin_.size(); ++i)
+            of_bin_[i] *= passed(glass, cosine, bins()[i].nm);
+        disperses_ = true;
+    }
+    Spectrum shares() const {
+        if (!disperses_) return shares_;
+        Spectrum mean = black();
+        for (std::size_t i = 0; i < of_bin_.size(); ++i) mean += bins()[i].weight * of_bin_[i];
+        return shares_ * mean;
+    }
+
+private:
+    static constexpr std::size_t bin_count = 8;
+    static const std::vector<WavelengthBin>& bins() {
+        static const std::vector<WavelengthBin> all = wavelength_bins(bin_count);
+        return all;
+    }
+
+    Spectrum shares_ = Spectrum::Ones();
+    std::array<float, bin_count> of_bin_ = {1, 1, 1, 1, 1, 1, 1, 1};
+    bool disperses_ = false;
+};
 
 StraightWay straight_way(const Scene& scene, Ray ray) {
     StraightWay way;
+    PassedSurfaces passed_surfaces;
     const Spectrum* medium = nullptr;
     for (int crossing = 0; crossing < most_crossings; ++crossing) {
         const std::optional<SurfacePoint> hit = scene.intersect(ray);
         if (!hit) {
-            way.left *= segment_transmittance(
-                medium, nullptr, std::isfinite(ray.max_distance) ? ray.max_distance : 0);
+            way.left *=
+                passed_surfaces.shares() *
+                segment_transmittance(medium, nullptr,
+                                      std::isfinite(ray.max_distance) ? ray.max_distance : 0);
             return way;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
@@ -50,10 +89,11 @@ StraightWay straight_way(const Scene& scene, Ray ray) {
         const auto* const glass = std::get_if<Dielectric>(&bsdf.model);
         if (glass == nullptr) {
             way.end = hit;
+            way.left *= passed_surfaces.shares();
             return way;
         }
         way.crosses = true;
-        way.left *= passed(*glass, hit->shading_normal.dot(ray.direction));
+        passed_surfaces.add(*glass, hit->shading_normal.dot(ray.direction));
         medium = medium_absorption(bsdf, hit->geometric_normal, ray.direction);
         const float left = ray.max_distance - hit->distance;
         ray = spawn_ray({hit->position, hit->geometric_normal, hit->offset}, ray.direction);

@@ -55,7 +55,10 @@ Objects sensors() {
           yes_or_no("jitter", "Samples lie at random in their cells, not at the middle.", "true"),
           split}},
         {"adaptive",
-         "A sampler, in a sensor: more samples where those of a pixel scatter.",
+         "A sampler, in a sensor: more samples where those of a pixel scatter. Light finer than "
+         "pixels "
+         "that its first samples miss is lost (stripes that are lit to 3 %: two thirds of it by 4 "
+         "samples, none by 16).",
          {type_key(),
           whole("sample_count", "First samples of a pixel.", "samples", "4", "2 to 1048576"),
           whole("max_sample_count", "Most samples of a pixel.", "samples", "32 times sample_count",

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
@@ -70,8 +72,12 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     if (!is_black(scene.ambient()))
         text += fmt::format("  ambient, radiance {} W/(m^2 sr)\n", rgb(scene.ambient()));
     const AimedEmission emission(scene);
-    text += fmt::format("  power aimed at the casters' bounds: {} W\n",
-                        rgb(emission.empty() ? black() : emission.total_power()));
+    const bool has_spot = std::ranges::any_of(scene.lights(), [](const Light& light) {
+        return std::holds_alternative<SpotLight>(light);
+    });
+    text += fmt::format("  power aimed at the casters' bounds: {} W{}\n",
+                        rgb(emission.empty() ? black() : emission.total_power()),
+                        has_spot ? " (of spots as if they had no falloff)" : "");
     text += "methods\n";
     StatusLine asked;
     for (const std::string& name : method_names()) {

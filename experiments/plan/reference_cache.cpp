@@ -51,9 +51,17 @@ Reference::Light light_of(const Film& film, const std::string& layer, const Pixe
 /// the eye's receivers, and weighed direct light about smooth normals; of version 3, it drew other numbers.
 constexpr int indirect_version = 4;
 
+bool has_classic_phong(const Scene& scene) {
+    return std::ranges::any_of(scene.shapes(), [](const Shape& shape) {
+        const auto* phong = std::get_if<Phong>(&shape.bsdf.model);
+        return phong != nullptr && phong->model == Phong::Model::classic;
+    });
+}
+
 }  // namespace
 
 int reference_version(const Scene& scene) {
+    if (has_classic_phong(scene)) return 4;
     if (absorbs_at_mirrors_or_lamps(scene)) return 3;
     return is_black(eye_medium(scene).absorption) ? 1 : 2;
 }

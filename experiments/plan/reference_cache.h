@@ -15,7 +15,8 @@ namespace caustics::experiments {
 
 /// Of the scene's reference pictures; part of their keys. 2 where the eye is in a medium that absorbs:
 /// pictures of version 1 leave out what it takes from the first leg of what the eye sees. 3 where a medium absorbs
-/// and there are mirrors, or lamps in it: earlier pictures forget the medium behind a mirror and before a lamp.
+/// and there are mirrors, or lamps in it: earlier pictures forget the medium behind a mirror and before a lamp. 4 where
+/// Phong's law of 1975 is: light paths took it from the wrong side.
 int reference_version(const Scene& scene);
 
 /// Hash of everything a reference picture depends on: scene (film and sampler included), method,

@@ -51,7 +51,9 @@ CausticSurvey survey_caustic(const Scene& scene, int max_bounces) {
     CausticSurvey survey;
     survey.counts = trace_in_order<Kind>(
         paths, RunOptions{},
-        [&](const Deposit& d, std::vector<Kind>& kinds) { kinds.push_back(onlooker.kind_of(d)); },
+        [&](const Deposit& d, std::uint64_t, std::vector<Kind>& kinds) {
+            kinds.push_back(onlooker.kind_of(d));
+        },
         [&](Kind kind) { ++(survey.*kind); });
     return survey;
 }

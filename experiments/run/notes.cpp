@@ -18,6 +18,7 @@
 #include "core/scene/lights_on_casters.h"
 #include "core/scene/media_conflicts.h"
 #include "core/scene/shared_faces.h"
+#include "experiments/run/wide_triangles.h"
 
 namespace caustics::experiments {
 
@@ -107,6 +108,19 @@ std::optional<std::string> flat_pieces(const Scene& scene, const Method& method)
                 "their planes, off by 10 % and more where they are few (receiver_resolution)",
                 pieces->dump(), pieces->dump(), shape.name);
     return {};
+}
+
+/// Beams on a mesh of glass are bent as its triangles' corners are.
+std::optional<std::string> coarse_glass(const Scene& scene) {
+    constexpr double degree = pi_d / 180;
+    const auto wide = wide_triangles(scene, 5 * degree);
+    if (!wide) return {};
+    return fmt::format(
+        "a light sees {} in triangles {:.0f} degrees wide: behind its second surface beams are "
+        "bent "
+        "as the corners of a polygon are, so that their light is off by several per cent at points "
+        "(triangles half as wide halve that; photonmap sees every ray's own way)",
+        wide->shape, wide->angle / degree);
 }
 
 std::optional<std::string> thin_walls(const BuildReport& report) {
@@ -383,6 +397,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
         all.push_back(*far);
     if (!captured) return all;
     if (const auto walls = thin_walls(report)) all.push_back(*walls);
+    if (const auto coarse = coarse_glass(scene)) all.push_back(*coarse);
     if (const auto pieces = flat_pieces(scene, method)) all.push_back(*pieces);
     if (const auto steps = steps_of_colour(scene, method)) all.push_back(*steps);
     if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));
@@ -404,6 +419,19 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     add("rest", has_no_rest(report),
         "nothing is left out that rest_photons and rest_nearest could be of");
     return all;
+}
+
+std::vector<std::string> notes_on_indirect(const Scene& scene) {
+    for (const Shape& shape : scene.shapes()) {
+        const auto* const phong = std::get_if<Phong>(&shape.bsdf.model);
+        if (phong != nullptr && phong->model == Phong::Model::classic)
+            return {fmt::format(
+                "{} reflects by Phong's law of 1975, which sends back more than arrives along the "
+                "surface: light between walls may grow with every reflection, without end "
+                "(model \"normalised\" keeps energy; diffuse_bounces ends paths)",
+                shape.name)};
+    }
+    return {};
 }
 
 std::vector<std::string> notes_on_picture(const Method& method,

@@ -18,6 +18,9 @@ std::vector<std::string> notes_on(const Scene& scene);
 /// differ much, an old photon map's file, and parameters that were set and make no difference.
 std::vector<std::string> notes(const Scene& scene, const Method& method, const BuildReport& report);
 
+/// What is to be known where light between walls is asked for: a law by which it may grow without end.
+std::vector<std::string> notes_on_indirect(const Scene& scene);
+
 /// What is to be known of parameters where a picture is made, beside notes(): those that only points of `probe` take,
 /// and paths a pixel that its samples do not share evenly. `options` are those of the picture.
 std::vector<std::string> notes_on_picture(const Method& method,

@@ -221,6 +221,8 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
         if (pass == 0) {
             if constexpr (std::is_same_v<Estimator, CausticEstimator>)
                 answers.notes = notes(scene, method, built->build_report());
+            else
+                answers.notes = notes_on_indirect(scene);
             std::ranges::copy(notes_on(scene), std::back_inserter(answers.notes));
         }
         const Ask ask{*built, asked, method.facts().gathers_over_discs, options.threads};

@@ -136,6 +136,8 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
     result.notes = notes(scene, request.method, all);
     std::ranges::copy(notes_on_picture(request.method, request.indirect, options),
                       std::back_inserter(result.notes));
+    if (request.indirect)
+        std::ranges::copy(notes_on_indirect(scene), std::back_inserter(result.notes));
     std::ranges::copy(notes_on(scene), std::back_inserter(result.notes));
     result.why_empty =
         why_empty(scene, request.method, result.film, result.report, result.counters);

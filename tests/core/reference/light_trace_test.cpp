@@ -87,6 +87,45 @@ TEST(LightTrace, StatesTheScatterOfItsValuesForEveryEmission) {
     EXPECT_LT(scatter[1], 0.35 * scatter[0]);
 }
 
+// Paths that come to a disc again and again: of a lamp beside the wall of a sphere that is a mirror and diffuse, and
+// of indirect light in a sphere of albedo 0.9.
+TEST(LightTrace, StatesTheScatterWherePathsComeBackToADisc) {
+    Bsdf both = support::diffuse(0.5F);
+    both.mirror = MirrorPart{0.9F, Spectrum(Spectrum::Ones())};
+    const auto inside_of = [](const Bsdf& wall, const Vec3d& lamp) {
+        SceneDesc desc;
+        desc.shapes = {support::enclosure(1, wall)};
+        desc.lights = {support::point_light(lamp, 1)};
+        return Scene(std::move(desc));
+    };
+    const Scene mirror = inside_of(both, {0.3, 0.2, 0.1});
+    const Scene white = inside_of(support::diffuse(0.9F), {0, 0, 0});
+    const auto check = [](const Scene& scene, const auto& make) {
+        const std::vector<ReceiverPoint> wall = {
+            support::probe(scene, 0, {1, 0, 0}, -Vec3d::UnitX(), 0, 0.6F)};
+        support::Moments found;
+        double stated = 0;
+        constexpr int seeds = 200;
+        for (int seed = 1; seed <= seeds; ++seed) {
+            RunOptions options;
+            options.seed = static_cast<std::uint64_t>(seed);
+            const Estimate one = support::irradiance(*make(scene, options), wall).front();
+            found.add(static_cast<double>(one.value[0]));
+            stated += std::pow(static_cast<double>(one.standard_error[0]), 2) / seeds;
+        }
+        // The variance of 200 values is known to a tenth.
+        EXPECT_NEAR(stated / std::pow(found.deviation(), 2), 1, 0.3);
+    };
+    check(mirror, [](const Scene& scene, const RunOptions& options) {
+        return build(scene, LightTraceParams{.paths = 2000, .max_bounces = 64}, options);
+    });
+    check(white, [](const Scene& scene, const RunOptions& options) {
+        IndirectLightTraceParams params;
+        params.paths = 2000;
+        return build(scene, params, options);
+    });
+}
+
 TEST(LightTrace, StratifiedIsTheSameForAnyNumberOfThreads) {
     const Scene scene = pool();
     const auto one = gathered(scene, Emission::stratified, 50'000, 3);

@@ -159,6 +159,26 @@ TEST(DirectLight, GoesStraightThroughGlassWhereShadowsAreTransparent) {
     EXPECT_EQ(direct(scene, {0, 0, 0}).mean(), 0);
 }
 
+// Integral over wavelengths of c_k (1 - F)^2, channel by channel.
+TEST(DirectLight, PassesDispersiveGlassAtEveryWavelengthOnItsStraightWay) {
+    const Ior law = Ior::cauchy(1.2, 0.08);
+    SceneDesc desc = floor_scene();
+    for (const double z : {1.2, 1.0}) {
+        desc.shapes.push_back(support::horizontal("face", z, 5, z > 1.1, support::glass(1.5F)));
+        std::get<Dielectric>(desc.shapes.back().bsdf.model).int_ior = law;
+    }
+    desc.lights = {support::directional_light({0, 0, -1}, 3)};
+    SpectrumSum expected = SpectrumSum::Zero();
+    for (double nm = shortest_wavelength + 0.5; nm < longest_wavelength; ++nm) {
+        const double n = law.at(static_cast<float>(nm));
+        const double reflected = std::pow((n - 1) / (n + 1), 2);
+        expected += channel_density(nm) * std::pow(1 - reflected, 2) * 3 * 0.5 / pi_d;
+    }
+    const Spectrum value = transparent(Scene(std::move(desc)), {0, 0, 0});
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(static_cast<double>(value[c]) / expected[c], 1, 5e-4) << c;
+}
+
 // By Beer's law between, from a light far away, and from one inside the glass.
 TEST(DirectLight, IsAbsorbedOnItsStraightWay) {
     SceneDesc far = under_a_pane(Spectrum(1, 2, 0));

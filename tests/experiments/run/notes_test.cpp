@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/exact_shapes/rectangle.h"
 #include "core/geometry/tessellate.h"
 #include "core/math/rng.h"
 #include "core/mesh/vertex_normals.h"
@@ -202,6 +203,33 @@ TEST(Notes, SayThatLightFromAfarStartsAtTheBounds) {
     EXPECT_TRUE(lit_by(sun));
     EXPECT_TRUE(lit_by(ConstantLight{Spectrum::Ones()}));
     EXPECT_FALSE(lit_by(support::point_light({0, 0, 3}, 1)));
+}
+
+TEST(Notes, NameGlassOfTrianglesThatALightSeesWide) {
+    const auto pane = [](int cells, double lamp) {
+        SceneDesc desc;
+        TriangleMesh top = tessellate_rectangle(cells), bottom = tessellate_rectangle(cells);
+        flip(bottom);
+        desc.shapes = {
+            support::mesh("top", std::move(top), Transform(Eigen::Translation3d(0, 0, 1.2)),
+                          support::glass(1.5F)),
+            support::mesh("bottom", std::move(bottom), Transform(Eigen::Translation3d(0, 0, 1)),
+                          support::glass(1.5F)),
+            support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
+        desc.lights = {support::point_light({0, 0, lamp}, 1)};
+        return notes_of(desc, "beamtree", {"light_samples=1"});
+    };
+    const std::vector<std::string> words = {"a light sees top in triangles", "degrees wide"};
+    EXPECT_TRUE(any_holds(pane(1, 2.2), words));
+    EXPECT_FALSE(any_holds(pane(64, 2.2), words));
+    EXPECT_FALSE(any_holds(pane(1, 100), words));
+}
+
+TEST(Notes, NameAWallBetweenWhichLightMayGrow) {
+    SceneDesc desc = flat_mirror();
+    EXPECT_TRUE(notes_on_indirect(Scene(desc)).empty());
+    desc.shapes[1].bsdf = support::phong(0.1F, 1, 3, Phong::Model::classic);
+    EXPECT_TRUE(any_holds(notes_on_indirect(Scene(desc)), {"floor", "1975", "without end"}));
 }
 
 TEST(Notes, NameDielectricsThatCross) {
