@@ -40,6 +40,8 @@ float passed(const Dielectric& glass, float cosine, float nm) {
 /// is smooth.
 class PassedSurfaces {
 public:
+    PassedSurfaces() { of_bin_.fill(1); }
+
     void add(const Dielectric& glass, float cosine) {
         shares_ *= glass.specular_transmittance;
         if (!glass.is_dispersive()) {
@@ -58,14 +60,14 @@ public:
     }
 
 private:
-    static constexpr std::size_t bin_count = 8;
+    static constexpr std::size_t bin_count = 16;
     static const std::vector<WavelengthBin>& bins() {
         static const std::vector<WavelengthBin> all = wavelength_bins(bin_count);
         return all;
     }
 
     Spectrum shares_ = Spectrum::Ones();
-    std::array<float, bin_count> of_bin_ = {1, 1, 1, 1, 1, 1, 1, 1};
+    std::array<float, bin_count> of_bin_;
     bool disperses_ = false;
 };
 

@@ -176,7 +176,7 @@ TEST(DirectLight, PassesDispersiveGlassAtEveryWavelengthOnItsStraightWay) {
     }
     const Spectrum value = transparent(Scene(std::move(desc)), {0, 0, 0});
     for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(static_cast<double>(value[c]) / expected[c], 1, 5e-4) << c;
+        EXPECT_NEAR(static_cast<double>(value[c]) / expected[c], 1, 2e-4) << c;
 }
 
 // By Beer's law between, from a light far away, and from one inside the glass.
