@@ -49,7 +49,13 @@ takes 0.1 to 1 s), and intervals send every ray three times; on gem it ends wher
 
 | scene | dispersion | wavelengths | caustic rmse | s | bins over it |
 |---|---|---|---|---|---|
-{beams}"""
+{beams}
+The time of K intervals is a + b K (least squares). The last column is what they would gain if they cost nothing each (b = 0): the time of the
+cheapest bins as good as the best intervals, over a. Where a is not above 0 all of the time is the wavelengths'.
+
+| scene | a [s] | b [s] | bins [s] | bins over a |
+|---|---|---|---|---|
+{bounds}"""
 
 
 def arguments():
@@ -91,17 +97,38 @@ def split_lines(rows):
             yield f"| {scene} | {depth} | {error:.4g} | {seconds:.2f} | {cost / first:.2f} |\n"
 
 
-def beam_lines(rows):
+def beam_times(rows):
+    """Of each scene: [(bins or intervals, how many, rmse, CPU seconds)]."""
     for scene in sorted({row["scene"] for row in rows}):
         found = []
         for how, count in sorted({(row["dispersion"], int(row["wavelengths"])) for row in rows}):
             where = {"scene": scene, "dispersion": how, "wavelengths": count}
             seconds = sum(median(rows, phase, **where) for phase in ("precompute_cpu_s", "render_cpu_s"))
             found.append((how, count, median(rows, "rmse", **where), seconds))
+        yield scene, found
+
+
+def cheapest_bins(found, error):
+    """Seconds of those whose error is at most 5 % above; None where there are none."""
+    return min((each[3] for each in found if each[0] == "bins" and each[2] <= 1.05 * error), default=None)
+
+
+def beam_lines(times):
+    for scene, found in times:
         for how, count, error, seconds in found:
-            as_good = [each[3] for each in found if each[0] == "bins" and each[2] <= 1.05 * error]
-            ratio = "" if how == "bins" else f"{min(as_good) / seconds:.1f}" if as_good else "more"
+            bins = cheapest_bins(found, error)
+            ratio = "" if how == "bins" else f"{bins / seconds:.1f}" if bins else "more"
             yield f"| {scene} | {how} | {count} | {error:.4g} | {seconds:.1f} | {ratio} |\n"
+
+
+def bound_lines(times):
+    for scene, found in times:
+        intervals = [each for each in found if each[0] == "intervals"]
+        counts, seconds = [each[1] for each in intervals], [each[3] for each in intervals]
+        each, fixed = statistics.linear_regression(counts, seconds)
+        bins = cheapest_bins(found, min(one[2] for one in intervals))
+        gain = f"{bins / fixed:.1f}" if bins and fixed > 0 else ""
+        yield f"| {scene} | {round(fixed, 1) + 0.0:.1f} | {each:.2f} | {bins or 0:.1f} | {gain} |\n"
 
 
 def main():
@@ -111,9 +138,11 @@ def main():
         dispersion, photons = sweep(program, options, "dispersion_photons")
         splitting, split = sweep(program, options, "split_depth")
         intervals, beams = sweep(program, options, "dispersion_beams")
+        times = list(beam_times(beams))
         write(options.output / "README.md",
               PAGE.format(machine=machine([dispersion, splitting, intervals]), photons="".join(photon_lines(photons)),
-                          split="".join(split_lines(split)), beams="".join(beam_lines(beams))))
+                          split="".join(split_lines(split)), beams="".join(beam_lines(times)),
+                          bounds="".join(bound_lines(times))))
     except records.RecordsError as error:
         print(f"measure_crystal: {error}", file=sys.stderr)
         return 2
