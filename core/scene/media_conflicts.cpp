@@ -47,7 +47,10 @@ public:
     void run(std::map<Pair, MediaConflict>& found) {
         const bool is_mesh = shape_.primitive == Primitive::mesh;
         const TriangleMesh own = is_mesh ? TriangleMesh() : tessellate_shape(shape_, resolution);
-        if (!is_mesh) alone_.emplace(std::vector<Shape>{shape_});
+        if (!is_mesh) {
+            copy_ = {shape_};
+            alone_.emplace(copy_);
+        }
         const float reach =
             (is_mesh ? reach_of_mesh : reach_of_exact) * bounds(shape_).diagonal().norm();
         for (const TriangleMiddle& middle : triangle_middles(is_mesh ? shape_.mesh : own, most_))
@@ -91,6 +94,7 @@ private:
     std::uint32_t index_;
     const Shape& shape_;
     std::size_t most_;
+    std::vector<Shape> copy_;           ///< of an exact shape; `alone_` refers to it
     std::optional<Intersector> alone_;  ///< of an exact shape
     std::size_t places_ = 0;
     std::map<Pair, MediaConflict> conflicts_;
