@@ -1,10 +1,9 @@
 #include <immintrin.h>
 
-#include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
+#include "photonmap/kernels/phong_loop.h"
 #include "photonmap/kernels/simd_avx2.h"
 #include "photonmap/kernels/square_loop.h"
-#include "photonmap/kernels/two_of.h"
 
 namespace caustics::photonmap {
 
@@ -178,72 +177,27 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     sums.add_to(rgb);
 }
 
-/// The formula of phong_factors.
-class PhongSums {
-public:
-    PhongSums(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons)
-        : tables_(tables), lobe_(lobe), photons_(photons) {}
-
-    void add_eight(size_t i) {
-        const Arrival arrival = arrival_of(i);
-        add(i, arrival, power<Avx2Lanes>(arrival.t));
+/// What PhongLoop asks for.
+struct PhongSet {
+    using Lanes = Avx2Lanes;
+    using Vectors = photonmap::Vectors;
+    using Sums = photonmap::Sums;
+    using Mask = Floats;
+    [[gnu::always_inline]] static Vectors directions(const DirectionTables& tables,
+                                                     const uint16_t* code) {
+        return photonmap::directions(tables, code);
     }
-    void add_sixteen(size_t i) {
-        const Arrival first = arrival_of(i), second = arrival_of(i + 8);
-        const auto both = power<TwoOf<Avx2Lanes>>({first.t, second.t});
-        add(i, first, both.first);
-        add(i + 8, second, both.second);
+    static Mask facing(const ShadedPhotons& photons, size_t i, Floats v_in) {
+        return photonmap::facing(counted(photons, i), v_in);
     }
-    void add_to(double* rgb) const { sums_.add_to(rgb); }
-
-private:
-    struct Arrival {
-        Floats t;  ///< 1 - cosine of the angle to the mirrored direction
-        Floats lanes;
-    };
-
-    Arrival arrival_of(size_t i) const {
-        const Vectors wi = directions(tables_, photons_.direction + i);
-        const Vectors apart{_mm256_sub_ps(mirrored_.x, wi.x), _mm256_sub_ps(mirrored_.y, wi.y),
-                            _mm256_sub_ps(mirrored_.z, wi.z)};
-        return {product(all(0.5F), dot(apart, apart)),
-                facing(counted(photons_, i), dot(normal_, wi))};
-    }
-    template <typename Lanes>
-    typename Lanes::Floats power(typename Lanes::Floats t) const {
-        if (Lanes::less(t, Lanes::all(1)) == 0) return Lanes::all(0);
-        return cosine_power<Lanes>(t, lobe_.exponent);
-    }
-    void add(size_t i, const Arrival& arrival, Floats power) {
-        sums_.add(photons_, i, arrival.lanes,
-                  Vectors{sum(diffuse_.x, product(specular_.x, power)),
-                          sum(diffuse_.y, product(specular_.y, power)),
-                          sum(diffuse_.z, product(specular_.z, power))});
-    }
-
-    const DirectionTables& tables_;
-    const Lobe& lobe_;
-    const ShadedPhotons& photons_;
-    const Vectors normal_ = all_of(lobe_.normal), mirrored_ = all_of(lobe_.mirrored);
-    const Vectors diffuse_ = all_of(lobe_.diffuse), specular_ = all_of(lobe_.specular);
-    Sums sums_;
 };
-
-void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
-               double* rgb) {
-    PhongSums sums(tables, lobe, photons);
-    size_t i = 0;
-    for (; i + 8 < photons.count; i += 16) sums.add_sixteen(i);
-    if (i < photons.count) sums.add_eight(i);
-    sums.add_to(rgb);
-}
 
 }  // namespace
 
 const ShadingKernels avx2_shading{add_arriving,
                                   add_facing,
                                   add_schlick,
-                                  add_phong,
+                                  PhongLoop<PhongSet>::add,
                                   weigh_photons<Avx2Lanes>,
                                   SquareLoop<Avx2Lanes>::weigh};
 

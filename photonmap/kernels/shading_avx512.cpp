@@ -1,10 +1,9 @@
 #include <immintrin.h>
 
-#include "photonmap/kernels/cosine_power.h"
 #include "photonmap/kernels/filter_loop.h"
+#include "photonmap/kernels/phong_loop.h"
 #include "photonmap/kernels/simd_avx512.h"
 #include "photonmap/kernels/square_loop.h"
-#include "photonmap/kernels/two_of.h"
 
 namespace caustics::photonmap {
 
@@ -187,73 +186,27 @@ void add_schlick(const DirectionTables& tables, const Lobe& lobe, const ShadedPh
     sums.add_to(rgb);
 }
 
-/// The formula of phong_factors.
-class PhongSums {
-public:
-    PhongSums(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons)
-        : tables_(tables), lobe_(lobe), photons_(photons) {}
-
-    void add_sixteen(size_t i) {
-        const Arrival arrival = arrival_of(i);
-        add(i, arrival, power<Avx512Lanes>(arrival.t));
+/// What PhongLoop asks for.
+struct PhongSet {
+    using Lanes = Avx512Lanes;
+    using Vectors = photonmap::Vectors;
+    using Sums = photonmap::Sums;
+    using Mask = __mmask16;
+    [[gnu::always_inline]] static Vectors directions(const DirectionTables& tables,
+                                                     const uint16_t* code) {
+        return photonmap::directions(tables, code);
     }
-    void add_thirty_two(size_t i) {
-        const Arrival first = arrival_of(i), second = arrival_of(i + 16);
-        const auto both = power<TwoOf<Avx512Lanes>>({first.t, second.t});
-        add(i, first, both.first);
-        add(i + 16, second, both.second);
+    static Mask facing(const ShadedPhotons& photons, size_t i, Floats v_in) {
+        return _mm512_mask_cmp_ps_mask(counted(photons, i), v_in, all(0), _CMP_GT_OQ);
     }
-    void add_to(double* rgb) const { sums_.add_to(rgb); }
-
-private:
-    struct Arrival {
-        Floats t;  ///< 1 - cosine of the angle to the mirrored direction
-        __mmask16 lanes;
-    };
-
-    Arrival arrival_of(size_t i) const {
-        const Vectors wi = directions(tables_, photons_.direction + i);
-        const Vectors apart{_mm512_sub_ps(mirrored_.x, wi.x), _mm512_sub_ps(mirrored_.y, wi.y),
-                            _mm512_sub_ps(mirrored_.z, wi.z)};
-        return {
-            product(all(0.5F), dot(apart, apart)),
-            _mm512_mask_cmp_ps_mask(counted(photons_, i), dot(normal_, wi), all(0), _CMP_GT_OQ)};
-    }
-    template <typename Lanes>
-    typename Lanes::Floats power(typename Lanes::Floats t) const {
-        if (Lanes::less(t, Lanes::all(1)) == 0) return Lanes::all(0);
-        return cosine_power<Lanes>(t, lobe_.exponent);
-    }
-    void add(size_t i, const Arrival& arrival, Floats power) {
-        sums_.add(photons_, i, arrival.lanes,
-                  Vectors{sum(diffuse_.x, product(specular_.x, power)),
-                          sum(diffuse_.y, product(specular_.y, power)),
-                          sum(diffuse_.z, product(specular_.z, power))});
-    }
-
-    const DirectionTables& tables_;
-    const Lobe& lobe_;
-    const ShadedPhotons& photons_;
-    const Vectors normal_ = all_of(lobe_.normal), mirrored_ = all_of(lobe_.mirrored);
-    const Vectors diffuse_ = all_of(lobe_.diffuse), specular_ = all_of(lobe_.specular);
-    Sums sums_;
 };
-
-void add_phong(const DirectionTables& tables, const Lobe& lobe, const ShadedPhotons& photons,
-               double* rgb) {
-    PhongSums sums(tables, lobe, photons);
-    size_t i = 0;
-    for (; i + 16 < photons.count; i += 32) sums.add_thirty_two(i);
-    if (i < photons.count) sums.add_sixteen(i);
-    sums.add_to(rgb);
-}
 
 }  // namespace
 
 const ShadingKernels avx512_shading{add_arriving,
                                     add_facing,
                                     add_schlick,
-                                    add_phong,
+                                    PhongLoop<PhongSet>::add,
                                     weigh_photons<Avx512Lanes>,
                                     SquareLoop<Avx512Lanes>::weigh};
 
