@@ -16,6 +16,7 @@ class Intersector {
 public:
     /// Keeps a reference to the shapes, which must not move.
     explicit Intersector(const std::vector<Shape>& shapes);
+    explicit Intersector(std::vector<Shape>&&) = delete;  // it refers to them
     ~Intersector();
     Intersector(const Intersector&) = delete;
     Intersector& operator=(const Intersector&) = delete;
