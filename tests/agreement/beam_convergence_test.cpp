@@ -24,7 +24,7 @@ constexpr double floor_depth = 3;
 constexpr double floor_half = 3.2;
 constexpr double ior = 1.333;
 const Vec3d light(0.4, 0.3, 2.5);
-constexpr double intensity = 10;
+constexpr double folded_lamp = 10;
 
 SineHeightfield water() {
     SineHeightfield field;
@@ -38,7 +38,7 @@ SceneDesc pool(int resolution) {
         support::mesh("water", tessellate_heightfield(water(), resolution), Transform::Identity(),
                       support::glass(static_cast<float>(ior))),
         support::horizontal("floor", -floor_depth, floor_half, true, support::diffuse(0.5F))};
-    desc.lights = {support::point_light(light, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(light, static_cast<float>(folded_lamp))};
     return desc;
 }
 
@@ -71,7 +71,7 @@ BentRay bend(const Vec2d& xy, double height, const Vec2d& slope) {
     const double inner = support::refracted_cosine(cosine, ior);
     const Vec3d down = (cosine * normal - w) / ior - inner * normal;
     const double way = (p.z() + floor_depth) / -down.z();
-    return {xy + way * down.head<2>(), intensity * cosine * area / (distance * distance) *
+    return {xy + way * down.head<2>(), folded_lamp * cosine * area / (distance * distance) *
                                            (1 - support::fresnel(cosine, ior))};
 }
 

@@ -53,31 +53,30 @@ void expect_cell(const Scene& scene, const CausticEstimator& method, const Vec3d
 
 // The mirror |x| <= 1, 0 <= z <= 2 of the plane y = 1 over the floor z = 0: light comes from the
 // image S' of the light, E = I n.w / |S' - p|^2 where the segment crosses the mirror.
-const Vec3d light_position(0.5, 0.25, 1);
-constexpr double intensity = 3;
+const Vec3d lamp_position(0.5, 0.25, 1);
+constexpr double lamp_intensity = 3;
 
 double mirrored(const Vec3d& p, const Vec3d& normal) {
-    const Vec3d to_image =
-        Vec3d(light_position.x(), 2 - light_position.y(), light_position.z()) - p;
+    const Vec3d to_image = Vec3d(lamp_position.x(), 2 - lamp_position.y(), lamp_position.z()) - p;
     const double t = (1 - p.y()) / to_image.y();
     const Vec3d crossing = p + t * to_image;
     if (t <= 0 || t >= 1 || std::abs(crossing.x()) > 1 || crossing.z() < 0 || crossing.z() > 2)
         return 0;
-    return intensity * to_image.dot(normal) / std::pow(to_image.norm(), 3);
+    return lamp_intensity * to_image.dot(normal) / std::pow(to_image.norm(), 3);
 }
 
-Scene mirror_scene(const Bsdf& bsdf, bool mesh) {
+Scene beam_mirror_scene(const Bsdf& bsdf, bool mesh) {
     SceneDesc desc;
     Shape mirror = support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, bsdf);
     if (mesh) mirror = support::mesh("mirror", tessellate_rectangle(128), mirror.to_world, bsdf);
     desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)), mirror,
                    support::sphere("ball", {0.2, -0.4, 0.5}, 0.3, support::diffuse(0.5F))};
-    desc.lights = {support::point_light(light_position, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(lamp_position, static_cast<float>(lamp_intensity))};
     return Scene(std::move(desc));
 }
 
 bool in_the_balls_shadow(const Vec3d& p) {
-    const Vec3d image(light_position.x(), 2 - light_position.y(), light_position.z());
+    const Vec3d image(lamp_position.x(), 2 - lamp_position.y(), lamp_position.z());
     const Vec3d w = (image - p).normalized();
     const Vec3d to_ball = Vec3d(0.2, -0.4, 0.5) - p;
     const double along = to_ball.dot(w);
@@ -86,7 +85,7 @@ bool in_the_balls_shadow(const Vec3d& p) {
 
 TEST(BeamFlatMirror, IsTheMethodOfImages) {
     for (const bool mesh : {false, true}) {
-        const Scene scene = mirror_scene(support::mirror(), mesh);
+        const Scene scene = beam_mirror_scene(support::mirror(), mesh);
         for (const beamtree::BeamTreeParams& params : all_params()) {
             const auto method = build(scene, params, RunOptions{});
             for (int i = 0; i < 24; ++i) {
@@ -103,8 +102,8 @@ TEST(BeamFlatMirror, IsTheMethodOfImages) {
 
 // A receiver that is not polygonised: the ball, whose normal is another at every point.
 TEST(BeamFlatMirror, LightsACurvedReceiver) {
-    const Scene scene = mirror_scene(support::mirror(), false);
-    const Vec3d image(light_position.x(), 2 - light_position.y(), light_position.z());
+    const Scene scene = beam_mirror_scene(support::mirror(), false);
+    const Vec3d image(lamp_position.x(), 2 - lamp_position.y(), lamp_position.z());
     for (const beamtree::BeamTreeParams& params : all_params()) {
         const auto method = build(scene, params, RunOptions{});
         int lit = 0;
@@ -131,7 +130,7 @@ TEST(BeamFlatMirror, LightsACurvedReceiver) {
 }
 
 TEST(BeamFlatMirror, AGlassSheetReflectsByFresnel) {
-    const Scene scene = mirror_scene(support::glass(1.5F), false);
+    const Scene scene = beam_mirror_scene(support::glass(1.5F), false);
     beamtree::BeamTreeParams params;
     params.mesh_resolution = 128;
     const auto method = build(scene, params, RunOptions{});
@@ -151,7 +150,7 @@ TEST(BeamFlatMirror, AnAreaLightIsTheSumOfItsSamples) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)),
                    support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, support::mirror()),
-                   support::rectangle("light", light_position, {0, 0, 0.15}, {0.15, 0, 0},
+                   support::rectangle("light", lamp_position, {0, 0, 0.15}, {0.15, 0, 0},
                                       support::diffuse(0))};
     desc.shapes[2].radiance = Spectrum(Spectrum::Constant(20));
     const Scene scene(desc);
@@ -178,25 +177,27 @@ TEST(BeamFlatMirror, AnAreaLightIsTheSumOfItsSamples) {
 }
 
 // A point light at height H above still water over a floor at depth D: see flat_pool_test.
-constexpr double height = 2;
-constexpr double depth = 1;
-constexpr double ior = 1.333;
+constexpr double lamp_height = 2;
+constexpr double water_depth = 1;
+constexpr double water_index = 1.333;
 
-double floor_irradiance(double r, double absorption) {
+double absorbed_floor_irradiance(double r, double absorption) {
     double low = 0;
     double high = pi_d / 2 - 1e-9;
     const auto landing = [](double a) {
-        return height * std::tan(a) + depth * std::tan(std::asin(std::sin(a) / ior));
+        return lamp_height * std::tan(a) +
+               water_depth * std::tan(std::asin(std::sin(a) / water_index));
     };
     for (int i = 0; i < 60; ++i) {
         const double middle = (low + high) / 2;
         (landing(middle) < r ? low : high) = middle;
     }
     const double cos_a = std::cos(low);
-    const double cos_b = support::refracted_cosine(cos_a, ior);
-    const double slope = height / (cos_a * cos_a) + depth * cos_a / (ior * std::pow(cos_b, 3));
-    return 10 * (1 - support::fresnel(cos_a, ior)) * std::sin(low) / (r * slope) *
-           std::exp(-absorption * depth / cos_b);
+    const double cos_b = support::refracted_cosine(cos_a, water_index);
+    const double slope =
+        lamp_height / (cos_a * cos_a) + water_depth * cos_a / (water_index * std::pow(cos_b, 3));
+    return 10 * (1 - support::fresnel(cos_a, water_index)) * std::sin(low) / (r * slope) *
+           std::exp(-absorption * water_depth / cos_b);
 }
 
 TEST(BeamFlatPool, IsTheClosedForm) {
@@ -205,17 +206,19 @@ TEST(BeamFlatPool, IsTheClosedForm) {
         SceneDesc desc;
         Shape water = support::horizontal("water", 0, 6, true, {});
         if (mesh) water = support::mesh("water", tessellate_rectangle(192), water.to_world, {});
-        water.bsdf = support::glass(static_cast<float>(ior), 1, Spectrum::Constant(absorption));
-        desc.shapes = {support::horizontal("floor", -depth, 12, true, support::diffuse(0.5F)),
+        water.bsdf =
+            support::glass(static_cast<float>(water_index), 1, Spectrum::Constant(absorption));
+        desc.shapes = {support::horizontal("floor", -water_depth, 12, true, support::diffuse(0.5F)),
                        water};
-        desc.lights = {support::point_light({0, 0, height}, 10)};
+        desc.lights = {support::point_light({0, 0, lamp_height}, 10)};
         const Scene scene(std::move(desc));
         for (beamtree::BeamTreeParams params : all_params()) {
             params.mesh_resolution = 192;
             const auto method = build(scene, params, RunOptions{});
             for (const double r : {0.0, 0.5, 1.0, 2.0, 3.0})
-                expect_cell(scene, *method, {r * 0.8, r * 0.6, -depth}, [&](const Vec3d& p) {
-                    return floor_irradiance(p.head<2>().norm(), static_cast<double>(absorption));
+                expect_cell(scene, *method, {r * 0.8, r * 0.6, -water_depth}, [&](const Vec3d& p) {
+                    return absorbed_floor_irradiance(p.head<2>().norm(),
+                                                     static_cast<double>(absorption));
                 });
         }
     }
@@ -229,14 +232,14 @@ TEST(BeamFlat, LampOnTheFloor) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
                    support::horizontal("mirror", above, 1.5, false, support::mirror())};
-    desc.lights = {support::point_light(lamp, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(lamp, static_cast<float>(lamp_intensity))};
     const Scene scene(std::move(desc));
     beamtree::BeamTreeParams params;
     params.mesh_resolution = 128;
     const auto method = build(scene, params, RunOptions{});
     for (const double x : {-0.9, -0.2, 0.3, 1.1})
         expect_cell(scene, *method, {x, 0.4 * x, 0}, [&](const Vec3d& p) {
-            return intensity * 2 * above /
+            return lamp_intensity * 2 * above /
                    std::pow((p - lamp).squaredNorm() + 4 * above * above, 1.5);
         });
 }

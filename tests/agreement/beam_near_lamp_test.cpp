@@ -44,7 +44,7 @@ Ratio ratio(const Scene& scene, const CausticEstimator& method, double floor_z,
     return ratio;
 }
 
-Scene pool(double light, bool mesh) {
+Scene lamp_over_water(double light, bool mesh) {
     using namespace support::flat_pool;
     Shape water = support::horizontal("water", 0, 3, true, support::glass(1.333F));
     if (mesh) water = support::mesh("water", tessellate_rectangle(64), water.to_world, water.bsdf);
@@ -59,7 +59,7 @@ TEST(NearLamp, ShinesThroughWaterAsItDoesFromAfar) {
         for (const double light : {0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6})
             for (const beamtree::PolygonKind kind :
                  {beamtree::PolygonKind::triangle, beamtree::PolygonKind::quad}) {
-                const Scene scene = pool(light, mesh);
+                const Scene scene = lamp_over_water(light, mesh);
                 beamtree::BeamTreeParams params;
                 params.polygons = kind;
                 const auto tree = build(scene, params, {});

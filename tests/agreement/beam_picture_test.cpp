@@ -24,7 +24,7 @@ void add_floor_and_walls(SceneDesc& desc, const Bsdf& bsdf) {
     }
 }
 
-SceneDesc pool(int resolution) {
+SceneDesc pool_mesh(int resolution) {
     SineHeightfield field;
     field.waves = {{0.024, {7.1, 2.3}, 0.4}, {0.019, {-4.2, 8.6}, 1.9}};
     SceneDesc desc;
@@ -83,14 +83,16 @@ void expect_equal(const Scene& scene,
     }
 }
 
-TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelInAPool) { expect_equal(Scene(pool(32))); }
+TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelInAPool) {
+    expect_equal(Scene(pool_mesh(32)));
+}
 TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelByQuads) {
-    expect_equal(Scene(pool(24)), beamtree::PolygonKind::quad);
+    expect_equal(Scene(pool_mesh(24)), beamtree::PolygonKind::quad);
 }
 TEST(BeamPicture, TreeAndCausticPolygonsAgreePerPixelInARing) { expect_equal(Scene(ring(16))); }
 
 TEST(BeamPicture, IsTheSameFromAnyNumberOfThreads) {
-    const Scene scene(pool(24));
+    const Scene scene(pool_mesh(24));
     EXPECT_EQ(caustic_layer(scene, beamtree::BeamTreeParams{}, 1),
               caustic_layer(scene, beamtree::BeamTreeParams{}, 3));
     EXPECT_EQ(caustic_layer(scene, beamtree::CausticPolygonsParams{}, 1),
@@ -105,7 +107,7 @@ double sum(const std::vector<float>& values) {
 
 // Fixed planes bend the polygons' rims, and quads even out their halves, to second order only.
 TEST(BeamPicture, FixedPlanesAndQuadsGiveTheSameLight) {
-    const Scene scene(pool(64));
+    const Scene scene(pool_mesh(64));
     const double usual = sum(caustic_layer(scene, beamtree::BeamTreeParams{}));
     beamtree::BeamTreeParams fixed;
     fixed.leaf = beamtree::BeamTreeParams::Leaf::fixed;
@@ -116,7 +118,7 @@ TEST(BeamPicture, FixedPlanesAndQuadsGiveTheSameLight) {
 }
 
 /// Photons with one specular event, counted in 16 x 16 cells of the floor |x|, |y| <= half.
-support::ArrivedFlux photon_cells(const Scene& scene, double half, std::uint64_t paths) {
+support::ArrivedFlux one_event_cells(const Scene& scene, double half, std::uint64_t paths) {
     const AimedEmission emission(scene);
     return support::arrived_flux(
         scene, support::aimed(emission), paths, 256,
@@ -134,9 +136,9 @@ support::ArrivedFlux photon_cells(const Scene& scene, double half, std::uint64_t
 // each cell: z-scores of the cells' flux are unremarkable, those of dark cells too, where any light
 // would have leaked. The limit of a thousandth of the cells' mean flux is left to what beams take as
 // even over a polygon.
-void expect_same_flux(const Scene& scene, std::size_t floor, double half) {
+void expect_same_light(const Scene& scene, std::size_t floor, double half) {
     const support::ArrivedFlux photons =
-        photon_cells(scene, half, static_cast<std::uint64_t>(support::repetitions(2'000'000)));
+        one_event_cells(scene, half, static_cast<std::uint64_t>(support::repetitions(2'000'000)));
     const auto method = [&] {
         beamtree::BeamTreeParams params;
         params.max_bounces = 1;
@@ -178,8 +180,8 @@ void expect_same_flux(const Scene& scene, std::size_t floor, double half) {
     EXPECT_LT(squares / bright, 1 + 4 * std::sqrt(2.0 / bright));
 }
 
-TEST(BeamPhotons, AgreeInAPool) { expect_same_flux(Scene(pool(96)), 1, 1); }
-TEST(BeamPhotons, AgreeInARing) { expect_same_flux(Scene(ring(48)), 1, 0.5); }
+TEST(BeamPhotons, AgreeInAPool) { expect_same_light(Scene(pool_mesh(96)), 1, 1); }
+TEST(BeamPhotons, AgreeInARing) { expect_same_light(Scene(ring(48)), 1, 0.5); }
 TEST(BeamPhotons, AgreeRoundABall) {
     SceneDesc desc;
     desc.shapes = {support::mesh("ball", tessellate_sphere(96),
@@ -187,7 +189,7 @@ TEST(BeamPhotons, AgreeRoundABall) {
                                  support::mirror()),
                    support::horizontal("floor", 0, 4, true, support::diffuse(0.5F))};
     desc.lights = {support::point_light({1.5, 0.4, 1.6}, 5)};
-    expect_same_flux(Scene(desc), 1, 2);
+    expect_same_light(Scene(desc), 1, 2);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr float weight = 0.6F;
 constexpr float reflectance = 0.9F;
 constexpr double q = static_cast<double>(weight) * static_cast<double>(reflectance);
 constexpr double wall = 0.8;
-constexpr double intensity = 10;
+constexpr double blend_lamp = 10;
 
 Bsdf blend(float diffuse = 0.5F) {
     Bsdf bsdf = support::diffuse(diffuse);
@@ -35,14 +35,14 @@ Scene room() {
                    support::horizontal("floor", 0, 4, true, blend()),
                    support::rectangle("wall", {3, 0, 1}, Vec3d(0, -4, 0), Vec3d(0, 0, 1),
                                       support::mirror(static_cast<float>(wall)))};
-    desc.lights = {support::point_light({0, 0, 1}, static_cast<float>(intensity))};
+    desc.lights = {support::point_light({0, 0, 1}, static_cast<float>(blend_lamp))};
     return Scene(std::move(desc));
 }
 
 // Of the light's image by mirrors, on a horizontal plane.
 double from_image(const Vec3d& image, const Vec3d& point) {
     const Vec3d way = image - point;
-    return intensity * std::abs(way.z()) / std::pow(way.norm(), 3);
+    return blend_lamp * std::abs(way.z()) / std::pow(way.norm(), 3);
 }
 
 struct Place {
@@ -140,7 +140,7 @@ TEST(Blend, InASphereItIsAGeometricSeries) {
     for (const int max_bounces : {1, 2, 5, 64}) {
         SceneDesc desc;
         desc.shapes = {support::enclosure(radius, blend())};
-        desc.lights = {support::point_light({0, 0, 0}, static_cast<float>(intensity))};
+        desc.lights = {support::point_light({0, 0, 0}, static_cast<float>(blend_lamp))};
         const Scene scene(std::move(desc));
         const auto method = build(
             scene, LightTraceParams{.paths = 300'000, .max_bounces = max_bounces}, RunOptions{});
@@ -153,8 +153,8 @@ TEST(Blend, InASphereItIsAGeometricSeries) {
         for (const Estimate& found : support::irradiance(*method, points))
             // A disc that cuts a sphere holds a little more of it than its own area.
             EXPECT_NEAR(
-                static_cast<double>(found.value[0]), intensity / 4 * series,
-                4.5 * static_cast<double>(found.standard_error[0]) + 0.01 * intensity / 4 * series)
+                static_cast<double>(found.value[0]), blend_lamp / 4 * series,
+                4.5 * static_cast<double>(found.standard_error[0]) + 0.01 * blend_lamp / 4 * series)
                 << max_bounces;
     }
 }

@@ -13,7 +13,7 @@
 namespace caustics {
 namespace {
 
-constexpr double index = 1.333;
+constexpr double water_index = 1.333;
 constexpr double radius = 0.2;
 
 // Parallel light falls aslant through still water onto a floor and a wall that meet at x = 0: both are
@@ -26,14 +26,14 @@ struct Corner {
 
 Corner corner() {
     const double angle = pi_d / 6;
-    const double in_water = std::asin(std::sin(angle) / index);
+    const double in_water = std::asin(std::sin(angle) / water_index);
     Corner corner;
     corner.desc.shapes = {
-        support::horizontal("water", 2, 4, true, support::glass(static_cast<float>(index))),
+        support::horizontal("water", 2, 4, true, support::glass(static_cast<float>(water_index))),
         support::rectangle("floor", {2, 0, 0}, {2, 0, 0}, {0, 2, 0}, support::diffuse(0.5F)),
         support::rectangle("wall", {0, 0, 1}, {0, 2, 0}, {0, 0, 1}, support::diffuse(0.5F))};
     corner.desc.lights = {support::directional_light({-std::sin(angle), 0, -std::cos(angle)}, 1)};
-    corner.floor = std::cos(angle) * (1 - support::fresnel(std::cos(angle), index));
+    corner.floor = std::cos(angle) * (1 - support::fresnel(std::cos(angle), water_index));
     corner.wall = corner.floor * std::tan(in_water);
     return corner;
 }
@@ -101,7 +101,7 @@ TEST(Corner, PathsToTheFloorDoNotLightTheWall) {
 TEST(Corner, ABallLosesNoPhotons) {
     SceneDesc desc;
     desc.shapes = {
-        support::horizontal("water", 3, 2, true, support::glass(static_cast<float>(index))),
+        support::horizontal("water", 3, 2, true, support::glass(static_cast<float>(water_index))),
         support::sphere("ball", Vec3d::Zero(), 1, support::diffuse(0.5F))};
     desc.lights = {support::directional_light({0, 0, -1}, 1)};
     const Scene scene(desc);
@@ -110,7 +110,7 @@ TEST(Corner, ABallLosesNoPhotons) {
             build(scene, photonmap::PhotonMapParams{.photons = 200'000, .radius = r}, RunOptions{});
         const std::vector<ReceiverPoint> top = {
             support::probe(scene, 1, {0, 0, 1}, Vec3d::UnitZ(), 0)};
-        const double expected = (1 - support::fresnel(1, index)) * (1 - r * r / 4);
+        const double expected = (1 - support::fresnel(1, water_index)) * (1 - r * r / 4);
         const double photons = 200'000 * r * r * (1 - r * r / 4);
         EXPECT_NEAR(static_cast<double>(support::irradiance(*map, top)[0].value[0]), expected,
                     expected * (4 / std::sqrt(photons) + 0.002))

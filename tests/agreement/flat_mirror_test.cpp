@@ -17,7 +17,7 @@ namespace {
 //   E = I rho n.w / |S' - p|^2,  w = (S' - p) / |S' - p|,  S' the mirror image of S,
 // where the segment from p to S' crosses the mirror, and 0 elsewhere.
 const Vec3d light_position(0.5, 0.25, 1);
-constexpr double intensity = 3;
+constexpr double mirror_intensity = 3;
 constexpr double half_light = 0.15;
 constexpr float light_radiance = 20;
 
@@ -32,7 +32,7 @@ bool through_mirror(const Vec3d& p, const Vec3d& image) {
 double from_point(const Vec3d& p) {
     const Vec3d to_image = image_of(light_position) - p;
     if (!through_mirror(p, image_of(light_position))) return 0;
-    return intensity * to_image.z() / std::pow(to_image.norm(), 3);
+    return mirror_intensity * to_image.z() / std::pow(to_image.norm(), 3);
 }
 
 // A square light that faces the mirror: 64 x 64 images of points, cosines on both sides.
@@ -61,7 +61,7 @@ SceneDesc mirror_scene(const Bsdf& mirror_bsdf) {
 
 Scene with_point_light(const Bsdf& mirror_bsdf) {
     SceneDesc desc = mirror_scene(mirror_bsdf);
-    desc.lights = {support::point_light(light_position, static_cast<float>(intensity))};
+    desc.lights = {support::point_light(light_position, static_cast<float>(mirror_intensity))};
     return Scene(std::move(desc));
 }
 

@@ -16,7 +16,8 @@ using namespace support::flat_pool;
 
 constexpr double half_surface = 6;
 
-enum Shapes : std::size_t { floor_shape, water_shape };
+constexpr std::size_t pool_floor = 0;
+constexpr std::size_t pool_water = 1;
 
 Scene pool(Shape water) {
     SceneDesc desc;
@@ -48,7 +49,7 @@ std::vector<ReceiverPoint> ring(const Scene& scene, double r, int count, float r
     std::vector<ReceiverPoint> points;
     for (int i = 0; i < count; ++i) {
         const double angle = 2 * pi_d * (i + 0.618 * r) / count;
-        points.push_back(support::probe(scene, floor_shape,
+        points.push_back(support::probe(scene, pool_floor,
                                         {r * std::cos(angle), r * std::sin(angle), -depth},
                                         Vec3d::UnitZ(), static_cast<std::uint64_t>(i), radius));
     }

@@ -140,7 +140,7 @@ TEST(IlluminationMap, ShowsTheFluxThatArrives) {
 }
 
 /// A glass ball's caustic on a floor, and a camera.
-SceneDesc glass_ball() {
+SceneDesc glass_ball_scene() {
     SceneDesc desc;
     desc.shapes.push_back(support::sphere("ball", {0, 0, 0.6}, 0.5, support::glass(1.5F)));
     desc.shapes.push_back(support::horizontal("floor", 0, 1.5, true, support::diffuse(0.5F)));
@@ -150,7 +150,7 @@ SceneDesc glass_ball() {
 }
 
 TEST(IlluminationMap, ShowsAsMuchFluxAsLightTracingGathers) {
-    SceneDesc desc = glass_ball();
+    SceneDesc desc = glass_ball_scene();
     std::get<Dielectric>(desc.shapes[0].bsdf.model).absorption = Spectrum(0.1F, 1, 3);
     const Scene scene(std::move(desc));
     constexpr std::uint64_t paths = 100'000;
@@ -170,7 +170,7 @@ TEST(IlluminationMap, ShowsAsMuchFluxAsLightTracingGathers) {
     }
 }
 
-double rmse(const Film& film, const Film& reference) {
+double map_rmse(const Film& film, const Film& reference) {
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
@@ -183,23 +183,23 @@ double rmse(const Film& film, const Film& reference) {
 }
 
 TEST(IlluminationMap, ComesCloserToLightTracingAsTexelsShrink) {
-    const Scene scene(glass_ball());
+    const Scene scene(glass_ball_scene());
     RunOptions options;
     options.samples_per_pixel = 16;
     const auto truth = build(scene, LightTraceParams{.paths = 400'000}, options);
     const Film reference = render(scene, *truth, options).film;
     const auto none = build(scene, NoneParams{}, options);
-    double coarser = rmse(render(scene, *none, options).film, reference);
+    double coarser = map_rmse(render(scene, *none, options).film, reference);
     for (const int resolution : {32, 128}) {
         const auto map = map_of(scene, {.emitted = 400'000, .resolution = resolution});
-        const double error = rmse(render(scene, *map, options).film, reference);
+        const double error = map_rmse(render(scene, *map, options).film, reference);
         EXPECT_LT(error, 0.6 * coarser) << resolution;
         coarser = error;
     }
 }
 
 TEST(IlluminationMap, IsTheSameBitForBitOnAnyNumberOfThreads) {
-    const Scene scene(glass_ball());
+    const Scene scene(glass_ball_scene());
     const IlluminationMapParams params{.emitted = 50'000, .resolution = 32};
     std::vector<ReceiverPoint> points;
     for (int i = 0; i < 64 * 64; ++i)

@@ -23,13 +23,13 @@ namespace {
 const Spectrum ink(0.2F, 0.5F, 1.1F);
 
 /// A method of the caustic layer, and the scatter of its answers beyond which a mean over 60 points is wrong.
-struct Way {
+struct LightWay {
     std::string name;
     std::function<std::unique_ptr<const CausticEstimator>(const Scene&)> make;
     double tolerance;
 };
 
-std::vector<Way> light_ways() {
+std::vector<LightWay> light_ways() {
     const auto map = [](auto change) {
         return [change](const Scene& scene) {
             photonmap::PhotonMapParams params;
@@ -65,7 +65,7 @@ std::vector<Way> light_ways() {
 using Truth = std::function<Spectrum(const Vec3d&)>;
 
 // The mean of estimate / truth, each channel.
-void expect_near(const Way& way, const Scene& scene, const std::vector<ReceiverPoint>& points,
+void expect_near(const LightWay& way, const Scene& scene, const std::vector<ReceiverPoint>& points,
                  const Truth& truth) {
     const std::vector<Estimate> found = support::irradiance(*way.make(scene), points);
     for (Eigen::Index channel = 0; channel < 3; ++channel) {
@@ -113,7 +113,7 @@ TEST(Medium, GoesOnBehindAMirrorUnderWater) {
     const auto points = points_on(scene, 2, {1.5, 0, -1}, {0, -0.4, 0}, {0, 0, 0.4});
     const Spectrum expected =
         (-2.5F * ink).exp() * 3 * static_cast<float>(1 - support::fresnel(1, 1.33));
-    for (const Way& way : light_ways())
+    for (const LightWay& way : light_ways())
         expect_near(way, scene, points, [&](const Vec3d&) { return expected; });
 }
 
@@ -183,7 +183,7 @@ Spectrum from_square(const Vec3d& p, const Vec3d& half_u, const Vec3d& half_v, b
 
 TEST(Medium, OfALampAbsorbsOnTheWayToAMirrorAndOn) {
     const Scene scene = point_in_ink();
-    for (const Way& way : light_ways())
+    for (const LightWay& way : light_ways())
         expect_near(way, scene, floor_points(scene),
                     [](const Vec3d& p) { return from_point(p, image_of(lamp)); });
 }
@@ -192,14 +192,14 @@ TEST(Medium, OfALampWithAreaToo) {
     const Vec3d u(0, 0, 0.2);
     const Vec3d v(0.3, 0, 0);
     const Scene scene = square_in_ink(u, v);
-    std::vector<Way> ways;
-    for (const Way& way : light_ways())
+    std::vector<LightWay> ways;
+    for (const LightWay& way : light_ways())
         if (way.name == "photonmap" || way.name == "lighttrace" || way.name == "beamtree")
             ways.push_back(way);
     ways.push_back({"pathtrace",
                     [](const Scene& s) { return build(s, PathTraceParams{.spp = 1'500}, {}); },
                     0.03});
-    for (const Way& way : ways)
+    for (const LightWay& way : ways)
         expect_near(way, scene, floor_points(scene),
                     [&](const Vec3d& p) { return from_square(p, u, v, true); });
 }
@@ -239,7 +239,7 @@ SceneDesc ball_of_ink(const Bsdf& wall) {
     desc.lights = {support::point_light({0, 0, 0}, 1)};
     return desc;
 }
-std::vector<ReceiverPoint> wall_points(const Scene& scene) {
+std::vector<ReceiverPoint> ink_wall_points(const Scene& scene) {
     std::vector<ReceiverPoint> points;
     constexpr int count = 96;
     for (int i = 0; i < count; ++i) {
@@ -262,7 +262,7 @@ double even_share(double sigma) {
 TEST(Medium, AbsorbsLightBetweenSurfaces) {
     constexpr float rho = 0.6F;
     const Scene scene(ball_of_ink(support::diffuse(rho)));
-    const auto points = wall_points(scene);
+    const auto points = ink_wall_points(scene);
     IndirectLightTraceParams traced;
     traced.paths = 400'000;
     photonmap::GlobalMapParams map{.photons = 300'000, .nearest = 200, .gather = 0};
@@ -289,14 +289,14 @@ TEST(Medium, AbsorbsBetweenEventsOfAMirror) {
     Bsdf wall = support::diffuse(0.5F);
     wall.mirror = MirrorPart{static_cast<float>(weight), Spectrum(Spectrum::Ones())};
     const Scene scene(ball_of_ink(wall));
-    std::vector<Way> ways = light_ways();
+    std::vector<LightWay> ways = light_ways();
     for (const std::string name : {"photonmap", "photonmap split", "lighttrace"}) {
-        const auto way = std::ranges::find(ways, name, &Way::name);
+        const auto way = std::ranges::find(ways, name, &LightWay::name);
         const Spectrum q = static_cast<float>(weight) * (-2 * ink).exp();
         const Spectrum expected = (-ink).exp() * q / (1 - q);
-        Way even = *way;
+        LightWay even = *way;
         even.tolerance = 0.04;
-        expect_near(even, scene, wall_points(scene), [&](const Vec3d&) { return expected; });
+        expect_near(even, scene, ink_wall_points(scene), [&](const Vec3d&) { return expected; });
     }
 }
 

@@ -13,7 +13,7 @@ namespace caustics {
 namespace {
 
 constexpr double light_z = 3;
-constexpr double intensity = 5;
+constexpr double light_intensity = 5;
 constexpr double index = 1.5;
 constexpr int events = 4;
 constexpr double ring = 0.04;
@@ -39,7 +39,7 @@ public:
         for (int i = 0; i < rays; ++i) {
             const double u = step * (i + 0.5);
             follow({0, light_z}, {std::sin(u), -std::cos(u)},
-                   2 * pi_d * intensity * std::sin(u) * step, 0);
+                   2 * pi_d * light_intensity * std::sin(u) * step, 0);
         }
     }
 
@@ -103,7 +103,7 @@ Scene scene(std::vector<Shape> glass) {
     desc.shapes = std::move(glass);
     desc.shapes.insert(desc.shapes.begin(),
                        support::horizontal("floor", 0, 2, true, support::diffuse(0.5F)));
-    desc.lights = {support::point_light({0, 0, light_z}, static_cast<float>(intensity))};
+    desc.lights = {support::point_light({0, 0, light_z}, static_cast<float>(light_intensity))};
     return Scene(std::move(desc));
 }
 

@@ -22,14 +22,14 @@ namespace {
 // around. The ball takes a share (R / d)^2 of the sky from the receiver, and gives it back: as a mirror
 // that reflects all, as clear glass through and through.
 constexpr double radiance = 3;
-constexpr double radius = 0.7;
-constexpr double height = 2;
-constexpr double share = radius * radius / (height * height);
+constexpr double ball_radius = 0.7;
+constexpr double ball_height = 2;
+constexpr double share = ball_radius * ball_radius / (ball_height * ball_height);
 
 Scene under_the_sky(const Bsdf& ball) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("receiver", 0, 0.05, true, support::diffuse(0.5F)),
-                   support::sphere("ball", {0, 0, height}, radius, ball)};
+                   support::sphere("ball", {0, 0, ball_height}, ball_radius, ball)};
     desc.lights = {ConstantLight{Spectrum(Spectrum::Constant(static_cast<float>(radiance)))}};
     return Scene(std::move(desc));
 }
@@ -92,7 +92,7 @@ TEST(Sky, MirrorsAndGlassGiveBackAsMuchAsTheyHide) {
 TEST(Sky, AimsAllLightThatMeetsTheCasters) {
     const Scene scene = under_the_sky(support::mirror());
     EXPECT_NEAR(static_cast<double>(AimedEmission(scene).total_power()[0]) /
-                    (radiance * 4 * pi_d * pi_d * radius * radius),
+                    (radiance * 4 * pi_d * pi_d * ball_radius * ball_radius),
                 1, 1e-4);
     // Two casters that overlap are not lit twice.
     SceneDesc desc;

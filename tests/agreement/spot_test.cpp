@@ -13,21 +13,22 @@ namespace {
 
 // A spot light half a metre below a mirror at 1 m shines straight up, and its image at 1.5 m down on
 // the floor: E = I f(angle) cos^3(angle) / h^2.
-constexpr double height = 1.5;
-constexpr double intensity = 5;
+constexpr double spot_height = 1.5;
+constexpr double spot_intensity = 5;
 constexpr double beam_width = 15;
 constexpr double cutoff = 30;
 constexpr double distances[] = {0.05, 0.2, 0.38, 0.45, 0.55, 0.65, 0.75, 0.9, 1.2};
 
 double truth(double r) {
-    const double angle = std::atan(r / height) * 180 / pi_d;
+    const double angle = std::atan(r / spot_height) * 180 / pi_d;
     const double falloff = std::clamp((cutoff - angle) / (cutoff - beam_width), 0.0, 1.0);
-    return intensity * falloff * std::pow(std::cos(angle * pi_d / 180), 3) / (height * height);
+    return spot_intensity * falloff * std::pow(std::cos(angle * pi_d / 180), 3) /
+           (spot_height * spot_height);
 }
 
 SpotLight spot(const Vec3d& position, const Vec3& axis) {
     return {position.cast<float>(),
-            Spectrum(Spectrum::Constant(static_cast<float>(intensity))),
+            Spectrum(Spectrum::Constant(static_cast<float>(spot_intensity))),
             {axis, static_cast<float>(beam_width * pi_d / 180),
              static_cast<float>(cutoff * pi_d / 180)}};
 }
@@ -108,7 +109,7 @@ TEST(Spot, TracedLightFollowsTheFalloff) {
 TEST(Spot, LightsAFloorDirectly) {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
-    desc.lights = {spot({0, 0, height}, -Vec3::UnitZ())};
+    desc.lights = {spot({0, 0, spot_height}, -Vec3::UnitZ())};
     const Scene floor(std::move(desc));
     Rng rng(1, Stage::test, 0);
     for (const double r : distances) {
