@@ -3,6 +3,7 @@
 # --quick: two scenes, at most 15 minutes on two quiet cores. CAUSTICS_BENCH=PROGRAM takes a causticbench that is there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+case " $* " in *" -h "* | *" --help "*) exec sed -n 's/^# //p' tools/duel.sh ;; esac
 
 program=${CAUSTICS_BENCH:-build/release/bin/causticbench}
 if [ -z "${CAUSTICS_BENCH:-}" ]; then

@@ -3,6 +3,7 @@
 # Papers: jensen1996, chuang1995, chen2011; without one, all. CAUSTICS_BENCH=PROGRAM takes a causticbench that is there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+case " $* " in *" -h "* | *" --help "*) exec sed -n 's/^# //p' tools/reproduce.sh ;; esac
 
 program=${CAUSTICS_BENCH:-build/release/bin/causticbench}
 if [ -z "${CAUSTICS_BENCH:-}" ]; then

@@ -41,6 +41,14 @@ class AllScripts(unittest.TestCase):
             self.assertTrue(os.access(script, os.X_OK), script)
 
 
+    def test_tell_of_themselves_without_a_build(self):
+        for name in ("reproduce", "duel"):
+            for option in ("-h", "--help"):
+                said = subprocess.run(["bash", f"tools/{name}.sh", option], cwd=ROOT, text=True, capture_output=True)
+                self.assertEqual((said.returncode, said.stderr), (0, ""), name)
+                self.assertTrue(said.stdout.startswith(f"{name}.sh ["), said.stdout)
+
+
 class SetUp(Sandbox):
     """tools/setup.sh where apt-get fails in the lines of `failing`, each tried in turn."""
 
