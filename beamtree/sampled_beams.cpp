@@ -1,6 +1,6 @@
 #include "beamtree/sampled_beams.h"
 
-#include "beamtree/tracing/scene_sample.h"
+#include "beamtree/scene_sample.h"
 #include "core/method/unlit_estimator.h"
 
 namespace caustics::beamtree {

@@ -26,13 +26,6 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 // Of the first surface's height, the ray's place and its direction, by (u, v).
 using Matrix57 = Eigen::Matrix<double, 5, 7>;
 
-/// The first derivatives of a ray's values along two coordinates.
-struct Derivatives {
-    Vec2d height;
-    std::array<Vec3d, 2> place;
-    std::array<Vec3d, 2> direction;
-};
-
 class SpreadFit {
 public:
     SpreadFit(const BeamSet& set, std::span<const RayOrigin> origins,
@@ -53,11 +46,13 @@ public:
         around.clear();
         add_round(origin.vertex, ray, around);
         if (around.size() > fewest_neighbours)
-            if (const auto found = fit(ray, frame, around)) return spread(ray, frame, *found);
+            if (const auto found = fit(ray, frame, around))
+                return spread_of(set_.rays[ray], origin, set_.light, *found);
         const std::size_t inner = around.size();
         for (std::size_t i = 0; i < inner; ++i) add_round(origins_[around[i]].vertex, ray, around);
         if (around.size() >= fewest_neighbours)
-            if (const auto found = fit(ray, frame, around)) return spread(ray, frame, *found);
+            if (const auto found = fit(ray, frame, around))
+                return spread_of(set_.rays[ray], origin, set_.light, *found);
         return {};
     }
 
@@ -92,8 +87,8 @@ private:
     }
 
     // By least squares through the ray's own values.
-    std::optional<Derivatives> fit(std::uint32_t ray, const Frame& frame,
-                                   std::span<const std::uint32_t> around) const {
+    std::optional<RayDerivatives> fit(std::uint32_t ray, const Frame& frame,
+                                      std::span<const std::uint32_t> around) const {
         const Vec3& centre = origins_[ray].position;
         float reach = 0;
         for (const std::uint32_t other : around)
@@ -121,34 +116,12 @@ private:
         const auto pivots = solver.vectorD();
         if (!(pivots.minCoeff() > least_pivot * pivots.maxCoeff())) return {};
         const Matrix57 found = solver.solve(right) / static_cast<double>(reach);
-        return Derivatives{
-            {found(0, 0), found(1, 0)},
+        const Vec3d s = frame.s.cast<double>(), t = frame.t.cast<double>(),
+                    n = frame.n.cast<double>();
+        return RayDerivatives{
+            {s + found(0, 0) * n, t + found(1, 0) * n},
             {found.block<1, 3>(0, 1).transpose(), found.block<1, 3>(1, 1).transpose()},
             {found.block<1, 3>(0, 4).transpose(), found.block<1, 3>(1, 4).transpose()}};
-    }
-
-    // Areas for a square of (u, v): across the ray at any distance, and across the light at the first
-    // surface, times the strength that is left.
-    RaySpread spread(std::uint32_t ray, const Frame& frame, const Derivatives& by) const {
-        const RayOrigin& origin = origins_[ray];
-        const Vec3d normal = frame.n.cast<double>() - by.height[0] * frame.s.cast<double>() -
-                             by.height[1] * frame.t.cast<double>();
-        const Vec3d w = to_light(set_.light, origin.position).cast<double>();
-        double flux = std::abs(normal.dot(w)) * static_cast<double>(origin.weight.mean());
-        if (set_.light.kind != LightSample::Kind::directional)
-            flux /= (set_.light.position - origin.position).cast<double>().squaredNorm();
-        const Vec3d d = set_.rays[ray].direction.cast<double>();
-        const double constant = d.dot(by.place[0].cross(by.place[1]));
-        const double linear =
-            d.dot(by.place[0].cross(by.direction[1]) + by.direction[0].cross(by.place[1]));
-        const double quadratic = d.dot(by.direction[0].cross(by.direction[1]));
-        const double scale = (constant < 0 ? -1 : 1) / flux;
-        const RaySpread found{static_cast<float>(constant * scale),
-                              static_cast<float>(linear * scale),
-                              static_cast<float>(quadratic * scale)};
-        const bool finite = std::isfinite(found.constant) && std::isfinite(found.linear) &&
-                            std::isfinite(found.quadratic);
-        return finite ? found : RaySpread{};
     }
 
     const BeamSet& set_;
@@ -199,6 +172,28 @@ std::vector<std::uint8_t> rays_of(const BeamSet& set, const std::vector<bool>& k
 }
 
 }  // namespace
+
+// Areas for a square of the two ways: across the ray at any distance, and across the light at the first surface,
+// times the strength that is left.
+RaySpread spread_of(const VertexRay& ray, const RayOrigin& origin, const LightSample& light,
+                    const RayDerivatives& by) {
+    const Vec3d w = to_light(light, origin.position).cast<double>();
+    double flux = std::abs(by.surface[0].cross(by.surface[1]).dot(w)) *
+                  static_cast<double>(origin.weight.mean());
+    if (light.kind != LightSample::Kind::directional)
+        flux /= (light.position - origin.position).cast<double>().squaredNorm();
+    const Vec3d d = ray.direction.cast<double>();
+    const double constant = d.dot(by.place[0].cross(by.place[1]));
+    const double linear =
+        d.dot(by.place[0].cross(by.direction[1]) + by.direction[0].cross(by.place[1]));
+    const double quadratic = d.dot(by.direction[0].cross(by.direction[1]));
+    const double scale = (constant < 0 ? -1 : 1) / flux;
+    const RaySpread found{static_cast<float>(constant * scale), static_cast<float>(linear * scale),
+                          static_cast<float>(quadratic * scale)};
+    const bool finite = std::isfinite(found.constant) && std::isfinite(found.linear) &&
+                        std::isfinite(found.quadratic);
+    return finite ? found : RaySpread{};
+}
 
 void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
             const std::vector<bool>& kept, int threads, const ProgressPart& part) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,17 @@
 #include "beamtree/beams/trace_progress.h"
 
 namespace caustics::beamtree {
+
+/// How a ray changes as its start on the first surface moves along two ways.
+struct RayDerivatives {
+    std::array<Vec3d, 2> surface;    ///< the start itself
+    std::array<Vec3d, 2> place;      ///< where the light was bent last
+    std::array<Vec3d, 2> direction;  ///< in which it goes on
+};
+
+/// Of a ray that has come from `origin`; not known where the derivatives tell nothing.
+RaySpread spread_of(const VertexRay& ray, const RayOrigin& origin, const LightSample& light,
+                    const RayDerivatives& by);
 
 /// Gives the set its spreads and partners (`intensity: refined`). A vertex ray's spread comes from
 /// the derivatives of first surface, place and direction, of a quadratic surface fitted to the rays

@@ -5,6 +5,7 @@
 #include "beamtree/beams/ray_spread.h"
 #include "beamtree/tracing/kept_beams.h"
 #include "beamtree/tracing/next_bounce.h"
+#include "beamtree/tracing/path_spread.h"
 #include "beamtree/tracing/rest_photons.h"
 #include "core/base/parallel.h"
 
@@ -14,7 +15,7 @@ namespace {
 // What a set must have of the light of all first events, over what a beam must have of their mean.
 constexpr double set_over_beam = 0.1;
 // Of the work on a level and all after it, that on the level itself.
-constexpr double own = 0.3;
+constexpr double work_on_level = 0.3;
 // What threads take at a time.
 constexpr std::size_t beams_together = 1024;
 
@@ -50,10 +51,11 @@ public:
         std::vector<bool> kept(set.beams.size(), true);
         const bool goes_on = level.bounces() < static_cast<std::size_t>(settings_.max_bounces);
         if (goes_on) {
-            NextSets next = next_sets(scene_, boxes_, surface_, level,
-                                      {mean_flux, settings_.prune * mean_flux,
-                                       settings_.least_divided * mean_flux, budget_},
-                                      rest_, traced_.balance, settings_.threads, part.of(own));
+            NextSets next =
+                next_sets(scene_, boxes_, surface_, level,
+                          {mean_flux, settings_.prune * mean_flux,
+                           settings_.least_divided * mean_flux, budget_},
+                          rest_, traced_.balance, settings_.threads, part.of(work_on_level));
             append(next.rest, traced_.rest);
             const double beams = count_of(next.sets);
             for (Level& one : next.sets) {
@@ -64,8 +66,8 @@ public:
                     complete(one);
                 } else {
                     follow(one, first_flux, mean_flux,
-                           part.of((1 - own) * static_cast<double>(one.traced.set.beams.size()) /
-                                   beams));
+                           part.of((1 - work_on_level) *
+                                   static_cast<double>(one.traced.set.beams.size()) / beams));
                 }
             }
             kept = std::move(next.stays);
@@ -77,9 +79,11 @@ public:
         }
         add_drifts(level, kept);
         traced_.unreceived += leave_out_unreceived(kept, set, boxes_, settings_);
-        if (extras_.neighbours != nullptr)
+        if (extras_.neighbours != nullptr) {
             refine(set, level.traced.origins, *extras_.neighbours, kept, settings_.threads,
                    part.of(goes_on ? 0 : 1));
+            spread_along_paths(scene_, surface_, level, kept, settings_.threads);
+        }
         keep_only(set, kept);
         traced_.sets[place] = std::move(set);
     }

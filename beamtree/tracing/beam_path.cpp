@@ -43,8 +43,14 @@ PathPoint Path::middle(const Piece& piece) const {
     return inside({&piece[0].origin, &piece[1].origin, &piece[2].origin}, Vec3::Constant(1.0F / 3));
 }
 
-// Of what the triangle itself says nothing goes into the way: its neighbour goes it too, from their common edge.
 PathPoint Path::go(const Vec3& position, const Vec3& normal, float offset) const {
+    PathPoint point = go_steps(position, normal, offset);
+    if (point.alive) point.next = land(scene_, point.ray, point.from, surface_.light().bin.nm);
+    return point;
+}
+
+// Of what the triangle itself says nothing goes into the way: its neighbour goes it too, from their common edge.
+PathPoint Path::go_steps(const Vec3& position, const Vec3& normal, float offset) const {
     PathPoint point;
     const MeshPoint first = surface_.bender().at(position, normal);
     point.origin = {first.position, first.normal, first.bent.weight[first_event_]};
@@ -65,7 +71,6 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal, float offset) const
         point.from = arrival.after(step.event);
     }
     point.alive = true;
-    point.next = land(scene_, point.ray, point.from, surface_.light().bin.nm);
     return point;
 }
 

@@ -55,6 +55,10 @@ public:
     /// The point with these barycentric weights.
     PathPoint inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const;
     PathPoint middle(const Piece& piece) const;
+    /// Light of a place on the first surface as it leaves the last step; where it arrives (`next`) is not asked.
+    PathPoint up_to_last(const RayOrigin& origin) const {
+        return go_steps(origin.position, origin.normal, origin.offset);
+    }
     /// The place that a ray has come from.
     PathPoint from(const RayOrigin& origin) const {
         return go(origin.position, origin.normal, origin.offset);
@@ -62,6 +66,7 @@ public:
 
 private:
     PathPoint go(const Vec3& position, const Vec3& normal, float offset) const;
+    PathPoint go_steps(const Vec3& position, const Vec3& normal, float offset) const;
 
     const Scene& scene_;
     const LitCaster& surface_;

@@ -110,17 +110,21 @@ std::optional<std::string> flat_pieces(const Scene& scene, const Method& method)
     return {};
 }
 
-/// Beams on a mesh of glass are bent as its triangles' corners are.
-std::optional<std::string> coarse_glass(const Scene& scene) {
+/// Beams on a mesh of glass are bent as its triangles' corners are; between those of a flat facet `refined` knows how.
+std::optional<std::string> coarse_glass(const Scene& scene, const Method& method) {
     constexpr double degree = pi_d / 180;
-    const auto wide = wide_triangles(scene, 5 * degree);
+    const bool by_area = describe(method).value("intensity", "area") == "area";
+    const auto wide = wide_triangles(
+        scene, by_area ? Triangles::all : Triangles::of_changing_normals, 5 * degree);
     if (!wide) return {};
     return fmt::format(
         "a light sees {} in triangles {:.0f} degrees wide: behind its second surface beams are "
-        "bent "
-        "as the corners of a polygon are, so that their light is off by several per cent at points "
-        "(triangles half as wide halve that; photonmap sees every ray's own way)",
-        wide->shape, wide->angle / degree);
+        "bent as the corners of a polygon are, so that their light is off by several per cent at "
+        "points (triangles half as wide halve that{}; photonmap sees every ray's own way)",
+        wide->shape, wide->angle / degree,
+        by_area && has_parameter(method, "intensity")
+            ? "; intensity=refined knows what lies between those of a flat one"
+            : "");
 }
 
 std::optional<std::string> thin_walls(const BuildReport& report) {
@@ -397,7 +401,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
         all.push_back(*far);
     if (!captured) return all;
     if (const auto walls = thin_walls(report)) all.push_back(*walls);
-    if (const auto coarse = coarse_glass(scene)) all.push_back(*coarse);
+    if (const auto coarse = coarse_glass(scene, method)) all.push_back(*coarse);
     if (const auto pieces = flat_pieces(scene, method)) all.push_back(*pieces);
     if (const auto steps = steps_of_colour(scene, method)) all.push_back(*steps);
     if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));

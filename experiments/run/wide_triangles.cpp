@@ -34,11 +34,20 @@ Seen seen(const Vec3& from, const std::array<Vec3, 3>& corners) {
     return {std::acos(std::clamp(cosine, -1.0, 1.0)), std::max(0.0, 2 * std::atan2(volume, below))};
 }
 
-double mean_angle(const TriangleMesh& mesh, const Vec3& from) {
+bool is_flat(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& corners) {
+    constexpr float same = 1e-3F;
+    if (mesh.normals.empty()) return true;
+    const auto& [a, b, c] = corners;
+    return (mesh.normals[a] - mesh.normals[b]).norm() < same &&
+           (mesh.normals[a] - mesh.normals[c]).norm() < same;
+}
+
+double mean_angle(const TriangleMesh& mesh, Triangles which, const Vec3& from) {
     constexpr std::size_t most = 100'000;
     const std::size_t stride = 1 + mesh.triangles.size() / most;
     double sum = 0, all = 0;
     for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
+        if (which == Triangles::of_changing_normals && is_flat(mesh, mesh.triangles[i])) continue;
         const auto& [a, b, c] = mesh.triangles[i];
         const Seen one = seen(from, {mesh.positions[a], mesh.positions[b], mesh.positions[c]});
         sum += one.angle * one.solid_angle;
@@ -49,7 +58,7 @@ double mean_angle(const TriangleMesh& mesh, const Vec3& from) {
 
 }  // namespace
 
-std::optional<WideTriangles> wide_triangles(const Scene& scene, double least) {
+std::optional<WideTriangles> wide_triangles(const Scene& scene, Triangles which, double least) {
     const std::vector<Vec3> places = places_of_lights(scene);
     std::optional<WideTriangles> widest;
     for (const Shape& shape : scene.shapes()) {
@@ -57,7 +66,7 @@ std::optional<WideTriangles> wide_triangles(const Scene& scene, double least) {
             !std::holds_alternative<Dielectric>(shape.bsdf.model))
             continue;
         for (const Vec3& from : places)
-            if (const double angle = mean_angle(shape.mesh, from);
+            if (const double angle = mean_angle(shape.mesh, which, from);
                 angle > (widest ? widest->angle : least))
                 widest = WideTriangles{shape.name, angle};
     }

@@ -15,7 +15,10 @@ struct WideTriangles {
         0;  ///< between corners of a triangle as the light sees them, mean by solid angle [rad]
 };
 
+/// Which triangles count.
+enum class Triangles { all, of_changing_normals };
+
 /// The widest of a scene's, where the mean is above `least` [rad]; lights from afar see none.
-std::optional<WideTriangles> wide_triangles(const Scene& scene, double least);
+std::optional<WideTriangles> wide_triangles(const Scene& scene, Triangles which, double least);
 
 }  // namespace caustics::experiments

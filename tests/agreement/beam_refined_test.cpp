@@ -144,7 +144,7 @@ TEST(BeamRefined, KeepsTheFlux) {
         }
 }
 
-// A lamp under still water: its window is cut out of the triangles, and what is cut keeps to eq. 11.
+// A lamp under still water: its window is cut out of the triangles.
 TEST(BeamRefined, TakesCutPolygons) {
     SceneDesc desc;
     const Transform size(Eigen::Scaling(3.0, 3.0, 1.0));
@@ -158,6 +158,76 @@ TEST(BeamRefined, TakesCutPolygons) {
     ASSERT_EQ(sets.size(), 2U);
     const beamtree::BeamSet& reflected = sets[0];
     EXPECT_NEAR(flux_on_plane(reflected, -2), 1, 2e-3);
+}
+
+// A point light of 1 W/sr or a spot of that at height H above a pane of thickness T, which the floor lies D below: what
+// goes straight through at the angle a, b in glass, lands at r = (H + D) tan a + T tan b, and so
+// E = (1 - R)^2 f(a) sin a / (r dr/da).
+constexpr double pane_height = 1.25;
+constexpr double pane_thickness = 0.3;
+constexpr double below_pane = 0.45;
+constexpr double spot_edge = pi_d / 3;
+constexpr double spot_middle = pi_d / 36;
+
+double irradiance_below_pane(double r, bool spot) {
+    const auto landing = [](double a) {
+        return (pane_height + below_pane) * std::tan(a) +
+               pane_thickness * std::tan(std::asin(std::sin(a) / 1.5));
+    };
+    double low = 0, high = 1.5;
+    for (int i = 0; i < 100; ++i) {
+        const double middle = (low + high) / 2;
+        (landing(middle) < r ? low : high) = middle;
+    }
+    constexpr double step = 1e-6;
+    const double slope = (landing(low + step) - landing(low - step)) / (2 * step);
+    const double through = 1 - support::fresnel(std::cos(low), 1.5);
+    const double falloff =
+        spot ? std::clamp((spot_edge - low) / (spot_edge - spot_middle), 0.0, 1.0) : 1;
+    return through * through * falloff * std::sin(low) / (r * slope);
+}
+
+/// The largest error, of the true irradiance.
+double error_below_pane(bool spot, beamtree::Intensity intensity) {
+    SceneDesc desc;
+    const Transform place(Eigen::Translation3d(0, 0, below_pane + pane_thickness / 2) *
+                          Eigen::Scaling(4.0, 4.0, pane_thickness / 2));
+    desc.shapes = {support::mesh("pane", tessellate_cube(1), place, support::glass(1.5F)),
+                   support::horizontal("floor", 0, 2, true, support::diffuse(0.5F))};
+    const Vec3d lamp(0.3, -0.2, below_pane + pane_thickness + pane_height);
+    if (spot)
+        desc.lights = {SpotLight{
+            lamp.cast<float>(),
+            Spectrum::Ones(),
+            {-Vec3::UnitZ(), static_cast<float>(spot_middle), static_cast<float>(spot_edge)}}};
+    else
+        desc.lights = {support::point_light(lamp, 1)};
+    const Scene scene(std::move(desc));
+    std::vector<ReceiverPoint> points;
+    std::vector<double> truth;
+    for (int i = 0; i < 200; ++i) {
+        const double r = 0.02 + 0.007 * i;
+        const Vec3d at(lamp.x() + r * std::cos(2.4 * i), lamp.y() + r * std::sin(2.4 * i), 0);
+        points.push_back(support::probe(scene, 1, at, Vec3d::UnitZ(), points.size()));
+        truth.push_back(irradiance_below_pane(r, spot));
+    }
+    beamtree::BeamTreeParams params;
+    params.max_bounces = 2;
+    params.intensity = intensity;
+    const auto found = support::irradiance(*build(scene, params, {}), points);
+    double largest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        largest =
+            std::max(largest, std::abs(static_cast<double>(found[i].value.mean()) / truth[i] - 1));
+    return largest;
+}
+
+TEST(BeamRefined, IsTheClosedFormBehindAPaneOfTwelveTriangles) {
+    EXPECT_GT(error_below_pane(false, beamtree::Intensity::area), 0.05);
+    EXPECT_LT(error_below_pane(false, beamtree::Intensity::refined), 0.01);
+    // The spot's falloff has a bend within a polygon.
+    EXPECT_GT(error_below_pane(true, beamtree::Intensity::area), 0.1);
+    EXPECT_LT(error_below_pane(true, beamtree::Intensity::refined), 0.03);
 }
 
 /// The table of results/beamtree/README.md.

@@ -206,10 +206,13 @@ TEST(Notes, SayThatLightFromAfarStartsAtTheBounds) {
 }
 
 TEST(Notes, NameGlassOfTrianglesThatALightSeesWide) {
-    const auto pane = [](int cells, double lamp) {
+    const auto pane = [](int cells, double lamp, bool smooth, const std::string& intensity) {
         SceneDesc desc;
         TriangleMesh top = tessellate_rectangle(cells), bottom = tessellate_rectangle(cells);
         flip(bottom);
+        if (smooth)
+            for (std::size_t i = 0; i < top.positions.size(); ++i)
+                top.normals[i] = (Vec3(0, 0, 9) + top.positions[i]).normalized();
         desc.shapes = {
             support::mesh("top", std::move(top), Transform(Eigen::Translation3d(0, 0, 1.2)),
                           support::glass(1.5F)),
@@ -217,12 +220,14 @@ TEST(Notes, NameGlassOfTrianglesThatALightSeesWide) {
                           support::glass(1.5F)),
             support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
         desc.lights = {support::point_light({0, 0, lamp}, 1)};
-        return notes_of(desc, "beamtree", {"light_samples=1"});
+        return notes_of(desc, "beamtree", {"light_samples=1", "intensity=" + intensity});
     };
     const std::vector<std::string> words = {"a light sees top in triangles", "degrees wide"};
-    EXPECT_TRUE(any_holds(pane(1, 2.2), words));
-    EXPECT_FALSE(any_holds(pane(64, 2.2), words));
-    EXPECT_FALSE(any_holds(pane(1, 100), words));
+    EXPECT_TRUE(any_holds(pane(1, 2.2, false, "area"), words));
+    EXPECT_FALSE(any_holds(pane(1, 2.2, false, "refined"), words));
+    EXPECT_TRUE(any_holds(pane(1, 2.2, true, "refined"), words));
+    EXPECT_FALSE(any_holds(pane(64, 2.2, true, "area"), words));
+    EXPECT_FALSE(any_holds(pane(1, 100, true, "area"), words));
 }
 
 TEST(Notes, NameAWallBetweenWhichLightMayGrow) {

@@ -1,4 +1,4 @@
-#include "beamtree/tracing/scene_sample.h"
+#include "beamtree/scene_sample.h"
 
 #include <map>
 
