@@ -25,7 +25,7 @@ RaySpread spread_of(const VertexRay& ray, const RayOrigin& origin, const LightSa
 /// Gives the set its spreads and partners (`intensity: refined`). A vertex ray's spread comes from
 /// the derivatives of first surface, place and direction, of a quadratic surface fitted to the rays
 /// of the vertices round it; their errors are of second order on any mesh. Rays that start at no
-/// vertex, or have too few neighbours that whole beams join to them, have no spread; nor those of which no beam
+/// vertex, or have too few neighbours that whole beams join to them, get none here; nor those of which no beam
 /// is `kept` (one a beam).
 void refine(BeamSet& set, std::span<const RayOrigin> origins, const MeshNeighbours& neighbours,
             const std::vector<bool>& kept, int threads, const ProgressPart& part);

@@ -3,6 +3,14 @@
 #include <algorithm>
 
 namespace caustics::beamtree {
+namespace {
+
+bool same_facet(const RayArrival& a, const RayArrival& b) {
+    constexpr float rounding = 1e-5F;
+    return !a.flat || (a.geometric_normal - b.geometric_normal).norm() < rounding;
+}
+
+}  // namespace
 
 Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam)
     : scene_(scene),
@@ -44,13 +52,14 @@ PathPoint Path::middle(const Piece& piece) const {
 }
 
 PathPoint Path::go(const Vec3& position, const Vec3& normal, float offset) const {
-    PathPoint point = go_steps(position, normal, offset);
+    PathPoint point = go_steps(position, normal, offset, false);
     if (point.alive) point.next = land(scene_, point.ray, point.from, surface_.light().bin.nm);
     return point;
 }
 
 // Of what the triangle itself says nothing goes into the way: its neighbour goes it too, from their common edge.
-PathPoint Path::go_steps(const Vec3& position, const Vec3& normal, float offset) const {
+PathPoint Path::go_steps(const Vec3& position, const Vec3& normal, float offset,
+                         bool by_facets) const {
     PathPoint point;
     const MeshPoint first = surface_.bender().at(position, normal);
     point.origin = {first.position, first.normal, first.bent.weight[first_event_]};
@@ -64,6 +73,7 @@ PathPoint Path::go_steps(const Vec3& position, const Vec3& normal, float offset)
     for (const Step& step : steps_) {
         const RayArrival arrival = land(scene_, point.ray, point.from, surface_.light().bin.nm);
         if (!same_piece(arrival, *step.where)) return point;
+        if (by_facets && !same_facet(arrival, *step.where)) return point;
         point.origin.weight *= arrival.weight[step.event];
         point.origin.left *= arrival.left;
         if (is_black(point.origin.weight)) return point;

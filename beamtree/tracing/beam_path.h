@@ -55,9 +55,10 @@ public:
     /// The point with these barycentric weights.
     PathPoint inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const;
     PathPoint middle(const Piece& piece) const;
-    /// Light of a place on the first surface as it leaves the last step; where it arrives (`next`) is not asked.
-    PathPoint up_to_last(const RayOrigin& origin) const {
-        return go_steps(origin.position, origin.normal, origin.offset);
+    /// Light of a place on the first surface as it leaves the last step, by the very facets of the steps where those are
+    /// shaded flat; where it arrives (`next`) is not asked.
+    PathPoint by_facets(const RayOrigin& origin) const {
+        return go_steps(origin.position, origin.normal, origin.offset, true);
     }
     /// The place that a ray has come from.
     PathPoint from(const RayOrigin& origin) const {
@@ -66,7 +67,8 @@ public:
 
 private:
     PathPoint go(const Vec3& position, const Vec3& normal, float offset) const;
-    PathPoint go_steps(const Vec3& position, const Vec3& normal, float offset) const;
+    PathPoint go_steps(const Vec3& position, const Vec3& normal, float offset,
+                       bool by_facets) const;
 
     const Scene& scene_;
     const LitCaster& surface_;

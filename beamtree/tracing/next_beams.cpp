@@ -133,12 +133,14 @@ double NextBeams::flux(const Piece& piece) const {
     return static_cast<double>(weight.mean()) * size(piece);
 }
 
-double NextBeams::most_light(const Piece& piece) const {
-    double strength = 0;
-    for (const PathPoint& corner : piece)
-        strength = std::max(strength, static_cast<double>(corner.origin.weight.mean()) /
-                                          static_cast<double>(corner.origin.left));
-    return corners_slack * strength * size(piece);
+double NextBeams::most_light(const Piece& piece, const PathPoint* inside) const {
+    const auto strength = [](const PathPoint& point) {
+        return static_cast<double>(point.origin.weight.mean()) /
+               static_cast<double>(point.origin.left);
+    };
+    double most = inside != nullptr ? strength(*inside) : 0;
+    for (const PathPoint& corner : piece) most = std::max(most, strength(corner));
+    return corners_slack * most * size(piece);
 }
 
 bool NextBeams::is_too_weak(const Piece& piece) const {
@@ -241,6 +243,10 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
 void NextBeams::leave_out(const LeftOut& part, double flux, double& cause) {
     balance_.lost += flux;
     cause += flux;
+    complete(part);
+}
+
+void NextBeams::complete(const LeftOut& part) {
     // Where the budget is over all is traced again.
     if (!least_.budget.is_over()) rest_.trace(level_, part, photons_);
 }

@@ -57,6 +57,8 @@ public:
              float part = 1);
     /// Of the level's light over a part of a polygon [W].
     double flux(const Piece& piece) const;
+    /// Of a part of a polygon, were media clear, whatever it meets [W]; as its corners tell, and a place inside it.
+    double most_light(const Piece& piece, const PathPoint* inside = nullptr) const;
     /// Of a part of a polygon, as its light counts it (measure).
     double size(const Piece& piece) const;
     /// Whether a part of a polygon has too little light for the budget, whatever it meets.
@@ -69,12 +71,14 @@ public:
     void count_search(const Piece& piece);
     /// Completes light that no beam carries on, and counts it, `flux` [W], by its cause.
     void leave_out(const LeftOut& part, double flux, double& cause);
+    /// Whether photons take what beams leave out.
+    bool is_completed() const { return rest_.is_on(); }
+    /// Has photons take what no beam carries on.
+    void complete(const LeftOut& part);
     std::vector<RestPhoton> take_rest() { return std::move(photons_); }
     std::vector<NextChunk> take() { return std::move(chunks_); }
 
 private:
-    /// Of a part of a polygon, were media clear, whatever it meets [W].
-    double most_light(const Piece& piece) const;
     /// Of a beam [W]; one below `dim` is not looked at closely.
     Spectrum flux(std::uint32_t parent, const BeamCorners& corners, Event event, double dim) const;
     /// Of a beam, over its light before all events, from places inside it: so many parts of a side.

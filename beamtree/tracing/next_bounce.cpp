@@ -271,17 +271,30 @@ private:
             search(beam, path, piece, share, splits);
             return;
         }
+        if (more && next_.is_completed()) {
+            complete(beam, path, piece);
+            return;
+        }
         const double carried = add_parts(beam, piece, edges, share);
         if (more) balance_.lost += std::max(0.0, next_.flux(piece) - carried);
+    }
+
+    // By photons, a piece that is too coarse for what it meets. Its corners may be all but dark, where total
+    // reflection begins: the light of the middle counts as well, or photons would be few and bright.
+    void complete(std::uint32_t beam, const Path& path, const Piece& piece) {
+        const PathPoint middle = path.middle(piece);
+        next_.complete(left_out(beam, piece, next_.most_light(piece, &middle)));
+    }
+    static LeftOut left_out(std::uint32_t beam, const Piece& piece, double flux) {
+        return {beam, {&piece[0].origin, &piece[1].origin, &piece[2].origin}, {}, flux};
     }
 
     // Light of a piece that goes on is not followed. Its corners tell about how much that is, but photons
     // are drawn from all of the piece, whatever its corners do.
     void leave_out(std::uint32_t beam, const Piece& piece) {
         const auto on = std::ranges::count_if(piece, goes_on);
-        const double flux = next_.flux(piece);
-        next_.leave_out({beam, {&piece[0].origin, &piece[1].origin, &piece[2].origin}, {}, flux},
-                        flux * static_cast<double>(on) / 3, balance_.over_budget);
+        const LeftOut part = left_out(beam, piece, next_.flux(piece));
+        next_.leave_out(part, part.flux * static_cast<double>(on) / 3, balance_.over_budget);
     }
 
     // A piece none of whose corners goes on.
@@ -294,19 +307,23 @@ private:
         if (!goes_on(path.middle(piece))) return;
         if (splits > 0 && next_.may_divide(piece))
             quarter(beam, path, piece, share, splits - 1);
+        else if (next_.is_completed())
+            complete(beam, path, piece);
         else
             balance_.lost += next_.flux(piece);
     }
 
-    // Returns the flux of the parent's that goes on.
+    // Returns the flux of the parent's that goes on. A corner may do as both others that do different things: where
+    // facets turn by little each.
     double add_parts(std::uint32_t beam, const Piece& piece, const std::array<CutEdge, 3>& edges,
                      float share) {
         double carried = 0;
+        std::array<bool, 3> takes_part = {};
         for (std::size_t i = 0; i < 3; ++i) {
-            const bool known =
-                (i > 0 && alike(piece[i], piece[0])) || (i > 1 && alike(piece[i], piece[1]));
-            if (!known && goes_on(piece[i]))
-                carried += add_part(beam, piece, edges, piece[i], share);
+            takes_part[i] = goes_on(piece[i]);
+            for (std::size_t k = 0; k < i; ++k)
+                if (takes_part[k] && alike(piece[i], piece[k])) takes_part[i] = false;
+            if (takes_part[i]) carried += add_part(beam, piece, edges, piece[i], share);
         }
         return carried;
     }

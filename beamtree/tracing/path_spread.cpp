@@ -78,7 +78,7 @@ public:
     bool move(std::size_t which, const Vec3d& by) {
         RayOrigin beside = origin_;
         beside.position += by.cast<float>();
-        const PathPoint point = path_.up_to_last(beside);
+        const PathPoint point = path_.by_facets(beside);
         if (!point.alive) return false;
         by_.surface[which] = (beside.position - origin_.position).cast<double>();
         by_.place[which] = (point.ray.position - ray_.position).cast<double>();
@@ -96,13 +96,15 @@ private:
     RayDerivatives by_;
 };
 
-RaySpread spread_along(const Path& path, const Level& level, const BeamCornerRay& corner) {
+RaySpread spread_along(const Scene& scene, const LitCaster& surface, const Level& level,
+                       const BeamCornerRay& corner) {
     const BeamSet& set = level.traced.set;
     std::array<const RayOrigin*, 3> origins;
     for (std::size_t i = 0; i < 3; ++i) origins[i] = &level.traced.origins[corner.rays[i]];
     if (!is_flat_between(origins[0]->normal, origins[1]->normal) ||
         !is_flat_between(origins[0]->normal, origins[2]->normal))
         return {};
+    const Path path(scene, surface, level, corner.beam);
     const Vec3d along = way_in(origins);
     const Vec3d across = origins[0]->normal.cast<double>().cross(along);
     SpreadAlongPaths found(path, set.rays[corner.rays[0]], *origins[0]);
@@ -120,8 +122,7 @@ void spread_along_paths(const Scene& scene, const LitCaster& surface, Level& lev
     parallel_chunks(threads, corners.size(), rays_of_a_chunk, [&](const Chunk& chunk) {
         for (std::size_t ray = chunk.first; ray < chunk.end; ++ray)
             if (corners[ray].beam != Beam::none)
-                level.traced.set.spreads[ray] = spread_along(
-                    Path(scene, surface, level, corners[ray].beam), level, corners[ray]);
+                level.traced.set.spreads[ray] = spread_along(scene, surface, level, corners[ray]);
     });
 }
 

@@ -302,11 +302,6 @@ void note_colours(const Scene& scene, const Method& method, std::vector<std::str
 }
 
 std::string lost_light(const Method& method, const BuildReport& report, double lost) {
-    if (resolved(report, "flux_share_rest"))
-        return fmt::format(
-            "{} loses {:.1f} % of the light between specular surfaces where polygons are too "
-            "coarse for what they meet (photonmap follows it)",
-            method.name, 100 * lost);
     const double pruned = resolved(report, "flux_share_pruned").value_or(0);
     const double over_budget = resolved(report, "flux_share_over_budget").value_or(0);
     const std::string beyond =
@@ -318,7 +313,7 @@ std::string lost_light(const Method& method, const BuildReport& report, double l
         "be followed{} and the rest where polygons are too coarse for what they meet ({}photonmap "
         "follows it; max_bounces=1 asks for the paths with one event alone)",
         method.name, 100 * lost, 100 * pruned, beyond,
-        has_parameter(method, "rest") ? "rest=photons completes the first two; " : "");
+        has_parameter(method, "rest") ? "rest=photons completes it; " : "");
 }
 
 // Whether light comes from infinitely far away through a medium that absorbs.

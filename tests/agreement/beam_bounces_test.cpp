@@ -260,6 +260,87 @@ TEST(BeamBounces, LeaveNoDarkLinesBehindFlatGlass) {
         EXPECT_NEAR(static_cast<double>(found.value.mean()) / expected, 1, 0.005);
 }
 
+// Below a plane, a cap of radius 4 m whose facets turn by 0.14 degrees each: less than makes a crease, but three in a row are one.
+TEST(BeamBounces, LoseNothingOnFacetsThatTurnByLittle) {
+    const auto light_below = [](bool faceted) {
+        TriangleMesh cap = tessellate_rectangle(200);
+        for (std::size_t i = 0; i < cap.positions.size(); ++i) {
+            Vec3& at = cap.positions[i];
+            at.z() = at.head<2>().squaredNorm() / 8;
+            cap.normals[i] = Vec3(-at.x() / 4, -at.y() / 4, 1).normalized();
+        }
+        flip(cap);
+        if (faceted) cap.normals.clear();
+        cap.patches.clear();
+        const Transform place(Eigen::Translation3d(0, 0, 1));
+        SceneDesc desc = over_a_floor(
+            {support::mesh("top", tessellate_rectangle(16),
+                           Transform(Eigen::Translation3d(0, 0, 1.4)), support::glass(1.5F)),
+             support::mesh("cap", std::move(cap), place, support::glass(1.5F))},
+            {0.05, 0.03, 2});
+        const Scene scene(std::move(desc));
+        beamtree::BeamTreeParams params;
+        params.max_bounces = 2;
+        std::vector<ReceiverPoint> points;
+        for (int i = 0; i < 900; ++i)
+            points.push_back(support::probe(scene, 0,
+                                            {0.0301 * (i % 30) - 0.45, 0.0301 * (i / 30) - 0.45, 0},
+                                            Vec3d::UnitZ(), 0));
+        double sum = 0;
+        for (const Estimate& found : support::irradiance(*build(scene, params, {}), points)) {
+            EXPECT_GT(found.value.mean(), 0) << faceted;
+            sum += static_cast<double>(found.value.mean());
+        }
+        return sum;
+    };
+    // Light behind facets is striped.
+    EXPECT_NEAR(light_below(true) / light_below(false), 1, 0.02);
+}
+
+// A cube of water in a tilted one of flint: polygons of twelve triangles are too coarse for what they meet. The light
+// of the floor's |x|, |y| <= 2.
+TEST(BeamBounces, AreCompletedByPhotonsInACubeWithinACube) {
+    const auto cube = [](const char* name, double size, double turn, const Bsdf& bsdf) {
+        const Transform place(Eigen::Translation3d(0, 0, 1.2) *
+                              Eigen::AngleAxisd(turn * pi_d / 180, Vec3d(1, 2, 3).normalized()) *
+                              Eigen::Scaling(size));
+        return support::mesh(name, tessellate_cube(1), place, bsdf);
+    };
+    SceneDesc desc;
+    desc.shapes = {floor_of(4), cube("flint", 0.5, 37, support::glass(1.72F)),
+                   cube("water", 0.3, 10, support::glass(1.333F, 1.72F))};
+    desc.lights = {support::directional_light(Vec3d(0.3, 0.1, -1).normalized(), 1)};
+    const Scene scene(std::move(desc));
+    const AimedEmission emission(scene);
+    const double by_particles =
+        support::arrived_flux(
+            scene, support::aimed(emission),
+            static_cast<std::uint64_t>(support::repetitions(400'000)), 1,
+            [](const Deposit& deposit) {
+                return deposit.shape == 0 && deposit.position.head<2>().cwiseAbs().maxCoeff() <= 2
+                           ? 0
+                           : -1;
+            },
+            7)
+            .total();
+    std::vector<ReceiverPoint> points;
+    constexpr int side = 100;
+    for (int i = 0; i < side * side; ++i)
+        points.push_back(support::probe(
+            scene, 0, {4 * (i % side + 0.5) / side - 2, 4 * (i / side + 0.5) / side - 2, 0},
+            Vec3d::UnitZ(), 0));
+    const auto share = [&](beamtree::BeamTreeParams::Rest rest) {
+        beamtree::BeamTreeParams params;
+        params.rest = rest;
+        double sum = 0;
+        for (const Estimate& found : support::irradiance(*build(scene, params, {}), points))
+            sum += static_cast<double>(found.value.mean());
+        return sum * 16 / (side * side) / by_particles;
+    };
+    EXPECT_LT(share(beamtree::BeamTreeParams::Rest::none), 0.95);
+    EXPECT_NEAR(share(beamtree::BeamTreeParams::Rest::photons), 1, 0.015);
+}
+
 // Near the focus polygons leave the ball as slivers, whose planes do not lie along its surface: their light met the ball itself.
 // The first two places were black.
 TEST(BeamBounces, LeaveNoCracksBehindABall) {
