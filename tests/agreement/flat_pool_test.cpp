@@ -17,7 +17,6 @@ using namespace support::flat_pool;
 constexpr double half_surface = 6;
 
 constexpr std::size_t pool_floor = 0;
-constexpr std::size_t pool_water = 1;
 
 Scene pool(Shape water) {
     SceneDesc desc;
