@@ -314,8 +314,7 @@ TEST(BeamBounces, AreCompletedByPhotonsInACubeWithinACube) {
     const AimedEmission emission(scene);
     const double by_particles =
         support::arrived_flux(
-            scene, support::aimed(emission),
-            static_cast<std::uint64_t>(support::repetitions(400'000)), 1,
+            scene, support::aimed(emission), 400'000, 1,
             [](const Deposit& deposit) {
                 return deposit.shape == 0 && deposit.position.head<2>().cwiseAbs().maxCoeff() <= 2
                            ? 0
