@@ -73,8 +73,10 @@ std::vector<Parameter<P>> tree_parameters() {
         parameter::choice<P>(
             &P::rest, {{"none", P::Rest::none}, {"photons", P::Rest::photons}},
             {.key = "rest",
-             .meaning = "What becomes of light that prune and max_beams leave out: it is lost, or "
-                        "photons carry it from the polygons where it begins."})
+             .meaning =
+                 "What becomes of light that prune and max_beams leave out, or of polygons too "
+                 "coarse for what they meet: it is lost, or photons carry it from the "
+                 "polygons where it begins."})
             .only_if([](const P& p) { return p.rest != P::Rest::none; }),
         parameter::whole_number<P>(
             &P::rest_photons, 1, 1'000'000'000,

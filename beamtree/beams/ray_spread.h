@@ -15,7 +15,7 @@ namespace caustics::beamtree {
 struct RayDerivatives {
     std::array<Vec3d, 2> surface;    ///< the start itself
     std::array<Vec3d, 2> place;      ///< where the light was bent last
-    std::array<Vec3d, 2> direction;  ///< in which it goes on
+    std::array<Vec3d, 2> direction;  ///< in which it leaves
 };
 
 /// Of a ray that has come from `origin`; not known where the derivatives tell nothing.

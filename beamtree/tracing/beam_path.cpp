@@ -3,14 +3,6 @@
 #include <algorithm>
 
 namespace caustics::beamtree {
-namespace {
-
-bool same_facet(const RayArrival& a, const RayArrival& b) {
-    constexpr float rounding = 1e-5F;
-    return !a.flat || (a.geometric_normal - b.geometric_normal).norm() < rounding;
-}
-
-}  // namespace
 
 Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam)
     : scene_(scene),

@@ -55,14 +55,10 @@ public:
     /// The point with these barycentric weights.
     PathPoint inside(const std::array<const RayOrigin*, 3>& corners, const Vec3& weights) const;
     PathPoint middle(const Piece& piece) const;
-    /// Light of a place on the first surface as it leaves the last step, by the very facets of the steps where those are
-    /// shaded flat; where it arrives (`next`) is not asked.
-    PathPoint by_facets(const RayOrigin& origin) const {
-        return go_steps(origin.position, origin.normal, origin.offset, true);
-    }
-    /// The place that a ray has come from.
-    PathPoint from(const RayOrigin& origin) const {
-        return go(origin.position, origin.normal, origin.offset);
+    /// The place that a ray has come from, with its light as it leaves the last step; where that arrives (`next`) is not
+    /// asked. `by_facets`: by the very facets of the steps, where those are shaded flat.
+    PathPoint from(const RayOrigin& origin, bool by_facets = false) const {
+        return go_steps(origin.position, origin.normal, origin.offset, by_facets);
     }
 
 private:

@@ -272,7 +272,7 @@ private:
             return;
         }
         if (more && next_.is_completed()) {
-            complete(beam, path, piece);
+            complete(beam, piece, path.middle(piece));
             return;
         }
         const double carried = add_parts(beam, piece, edges, share);
@@ -281,8 +281,7 @@ private:
 
     // By photons, a piece that is too coarse for what it meets. Its corners may be all but dark, where total
     // reflection begins: the light of the middle counts as well, or photons would be few and bright.
-    void complete(std::uint32_t beam, const Path& path, const Piece& piece) {
-        const PathPoint middle = path.middle(piece);
+    void complete(std::uint32_t beam, const Piece& piece, const PathPoint& middle) {
         next_.complete(left_out(beam, piece, next_.most_light(piece, &middle)));
     }
     static LeftOut left_out(std::uint32_t beam, const Piece& piece, double flux) {
@@ -304,11 +303,12 @@ private:
             search(beam, path, piece, share, splits);
             return;
         }
-        if (!goes_on(path.middle(piece))) return;
+        const PathPoint middle = path.middle(piece);
+        if (!goes_on(middle)) return;
         if (splits > 0 && next_.may_divide(piece))
             quarter(beam, path, piece, share, splits - 1);
         else if (next_.is_completed())
-            complete(beam, path, piece);
+            complete(beam, piece, middle);
         else
             balance_.lost += next_.flux(piece);
     }

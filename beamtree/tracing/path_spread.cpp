@@ -48,11 +48,11 @@ std::vector<BeamCornerRay> corners_of(const TracedSet& traced, const std::vector
         if (!kept[beam]) continue;
         for (std::size_t which = 0; which < set.beams[beam].triangle_count(); ++which) {
             std::array<std::uint32_t, 3> rays = set.beams[beam].triangle_corners(which);
-            if (is_narrow(traced, rays)) continue;
+            const auto known = [&](std::uint32_t ray) { return set.spreads[ray].is_known(); };
+            if (std::ranges::all_of(rays, known) || is_narrow(traced, rays)) continue;
             for (std::size_t i = 0; i < 3; ++i) {
                 BeamCornerRay& corner = corners[rays[0]];
-                if (corner.beam == Beam::none && !set.spreads[rays[0]].is_known())
-                    corner = {beam, rays};
+                if (corner.beam == Beam::none && !known(rays[0])) corner = {beam, rays};
                 std::rotate(rays.begin(), rays.begin() + 1, rays.end());
             }
         }
@@ -78,7 +78,7 @@ public:
     bool move(std::size_t which, const Vec3d& by) {
         RayOrigin beside = origin_;
         beside.position += by.cast<float>();
-        const PathPoint point = path_.by_facets(beside);
+        const PathPoint point = path_.from(beside, true);
         if (!point.alive) return false;
         by_.surface[which] = (beside.position - origin_.position).cast<double>();
         by_.place[which] = (point.ray.position - ray_.position).cast<double>();

@@ -8,10 +8,10 @@
 namespace caustics::beamtree {
 namespace {
 
-constexpr float crease = 0.766F;        // cosine of its angle
-constexpr float same_facet = 0.99999F;  // of the angle between normals
-constexpr float flat_turn = 1e-5F;      // between a facet's normal and the one it is shaded by
-constexpr float most_step = 0.3F;       // sine of the way from one ray to the other to the surface
+constexpr float crease = 0.766F;          // cosine of its angle
+constexpr float facet_cosine = 0.99999F;  // of the angle between normals
+constexpr float flat_turn = 1e-5F;        // between a facet's normal and the one it is shaded by
+constexpr float most_step = 0.3F;  // sine of the way from one ray to the other to the surface
 
 }  // namespace
 
@@ -50,10 +50,15 @@ bool same_piece(const RayArrival& a, const RayArrival& b) {
     const bool facets = a.flat && b.flat;
     const float turn = facets ? a.geometric_normal.dot(b.geometric_normal)
                               : a.shading_normal.dot(b.shading_normal);
-    if (turn < (facets ? same_facet : crease)) return false;
+    if (turn < (facets ? facet_cosine : crease)) return false;
     const Vec3 way = b.position - a.position;
     const Vec3 normal = a.shading_normal + b.shading_normal;
     return std::abs(way.dot(normal)) <= most_step * way.norm() * normal.norm() + 4 * a.offset;
+}
+
+bool same_facet(const RayArrival& a, const RayArrival& b) {
+    constexpr float rounding = 1e-5F;
+    return !a.flat || (a.geometric_normal - b.geometric_normal).norm() < rounding;
 }
 
 }  // namespace caustics::beamtree

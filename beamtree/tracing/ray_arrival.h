@@ -44,5 +44,8 @@ RayArrival land(const Scene& scene, const VertexRay& ray, const Departure& from,
 /// piece turn by less than 40 degrees from one ray to the other and are across the way between the
 /// two. Two rays that meet no caster are alike too.
 bool same_piece(const RayArrival& a, const RayArrival& b);
+/// Whether two rays that have met one piece have met one facet of it, where it is shaded flat: a piece may be many
+/// that turn by little each.
+bool same_facet(const RayArrival& a, const RayArrival& b);
 
 }  // namespace caustics::beamtree

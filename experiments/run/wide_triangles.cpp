@@ -35,7 +35,7 @@ Seen seen(const Vec3& from, const std::array<Vec3, 3>& corners) {
 }
 
 bool is_flat(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& corners) {
-    constexpr float same = 1e-3F;
+    constexpr float same = 1e-3F;  // as beams take normals for one
     if (mesh.normals.empty()) return true;
     const auto& [a, b, c] = corners;
     return (mesh.normals[a] - mesh.normals[b]).norm() < same &&

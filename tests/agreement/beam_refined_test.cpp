@@ -169,22 +169,17 @@ constexpr double below_pane = 0.45;
 constexpr double spot_edge = pi_d / 3;
 constexpr double spot_middle = pi_d / 36;
 
-double irradiance_below_pane(double r, bool spot) {
-    const auto landing = [](double a) {
-        return (pane_height + below_pane) * std::tan(a) +
-               pane_thickness * std::tan(std::asin(std::sin(a) / 1.5));
-    };
-    double low = 0, high = 1.5;
-    for (int i = 0; i < 100; ++i) {
-        const double middle = (low + high) / 2;
-        (landing(middle) < r ? low : high) = middle;
-    }
-    constexpr double step = 1e-6;
-    const double slope = (landing(low + step) - landing(low - step)) / (2 * step);
-    const double through = 1 - support::fresnel(std::cos(low), 1.5);
+double radius_below_pane(double angle) {
+    return (pane_height + below_pane) * std::tan(angle) +
+           pane_thickness * std::tan(std::asin(std::sin(angle) / 1.5));
+}
+
+double irradiance_below_pane(double angle, bool spot) {
+    const double slope = (radius_below_pane(angle + 1e-6) - radius_below_pane(angle - 1e-6)) / 2e-6;
+    const double through = 1 - support::fresnel(std::cos(angle), 1.5);
     const double falloff =
-        spot ? std::clamp((spot_edge - low) / (spot_edge - spot_middle), 0.0, 1.0) : 1;
-    return through * through * falloff * std::sin(low) / (r * slope);
+        spot ? std::clamp((spot_edge - angle) / (spot_edge - spot_middle), 0.0, 1.0) : 1;
+    return through * through * falloff * std::sin(angle) / (radius_below_pane(angle) * slope);
 }
 
 /// The largest error, of the true irradiance.
@@ -206,10 +201,11 @@ double error_below_pane(bool spot, beamtree::Intensity intensity) {
     std::vector<ReceiverPoint> points;
     std::vector<double> truth;
     for (int i = 0; i < 200; ++i) {
-        const double r = 0.02 + 0.007 * i;
+        const double angle = 0.011 + 0.0031 * i;
+        const double r = radius_below_pane(angle);
         const Vec3d at(lamp.x() + r * std::cos(2.4 * i), lamp.y() + r * std::sin(2.4 * i), 0);
         points.push_back(support::probe(scene, 1, at, Vec3d::UnitZ(), points.size()));
-        truth.push_back(irradiance_below_pane(r, spot));
+        truth.push_back(irradiance_below_pane(angle, spot));
     }
     beamtree::BeamTreeParams params;
     params.max_bounces = 2;

@@ -59,7 +59,7 @@ struct CutEdges : testing::Test {
     PathPoint at(float x, float y) const {
         RayOrigin origin{{x, y, 0}, Vec3::UnitZ()};
         origin.offset = surface.offset(0);
-        return path.from(origin);
+        return path.inside({&origin, &origin, &origin}, Vec3::UnitX());
     }
 };
 
