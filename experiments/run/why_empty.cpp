@@ -33,6 +33,15 @@ int max_bounces(const Method& method, const BuildReport& report) {
     return describe(method).value("max_bounces", usual_bounces);
 }
 
+/// The radius beyond which no photon is found, where the method has one [m].
+std::optional<double> search_radius(const Method& method, const BuildReport& report) {
+    const auto farthest = report.resolved.find("max_radius");
+    if (farthest != report.resolved.end()) return farthest->second;
+    const double fixed = describe(method).value("radius", 0.0);
+    if (fixed > 0) return fixed;
+    return {};
+}
+
 /// The camera sees lit receivers, but the method showed it nothing.
 std::string why_missed(const Method& method, const CausticSurvey& survey, const BuildReport& report,
                        const Counters& counters) {
@@ -43,11 +52,10 @@ std::string why_missed(const Method& method, const CausticSurvey& survey, const 
         return fmt::format(
             "{} has no beam for it: the casters' polygons are too coarse for what they light{}",
             method.name, found);
-    const auto radius = report.resolved.find("max_radius");
-    if (find(counters, "empty_gathers") == find(counters, "gathers") &&
-        radius != report.resolved.end())
-        return fmt::format("no photon lies within {:.3g} m of what the camera sees{}",
-                           radius->second, found);
+    const std::optional<double> radius = search_radius(method, report);
+    if (radius && find(counters, "empty_gathers") == find(counters, "gathers"))
+        return fmt::format("no photon lies within {:.3g} m of what the camera sees{}", *radius,
+                           found);
     return fmt::format("{} found none of the light that is there: give it more samples{}",
                        method.name, found);
 }
