@@ -1,9 +1,12 @@
 #include "core/mesh/mesh_audit.h"
 
 #include <algorithm>
+#include <functional>
+#include <span>
 #include <utility>
 
 #include "core/base/interrupt.h"
+#include "core/base/sort_by_number.h"
 #include "core/mesh/vertex_normals.h"
 
 namespace caustics {
@@ -12,7 +15,6 @@ namespace {
 using Place = std::array<float, 3>;
 
 constexpr std::size_t triangles_between_looks = 1 << 16;
-constexpr std::size_t comparisons_between_looks = 1 << 20;
 
 std::vector<std::array<Place, 3>> sorted_triangles(const TriangleMesh& mesh) {
     std::vector<std::array<Place, 3>> all;
@@ -33,7 +35,9 @@ std::vector<std::array<Place, 3>> sorted_triangles(const TriangleMesh& mesh) {
 
 std::size_t open_edge_count(const TriangleMesh& mesh) {
     const std::vector<std::uint32_t> places = number_positions(mesh.positions);
-    std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, int>> edges;
+    using Edge = std::pair<std::pair<std::uint32_t, std::uint32_t>, int>;  // its ends, its side
+    std::vector<Edge> edges;
+    edges.reserve(3 * mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (t % triangles_between_looks == 0) throw_if_interrupted();
         const auto& triangle = mesh.triangles[t];
@@ -43,11 +47,9 @@ std::size_t open_edge_count(const TriangleMesh& mesh) {
             if (a != b) edges.push_back({std::minmax(a, b), a < b ? 1 : -1});
         }
     }
-    std::size_t compared = 0;
-    std::ranges::sort(edges, [&](const auto& one, const auto& other) {
-        if (++compared % comparisons_between_looks == 0) throw_if_interrupted();
-        return one < other;
-    });
+    edges = sort_by_number(
+        std::span<const Edge>(edges), mesh.positions.size(), 1,
+        [](const Edge& edge) { return edge.first.first; }, std::less<Edge>());
     std::size_t open = 0;
     for (std::size_t i = 0; i < edges.size();) {
         int balance = 0;
