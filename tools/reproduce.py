@@ -63,7 +63,7 @@ def reproduce(name, chosen):
     where = f"{machine(study.folders())} {chosen.note}".strip() if study.done else ""  # nothing was timed without a sweep
     rows, pieces = kept.of_some(study, part, where, list(sections), wanted) if partial(chosen) else kept.of_whole_run(study, part, where)
     write_page(study.output, paper, rows, pieces, part.figures)
-    study.copy_records()
+    study.copy_records(partial(chosen))
     write_gallery(chosen.output, map(papers_text.Paper, papers_text.NAMES))
     study.log(f"{tally(rows)}; {(time.monotonic() - start) / 60:.1f} minutes; {study.output / 'index.html'}")
 

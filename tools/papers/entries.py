@@ -33,10 +33,11 @@ def entry(study, claim, measured):
     parts = [part for part in (measured.top, measured.bottom) if part] or ([measured.samples] if measured.samples else [])
     return said(study.paper, claim, ours, bool(measured.bottom)) | {
         "ours": ours, "spread": [min(measured.samples), max(measured.samples)] if measured.samples else None,
-        "interval": list(ends) if ends else None, "samples": len(measured.samples), "counted": measured.counted,
-        "made_of": [{"median": statistics.median(part), "least": min(part), "greatest": max(part)} for part in parts],
+        "interval": list(ends) if ends else None, "samples": len(measured.samples), "values": measured.samples, "counted": measured.counted,
+        "made_of": [{"median": statistics.median(part), "least": min(part), "greatest": max(part), "values": part} for part in parts],
         "made_of_unit": measured.unit, "verdict": verdict, "section": measured.section,
-        "command": cost.command, "minutes": round(cost.seconds / 60, 2), "megabytes": round(cost.bytes / 1e6, 1), "note": measured.note}
+        "command": cost.command, "again": f"tools/reproduce.sh {study.paper.name} --only {measured.section}" if measured.samples else "",
+        "minutes": round(cost.seconds / 60, 2), "megabytes": round(cost.bytes / 1e6, 1), "note": measured.note}
 
 
 def again(paper, claim, earlier):
@@ -53,7 +54,7 @@ def said(paper, claim, ours, is_quotient):
         "paper": stated(paper, claim), "paper_unit": "" if is_ratio else unit_of(paper, claim),
         "paper_ratio": theirs if is_ratio else None, "is_ratio": is_quotient or is_ratio, "unit": claim["unit"],
         "factor_off": ours / theirs if ours is not None and theirs else None,
-        "region": shown(paper.region(claim)), "tolerance_from": claim["tolerance_from"]}
+        "region": shown(paper.region(claim)), "bounds": [None if math.isinf(end) else end for end in paper.region(claim)], "tolerance_from": claim["tolerance_from"]}
 
 
 def stated(paper, claim):

@@ -7,7 +7,8 @@ HEAD = """# The papers, reproduced
 
 Made by `tools/reproduce.sh`: every figure, table cell and testable claim of the three papers beside ours. The page of a paper is its
 `index.html`; `tables.md`, `.csv` and `.tex` are its tables, `verdicts.json` its claims with what was measured, the interval, the tolerance
-and the command of each; `records/` the sweeps' tables. Figures are here as PNG; a run writes them as EXR, too.
+and the command of each; `records/` the sweeps' tables. Figures are here as PNG; a run writes those that show radiance as EXR
+beside them, which are too large to be kept here.
 [replicability.md](replicability.md) is for a reviewer: system, commands, minutes, disk, how to compare.
 
 """

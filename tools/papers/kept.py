@@ -44,8 +44,9 @@ def of_some(study, part, machine, order, ran):
 
 def pieces(paper, part, facts):
     unsaid = [[each["what"], each["chosen"], each["matters"].format_map(Facts(facts))] for each in paper.text["unsaid"]]
+    untested = [[each["claim"], each["where"], each["reason"].format_map(Facts(facts))] for each in paper.text.get("not_tested", [])]
     figures = [{"name": figure.name, "title": figure.title, "caption": figure.caption, "section": figure.section} for figure in part.figures]
-    return {"facts": facts, "unsaid": unsaid, "tables": [vars(table) for table in part.tables], "figures": figures}
+    return {"facts": facts, "unsaid": unsaid, "not_tested": untested, "tables": [vars(table) for table in part.tables], "figures": figures}
 
 
 def made_on(kept):

@@ -11,6 +11,8 @@ from papers.verdict import FAILS, HOLDS, UNDECIDED, UNMEASURED
 from papers.words import short
 from report.report_files import write
 
+UNSAID = ["what", "chosen here", "how much it matters"]
+NOT_TESTED = ["claim of the paper", "where", "why it is not tested"]
 CLAIMS = ["claim", "paper", "paper as ratio", "ours", "ours as ratio", "holds?", "factor off"]
 STYLE = """body{font:15px/1.45 sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}
 table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border-bottom:1px solid #ddd;padding:.25em .6em;text-align:left;
@@ -63,9 +65,16 @@ def write_page(folder, paper, entries, kept, figures):
 def rendered(paper, entries, kept):
     """{file name: text} of everything that follows from verdicts.json and tables.json."""
     tables = [Table(**each) for each in kept["tables"]]
-    every = [claims_table(entries), *tables]
+    every = [claims_table(entries), *stated(kept), *tables, Table("tolerances", "Tolerances", COMMANDS[:3], [row[:3] for row in commands(entries)])]
     return {"tables.md": markdown(paper, entries, kept, tables), "tables.csv": comma(every),
             "tables.tex": latex_tables(f"{paper.text['author']}: {paper.text['title']}", every), "index.html": page(paper, entries, kept, tables)}
+
+
+def stated(kept):
+    """What the paper leaves open, and what of it is not tested."""
+    open_questions = [Table("unsaid", "What the paper does not say", UNSAID, kept["unsaid"])]
+    untested = kept.get("not_tested", [])
+    return open_questions + ([Table("not_tested", "Claims that are not tested", NOT_TESTED, untested)] if untested else [])
 
 
 def took(kept):
@@ -102,8 +111,7 @@ def markdown(paper, entries, kept, tables):
         notes = [f"* {entry['claim']}: {entry['note'].rstrip('.')}." for entry in own if entry["note"]]
         if notes:
             text.append("\n".join(notes) + "\n")
-    text.append("\n## What the paper does not say\n\n" + markdown_table(["what", "chosen here", "how much it matters"], kept["unsaid"]))
-    for table in tables:
+    for table in [*stated(kept), *tables]:
         text.append(f"\n## {table.title}\n\n" + markdown_table(table.heading, table.rows) + (f"\n{table.note}\n" if table.note else ""))
     if paper.text["seconds"]:
         text.append(f"\n## The paper's seconds\n\nOn {paper.text['machine']}; ours are compared as ratios only.\n\n"
@@ -113,8 +121,9 @@ def markdown(paper, entries, kept, tables):
     return "\n".join(text)
 
 
-HOW = ("A claim holds where the 95 % interval (Student's t, one-sided at each end, over seeds or repeats, on a scale of ratios) lies within "
-       "the region of the last table, does not hold where it lies outside, and is undecided between. Counted values are the same on every run. "
+HOW = ("A claim holds where the interval of ours lies within the region of the last table, does not hold where it lies outside, and is undecided "
+       "between. The interval is Student's t over seeds or repeats, on a scale of ratios, and leaves out 5 % at each end: a trend that holds has its "
+       "order and sign at 95 %. Counted values are the same on every run. "
        "Times are CPU times of one thread: median (least–greatest). Factor off: ours over the paper's.\n")
 
 
@@ -157,7 +166,8 @@ def page(paper, entries, kept, tables):
             verdict = f"<td class='verdict' style='color:{COLOURS[entry['verdict']]}'>{entry['verdict']}</td>"
             body.append("<tr>" + f"<td>{e(row[0])} <span class='grey'>{e(entry['where'])}</span>{note}</td>"
                         + "".join(f"<td>{e(field)}</td>" for field in row[1:5]) + verdict + f"<td>{e(row[6])}</td></tr>\n")
-    body.append("</table>\n<h2>What the paper does not say</h2>\n" + table(["what", "chosen here", "how much it matters"], kept["unsaid"]))
+    body.append("</table>\n")
+    body += [f"<h2>{e(each.title)}</h2>\n{table(each.heading, each.rows)}" for each in stated(kept)]
     for each in kept["figures"]:
         body.append(f"<figure><h3>{e(each['title'])}</h3><img src='figures/{each['name']}.png' alt='{e(each['title'], quote=True)}'>"
                     f"<figcaption>{e(each['caption'])}</figcaption></figure>\n")

@@ -33,7 +33,7 @@ class Study:
         self.paper, self.program, self.full = paper, str(program), full
         self.output = output.resolve() / paper.name
         self.scenes, self.sweeps = SCENES, SWEEPS
-        self.costs, self.done = {}, {}
+        self.costs, self.done, self.answers = {}, {}, {}
 
     def log(self, text):
         print(f"reproduce: {self.paper.name}: {text}", file=sys.stderr, flush=True)
@@ -74,6 +74,7 @@ class Study:
             kept = {"digest": digest, "seconds": time.monotonic() - start}
             note.write_text(json.dumps(kept) + "\n")
         self.keep(name, full, kept["seconds"])
+        self.answers |= {f"{name}_{file.name}": file for file in files if file.suffix == ".csv"}
         return files
 
     def keep(self, name, words, seconds):
@@ -99,12 +100,15 @@ class Study:
         """Of the sweeps' renderings, on however many processors."""
         return sum(sum(trials.column("cpu_s")) for trials in self.done.values()) / 60
 
-    def copy_records(self):
-        """The sweeps' tables, to be kept."""
+    def copy_records(self, partial):
+        """The tables of sweeps and probes, to be kept; those of other sections stay where only some ran."""
         folder = self.output / "records"
+        if not partial:
+            shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(exist_ok=True)
-        for name, trials in self.done.items():
-            shutil.copyfile(trials.folder / "records.csv", folder / f"{name}.csv")
+        tables = {f"{name}.csv": trials.folder / "records.csv" for name, trials in self.done.items()}
+        for name, file in (tables | self.answers).items():
+            shutil.copyfile(file, folder / name)
 
 
 def inputs(words):

@@ -53,6 +53,9 @@ def check(paper):
     for name, number in paper.text["numbers"].items():
         if not number.get("where") or not isinstance(number.get("value"), (int, float)):
             raise wrong(f'number "{name}": needs a value and the place in the paper, where')
+    for each in paper.text.get("not_tested", []):
+        if set(each) != {"claim", "where", "reason"}:
+            raise wrong(f'not_tested: "{each.get("claim")}" needs claim, where and reason')
     seen = set()
     for claim in paper.text["claims"]:
         name = claim.get("id")
