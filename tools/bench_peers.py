@@ -14,7 +14,6 @@ import datetime
 import json
 import os
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
@@ -23,7 +22,7 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-from report.program import BENCH, exit_code
+from report.program import BENCH, exit_code, processor
 from report.records import RecordsError
 
 
@@ -108,8 +107,7 @@ def log(text):
 def environment(programs, about, absent):
     """Machine, versions and truths, for the page."""
     first = lambda *command: (subprocess.run(command, capture_output=True, text=True).stdout.strip().splitlines() or ["?"])[0]
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8") if line.startswith("model name")), platform.machine())
-    found = {"cpu": cpu, "processors": os.cpu_count(), "date": datetime.date.today().isoformat(), "causticbench": first(programs.bench, "--version")}
+    found = {"cpu": processor(), "processors": os.cpu_count(), "date": datetime.date.today().isoformat(), "causticbench": first(programs.bench, "--version")}
     if "povray" not in absent:
         text = subprocess.run([programs.povray, "--version"], capture_output=True, text=True)
         found["povray"] = next((line for line in (text.stdout + text.stderr).splitlines() if "POV-Ray" in line), "?").strip()

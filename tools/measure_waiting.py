@@ -23,7 +23,12 @@ import tempfile
 import termios
 import time
 
+sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from report.program import processor
+
 SCENES = ROOT / "experiments/scenes"
 COLUMNS = 80
 SMALL = ["--set", "/sensor/film/width=96", "--set", "/sensor/film/height=72"]
@@ -204,8 +209,7 @@ def table(program, stops):
         prepare(folder)
         yield "# Waiting\n"
         version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-        model = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text(encoding="ascii"))
-        yield (f"By `tools/measure_waiting.py --stops {stops}`; {version}; {model[1] if model else 'unknown processor'}, "
+        yield (f"By `tools/measure_waiting.py --stops {stops}`; {version}; {processor()}, "
                f"{os.cpu_count()} processors, load average {os.getloadavg()[0]:.0f}.\n")
         yield "| start | CPU ms | shared libraries |\n|---|---|---|"
         for name, words in STARTS.items():

@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -178,7 +179,22 @@ class Report(unittest.TestCase):
                 squares.append(float((error.astype(float) ** 2).mean()))
             rings = self.run_script(f"errorSpectrum({i})")
             self.close_to(sum(ring["total"] for ring in rings), sum(squares) / 5, 1e-2)
+            for ring in rings:
+                self.assertAlmostEqual(ring["bias2"], ring["total"] - ring["variance"], delta=1e-12)
+            for ring, power in zip(rings, self.powers(cell), strict=True):
+                self.assertAlmostEqual(ring["total"], power, delta=2e-2 * power + 1e-3 * sum(squares) / 5)  # halves round
             self.close_to(sum(ring["variance"] for ring in rings), VARIANCE / (cell[1] / 1000) ** 2 * (192 - 3) / 192, 5e-2)
+
+    def powers(self, cell):
+        """The mean squared error over the seeds by ring of frequency, by NumPy's transform; rings without a frequency are left out."""
+        caustic, _, unreached = sweep.reference_planes()
+        rings = numpy.zeros(24)
+        across, down = numpy.meshgrid(*(numpy.fft.fftfreq(n) for n in (sweep.WIDTH, sweep.HEIGHT)))
+        ring = numpy.minimum(23, (numpy.hypot(across, down) / math.sqrt(0.5) * 24 + 1e-9).astype(int))
+        for seed in range(1, 6):
+            error = (sweep.picture_of(cell[0], seed, int(cell[1] / 1000))[0] - caustic).mean(axis=0) * (unreached == 0)
+            numpy.add.at(rings, ring, abs(numpy.fft.fft2(error) / error.size) ** 2 / 5)
+        return rings[numpy.bincount(ring.ravel(), minlength=24) > 0]
 
     def test_the_transform_is_that_of_a_wave(self):
         found = self.run_script("""(() => { const map = Float64Array.from({length: 12 * 8}, (_, i) => Math.cos(2 * Math.PI * (3 * (i % 12) / 12 + 2 * Math.floor(i / 12) / 8)));
@@ -253,7 +269,15 @@ class Report(unittest.TestCase):
         self.settle()
         views = self.run_script("viewer.panes.map((pane) => { const v = view(pane.canvas); return [v.x, v.y, v.zoom]; })")
         self.assertEqual(views, [views[0]] * 3)
-        self.press("0")
+        kept = self.state("view")
+        for mode in ("flip", "split"):
+            self.press("m")
+            for key in ("n", "n"):
+                self.press(key)
+                shown = self.run_script("viewer.panes.map((pane) => { const v = view(pane.canvas); return [v.x, v.y, v.zoom]; })")
+                self.assertEqual((self.state("mode"), self.state("view")), (mode, kept))
+                self.assertEqual(shown, [shown[0]] * len(shown))
+        self.press("m", "0")
         self.assertEqual(self.state("view"), "")
 
     def test_pictures_flip_and_split(self):
@@ -357,6 +381,27 @@ class Report(unittest.TestCase):
         r, x = (each[:, unreached == 0].astype(float) for each in (caustic, picture))
         self.close_to(found, float(((x - r) ** 2 / (r ** 2 + 0.02 * r.mean() ** 2)).mean()), 1e-2)
 
+    def test_a_map_of_two_methods_is_their_difference(self):
+        beams, photons = self.cell_of("beamtree"), self.cell_of("photonmap")
+        self.run_script("change({seed: 1, formula: 'square'})")
+        found = self.run_script(f"errorOf('{photons}', '{beams}').then((map) => meanOfMap(map).mean)")
+        _, _, unreached = sweep.reference_planes()
+        steps = self.run_script(f"[{photons}, {beams}].map((i) => scene().cells[i].costs.map_bytes / 1000)")
+        one, other = (sweep.picture_of(method, 2, int(step))[0] for method, step in zip(("photonmap", "beamtree"), steps))
+        self.close_to(found, float(((one - other)[:, unreached == 0].astype(float) ** 2).mean()), 1e-2)
+
+    def test_intervals_are_drawn_at_their_ends(self):
+        drawn = self.run_script("""[...document.querySelectorAll('#curve .spot')].map((spot) => [spot.querySelector('title').textContent,
+            Number(spot.querySelector('circle').getAttribute('cy')), spot.previousElementSibling.getAttribute('d')])""")
+        self.assertGreater(len(drawn), 4)
+        number = r"([\d.e−-]+)"
+        read = lambda text: [float(each.replace("−", "-")) for each in re.search(rf": {number} \(95 %: {number} to {number}\)", text).groups()]
+        (first, top, _), (last, bottom, _) = min(drawn, key=lambda each: each[1]), max(drawn, key=lambda each: each[1])
+        scale = (bottom - top) / math.log(read(last)[0] / read(first)[0])
+        for text, _, path in drawn:
+            for value, at in zip(read(text)[1:], re.fullmatch(r"M[\d.]+,([\d.]+)V([\d.]+)", path).groups(), strict=True):
+                self.assertAlmostEqual(float(at), top + scale * math.log(value / read(first)[0]), delta=2)
+
     def test_a_bar_of_the_distribution_marks_its_pixels(self):
         self.browser.wait_for("document.querySelectorAll('#spread .bar').length > 10")
         i = self.run_script("[...document.querySelectorAll('#spread g')].findIndex((e) => /^[1-9]/.test(e.getAttribute('aria-label')))")
@@ -459,7 +504,18 @@ class Report(unittest.TestCase):
         self.assertEqual(colour(), "rgb(255, 255, 255)")
         self.browser.call("Emulation.setEmulatedMedia", media="print")
         self.assertEqual(self.run_script("getComputedStyle(document.querySelector('.controls')).display"), "none")
+        self.assertEqual(self.run_script("getComputedStyle(document.querySelector('header')).position"), "static")
+        self.assertEqual(self.run_script("[...document.querySelectorAll('.scroll')].filter((e) => getComputedStyle(e).overflowX !== 'visible').length"), 0)
         self.browser.call("Emulation.setEmulatedMedia", media="")
+
+    def test_no_colour_is_without_a_second_sign(self):
+        lines = self.run_script("[...document.querySelectorAll('#curve .mark')].map((e) => [getComputedStyle(e).stroke, e.getAttribute('d')])")
+        by_colour = {}
+        for colour, shape in lines:
+            by_colour.setdefault(colour, set()).add(shape)
+        self.assertGreater(len(by_colour), 1)
+        shapes = [shape for own in by_colour.values() for shape in own]
+        self.assertEqual(len(shapes), len(set(shapes)), "two colours share a marker")
 
     def choose_theme(self, theme):
         self.run_script(f"change({{theme: '{theme}'}})")

@@ -1,6 +1,7 @@
 """The release build of causticbench, as the measuring tools run it: sweeps, and the line on where they ran."""
 import json
 import pathlib
+import platform
 import subprocess
 import sys
 
@@ -43,6 +44,12 @@ def exit_code(tool, run):
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def processor():
+    """The processor's name, or the machine's kind where the system does not give one."""
+    lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
 def machine(folders):
