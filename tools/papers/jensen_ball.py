@@ -1,181 +1,153 @@
-"""Jensen 1996, figure 2 and its rows of the table: a glass ball on stone, the caustic's shape, photons, trees, N."""
+"""Jensen 1996, figure 2: the shape of the caustic of a glass ball, oval on a Lambertian floor and curved on a glossy one."""
+import copy
+import dataclasses
 import json
 import math
 
 import numpy as np
+from matplotlib.colors import PowerNorm
+from scipy.ndimage import gaussian_filter, map_coordinates
 
-from papers.figures import strip, white
-from papers.jensen_ring import preprocess
-from papers.part import Figure, Part, Table
-from papers.verdict import Measured, counted, ratio
-from papers.words import short, spread
-from report.records import natural
+from papers.figures import luminance, plot, strip
+from papers.jensen_table import rendering
+from papers.part import Figure, Part
+from papers.verdict import Measured
+from papers.words import spread
+from report import exr
 
 QUANTILE, THRESHOLD = 0.995, 0.3  # what belongs to the spot: above this share of that quantile
-DARK = 0.02  # of the same
-
-
-def table(study):
-    trials = study.sweep("figure2")
-    few, many = (study.paper.number(name) for name in ("figure2_photons", "figure2_reference_photons"))
-    seconds = lambda photons, tree: trials.column("render_cpu_s", method="photonmap", photons=photons, tree=tree)
-    prepare = lambda photons, tree="balanced": preprocess(trials, method="photonmap", photons=photons, tree=tree)
-    balance = lambda photons: trials.column("balance_cpu_s", method="photonmap", photons=photons, tree="balanced")
-    bytes_of = lambda tree: trials.column("map_bytes", method="photonmap", photons=many, tree=tree)[0]
-    bare = trials.column("render_cpu_s", method="none")
-    saved = ratio(seconds(many, "balanced"), seconds(many, "unbalanced"), "CPU s")
-    without = [(a - b) / (c - b) for a, b, c in zip(seconds(many, "balanced"), bare, seconds(many, "unbalanced"))]
-    saved.samples = [1 - each for each in saved.samples]
-    saved.note = f"less the eye pass without caustic, {spread(bare, 'CPU s')}: {spread([1 - each for each in without])}"
-    grown = {tree: ratio(seconds(many, tree), seconds(few, tree), "CPU s") for tree in ("balanced", "unbalanced")}
-    part = Part({
-        "ball_unbalanced": ratio(seconds(few, "unbalanced"), seconds(few, "balanced"), "CPU s"),
-        "ball_unbalanced_many": ratio(seconds(many, "unbalanced"), seconds(many, "balanced"), "CPU s"),
-        "ball_saved": saved,
-        "ball_growth": grown["balanced"],
-        "ball_growth_unbalanced": grown["unbalanced"],
-        "ball_flatter": ratio(grown["unbalanced"].samples, grown["balanced"].samples, "times"),
-        "ball_preprocess": ratio(prepare(many), prepare(few), "CPU s"),
-        "ball_balancing": ratio(balance(many), prepare(many), "CPU s"),
-        "ball_megabytes": counted(bytes_of("balanced") / 1e6, "MB"),
-        "ball_pointers": counted(bytes_of("unbalanced") / bytes_of("balanced"), "",
-                                 f"{bytes_of('unbalanced') / 1e6:.1f} over {bytes_of('balanced') / 1e6:.1f} MB")})
-    rows = [[f"{photons:,}", tree, spread(prepare(photons, tree)), spread(seconds(photons, tree)),
-             f"{trials.column('map_bytes', photons=photons, tree=tree)[0] / 1e6:.1f}"]
-            for photons in (few, many) for tree in ("balanced", "unbalanced")]
-    rows.append(["none", "", "", spread(bare), ""])
-    part.tables.append(Table("figure2", "Figure 2: photons and trees", ["photons", "tree", "preprocess [CPU s]", "rendering [CPU s]", "MB"], rows,
-                             "640 × 480 pixels, 4 rays a pixel, N = 100; median and range of three repeats on one thread. Preprocess: "
-                             "photons and tree."))
-    return part
-
-
-def sensitivity(study):
-    trials = study.sweep("figure2_nearest")
-    few, many = (study.paper.number(name) for name in ("figure2_photons", "figure2_reference_photons"))
-    rows, saved = [], []
-    for nearest in sorted(trials.values("nearest"), key=natural):
-        seconds = lambda photons, tree: trials.column("render_cpu_s", nearest=nearest, photons=photons, tree=tree)
-        over = lambda a, b: ratio(a, b, "").samples
-        first = over(seconds(few, "unbalanced"), seconds(few, "balanced"))
-        second = over(seconds(many, "unbalanced"), seconds(many, "balanced"))
-        rows.append([nearest, spread(first), spread(second), spread([1 - 1 / each for each in second]),
-                     spread(over(seconds(many, "balanced"), seconds(few, "balanced"))),
-                     spread(over(seconds(many, "unbalanced"), seconds(few, "unbalanced")))])
-        saved += [1 - 1 / each for each in second]
-    return Part(tables=[Table("figure2_nearest", "Figure 2: how much N matters",
-                              ["N", "unbalanced / balanced, fewer photons", "unbalanced / balanced, more photons", "share saved there",
-                               "more / fewer photons, balanced", "more / fewer photons, unbalanced"], rows,
-                              f"CPU times of rendering; {few:,} and {many:,} photons, 320 × 240 pixels.")],
-                facts={"ball_saved_over_n": f"{short(min(saved))} to {short(max(saved))} for N = {rows[0][0]} to {rows[-1][0]}"})
+SCENE = "experiments/papers/scenes/jensen_ball.json"
 
 
 class Floor:
-    """Where on the floor, z = 0, a picture's pixels look, and which of them see it first."""
+    """Where on the floor, z = 0, a picture's pixels look, which of them see it first, and the light that they see there."""
 
     def __init__(self, layers, scene):
-        sensor = scene["sensor"]
-        view = sensor["to_world"][0]["look_at"]
-        origin, forward = np.array(view["origin"]), np.subtract(view["target"], view["origin"])
+        view, fov = scene["sensor"]["to_world"][0]["look_at"], scene["sensor"]["fov"]
+        self.origin, forward = np.array(view["origin"]), np.subtract(view["target"], view["origin"])
         forward = forward / np.linalg.norm(forward)
         right = np.cross(forward, view["up"])
         right /= np.linalg.norm(right)
-        up = np.cross(right, forward)
-        height, width = layers[""].shape[:2]
-        half = math.tan(math.radians(sensor["fov"]) / 2)
-        x = (2 * (np.arange(width) + 0.5) / width - 1) * half
-        y = (1 - 2 * (np.arange(height) + 0.5) / height) * half * height / width
-        rays = forward + x[None, :, None] * right + y[:, None, None] * up
-        way = -origin[2] / rays[..., 2]
-        self.points = (origin + way[..., None] * rays)[..., :2]
+        self.axes = np.stack([np.cross(right, forward), right, forward])
+        self.height, self.width = layers[""].shape[:2]
+        self.scale = self.width / 2 / math.tan(math.radians(fov) / 2)
+        x, y = (np.arange(self.width) + 0.5 - self.width / 2) / self.scale, (self.height / 2 - np.arange(self.height) - 0.5) / self.scale
+        rays = forward + x[None, :, None] * self.axes[1] + y[:, None, None] * self.axes[0]
+        way = -self.origin[2] / rays[..., 2]
+        self.points = (self.origin + way[..., None] * rays)[..., :2]
         albedo = layers["albedo"]
         self.seen = (rays[..., 2] < 0) & (albedo.max(axis=2) < 0.9)  # glass has an albedo of 1
         self.irradiance = np.where(self.seen, (layers["caustic"] / np.maximum(albedo, 1e-3)).mean(axis=2), 0)
 
+    def at(self, places):
+        """The light at places on the floor, between pixels; not a number outside the picture."""
+        up, right, forward = np.moveaxis((np.concatenate([places, np.zeros((*places.shape[:-1], 1))], axis=-1) - self.origin) @ self.axes.T, -1, 0)
+        pixels = [self.height / 2 - 0.5 - self.scale * up / forward, self.width / 2 - 0.5 + self.scale * right / forward]
+        return map_coordinates(self.irradiance, pixels, order=1, cval=np.nan)
 
-def curvature(floor):
-    """The spot's parabola y = c x² along its principal axes: c var x / sqrt(var y), 0 for an oval."""
-    spot = floor.seen & (floor.irradiance > THRESHOLD * np.quantile(floor.irradiance[floor.seen], QUANTILE))
-    points = floor.points[spot] - floor.points[spot].mean(axis=0)
+
+@dataclasses.dataclass
+class Bend:
+    """A spot's parabola y = c x² along its principal axes; index: c var x / sqrt(var y), 0 for an oval."""
+    index: float
+    level: float
+    curve: np.ndarray
+
+
+def bend(floor):
+    level = THRESHOLD * np.quantile(floor.irradiance[floor.seen], QUANTILE)
+    spot = floor.seen & (floor.irradiance > level)
+    middle = floor.points[spot].mean(axis=0)
+    points = floor.points[spot] - middle
     _, axes = np.linalg.eigh(np.cov(points.T))
     if axes[0, 1] < 0:
         axes[:, 1] *= -1  # along x, away from the lamp
-    along = points @ axes[:, 1]
-    across = points @ np.array([-axes[1, 1], axes[0, 1]])
-    bend = np.polyfit(along, across, 2)[0]
-    return float(bend * along.var() / math.sqrt(across.var()))
+    forth, side = axes[:, 1], np.array([-axes[1, 1], axes[0, 1]])
+    along, across = points @ forth, points @ side
+    parabola = np.polyfit(along, across, 2)
+    x = np.linspace(*np.quantile(along, (0.01, 0.99)), 60)
+    curve = middle + x[:, None] * forth + np.polyval(parabola, x)[:, None] * side
+    return Bend(float(parabola[0] * along.var() / math.sqrt(across.var())), float(level), curve)
 
 
 def shape(study):
     trials = study.sweep("figure2_shape")
     scene = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
-    bends = {alpha: [curvature(Floor(layers, scene)) for layers in trials.pictures(alpha=alpha)] for alpha in ("1", "0.1")}
+    floors = {alpha: [Floor(layers, scene) for layers in trials.pictures(alpha=alpha)] for alpha in ("1", "0.1")}
+    bends = {alpha: [bend(floor).index for floor in own] for alpha, own in floors.items()}
     size = lambda alpha: [abs(each) for each in bends[alpha]]
     note = f"index {spread(bends['0.1'])} at alpha 0.1, {spread(bends['1'])} at alpha 1"
-    shown = {alpha: trials.picture(alpha=alpha, seed=1) for alpha in bends}
-    pictures = strip([[(f"alpha = {alpha}", halved(shown[alpha]["caustic"]), white(shown[alpha]["caustic"])) for alpha in ("1", "0.1")]])
-    whole = study.sweep("figure2_overview").picture()[""]
+    whole, photons = study.sweep("figure2_overview"), study.paper.number("figure2_photons")
+    fov = [each.record(each.where()[0])["scene"]["resolved"]["sensor"]["fov"] for each in (whole, trials)]
+    shown = {alpha: whole.picture(alpha=alpha)[""] for alpha in floors}
+    pictures = [(f"alpha = {alpha}", picture, float(np.percentile(luminance(picture), 99.7))) for alpha, picture in shown.items()]
     return Part({
         "ball_curved": Measured(size("0.1"), note=note),
         "ball_oval": Measured(size("1"), note=note),
         "ball_bends": Measured([a - b for a, b in zip(size("0.1"), size("1"))], note=note)}, [], [
         Figure("figure2", "Figure 2: the caustic of a glass ball on glossy stone",
-               f"alpha = 0.1, {study.paper.number('figure2_photons'):,} photons, N = 100, 4 rays a pixel. The lamp stands 30 degrees high, at "
-               "the right; the eye looks across its light.", *strip([[("alpha = 0.1", whole)]])),
+               f"The paper's picture has alpha = 0.1; beside it the Lambertian twin, each at its own exposure. {photons:,} photons, {rendering(whole)}. The "
+               f"lamp stands 30 degrees high, at the right; the eye looks across its light, {fov[0]} degrees wide; the shape is measured {fov[1]} degrees "
+               "wide, below.", *strip([pictures])),
         Figure("figure2_shape", "Figure 2: oval at alpha 1, curved at alpha 0.1",
-               "The caustic alone on the floor, each at its own exposure. The index in the table fits a parabola to the spot, on the "
-               "floor, not in the picture: perspective does not bend it.", *pictures)])
+               f"The caustic alone, seen from straight above by a map of the eye's pixels onto the floor: its light over the floor's albedo, as a share of the "
+               f"spot's level (quantile {QUANTILE:g}). Mean of {len(trials.values('seed'))} seeds. Blue: the contour at {THRESHOLD:g} within which the spot is "
+               f"measured; red: its parabola. {note[0].upper()}{note[1:]}.", above(floors))])
 
 
-def halved(picture):
-    """Means over two by two pixels."""
-    return (picture[::2, ::2] + picture[1::2, ::2] + picture[::2, 1::2] + picture[1::2, 1::2]) / 4
+def above(floors):
+    """PNG of the spots on the floor, with contour and parabola."""
+    x, y = np.arange(0.3, 1.15, 0.0025), np.arange(-0.34, 0.26, 0.0025)
+    grid = np.stack(np.meshgrid(x, y), axis=-1)
+
+    def draw(*axes):
+        for ax, (alpha, own) in zip(axes, floors.items()):
+            mean = copy.copy(own[0])
+            mean.irradiance = np.mean([floor.irradiance for floor in own], axis=0)
+            found = bend(mean)
+            light = mean.at(grid) / found.level * THRESHOLD
+            drawn = ax.imshow(light, extent=(x[0], x[-1], y[0], y[-1]), origin="lower", cmap="gray", norm=PowerNorm(0.6, 0, 1.3))
+            smooth = gaussian_filter(light, 2)
+            ax.contour(x, y, smooth, [THRESHOLD], colors="#4aa3ff", linewidths=1.2)
+            ax.plot(*found.curve.T, color="#ff5a4a", linewidth=1.6)
+            ax.set(title=f"alpha = {alpha}, index {found.index:.2f}", xlabel="away from the lamp [m]", xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+        axes[0].set_ylabel("towards the eye [m]")
+        axes[0].figure.colorbar(drawn, ax=axes, shrink=0.75, label="light on the floor")
+
+    return plot(draw, 9, 3.4, 2)
 
 
-def blur(study):
-    """Fewer photons at one N: wider discs, so light where it should be dark."""
-    trials = study.sweep("figure2_blur")
-    scene = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
-    counts = sorted(trials.values("photons"), key=natural)
-    floors = {count: [Floor(layers, scene) for layers in trials.pictures(photons=count)] for count in counts}
-    sharp = floors[counts[-1]][0]
-    dark = sharp.seen & (sharp.irradiance < DARK * np.quantile(sharp.irradiance[sharp.seen], QUANTILE))
-    stray = {count: [float(floor.irradiance[dark].sum() / floor.irradiance[floor.seen].sum()) for floor in floors[count]] for count in counts}
-    middle = peak(sharp)
-    widths = {count: [half_width(floor, middle) for floor in floors[count]] for count in counts}
-    nice = str(study.paper.number("figure2_photons"))
-    fewer = counts[counts.index(nice) - 1]
-    rows = [[f"{int(count):,}", spread([100 * each for each in stray[count]]), spread([1000 * each for each in widths[count]])] for count in counts]
-    titled = lambda some: [(f"{int(count):,} photons", trials.picture(photons=count, seed=1)[""]) for count in some]
-    return Part({"ball_blur": ratio(stray[fewer], stray[nice], "of the light in the dark",
-                                    note="the width of the spot does not show it: it is wider than the discs of the estimates")}, [Table(
-        "figure2_blur", "Figure 2: blur over photons", ["photons", "light in the dark [%]", "width of the spot [mm]"], rows,
-        f"N = 100, alpha 0.1. Dark: below {100 * DARK:g} % of the spot in the picture of the most photons. Width: across the light's direction, "
-        "where the light summed over 0.2 m along it falls to a half.")],
-        [Figure("figure2_blur", "Figure 2: fewer photons make the caustic more blurred",
-                "The same view with 1 % of the paper's photons to four times as many, at one N = 100 and one exposure.",
-                *strip([titled(counts[:2]), titled(counts[2:])]))])
+def geometries(study):
+    """The index where lamp and eye stand elsewhere."""
+    base = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
+    usual = base["light"]["position"]
+    height = base["ball"]["center"][2]
+    far, first = math.hypot(usual[0], usual[2]), math.atan2(usual[2], -usual[0])
+    facts = {}
+    for degrees in (20, 40):
+        angle = math.radians(degrees)
+        lamp = [-far * math.cos(angle), 0, far * math.sin(angle)]
+        spot = base["sensor"]["to_world"][0]["look_at"]["target"][0] + height / math.tan(angle) - height / math.tan(first)
+        facts[f"ball_{degrees}"] = index_at(study, f"lamp{degrees}", base, lamp, [spot, *base["sensor"]["to_world"][0]["look_at"]["origin"][1:]], spot)
+    spot = base["sensor"]["to_world"][0]["look_at"]["target"][0]
+    facts["ball_behind"] = index_at(study, "behind", base, usual, [-0.8, 0, 2], spot)
+    return Part(facts=facts)
 
 
-def peak(floor):
-    """Where the spot is brightest along x [m]: the middle of its light."""
-    spot = floor.seen & (floor.irradiance > THRESHOLD * np.quantile(floor.irradiance[floor.seen], QUANTILE))
-    return float(np.average(floor.points[spot][:, 0], weights=floor.irradiance[spot]))
+def index_at(study, name, base, lamp, eye, spot):
+    """The indices at both alphas as words."""
+    scene = json.loads(json.dumps(base))
+    scene["sensor"]["to_world"][0]["look_at"] |= {"origin": eye, "target": [spot, 0, 0]}
+    look = "/sensor/to_world/0/look_at"
+    found = []
+    for alpha in (0.1, 1):
+        file, = study.single("figure2_geometries", "render", [
+            SCENE, "--set", f"{look}/origin={json.dumps(eye)}", "--set", f"{look}/target={json.dumps([spot, 0, 0])}",
+            "--set", f"/light/position={json.dumps(lamp)}", "--set", f"/floor/bsdf/alpha={alpha}", "--set", "/sensor/film/width=320", "--set",
+            "/sensor/film/height=240", "--threads", "1", "--method", "photonmap", "--param", f"photons={study.paper.number('figure2_photons')}",
+            "--param", "nearest=100"], f"{name}-alpha{alpha}.exr")
+        found.append(f"{bend(Floor(exr.read_layers(file), scene)).index:.2f} at alpha {alpha}")
+    return ", ".join(found)
 
 
-def half_width(floor, middle, reach=0.1, step=0.005):
-    """Full width at half the maximum of the light across the spot [m]."""
-    near = floor.seen & (np.abs(floor.points[..., 0] - middle) < reach)
-    y, light = floor.points[near][:, 1], floor.irradiance[near]
-    bins = np.arange(y.min(), y.max(), step)
-    sums, counts = (np.histogram(y, bins, weights=weights)[0] for weights in (light, None))
-    profile = sums / np.maximum(counts, 1)
-    top = int(np.argmax(profile))
-    half = profile[top] / 2
-    left = next(i for i in range(top, -1, -1) if profile[i] <= half)
-    right = next(i for i in range(top, len(profile)) if profile[i] <= half)
-    between = lambda low, high: low + (half - profile[low]) / (profile[high] - profile[low]) * (high - low)
-    return step * (between(right - 1, right) - between(left, left + 1))
-
-
-SECTIONS = {"figure2-table": table, "figure2-nearest": sensitivity, "figure2-shape": shape, "figure2-blur": blur}
+SECTIONS = {"figure2-shape": shape, "figure2-geometry": geometries}

@@ -5,10 +5,12 @@ import statistics
 import numpy as np
 
 from papers.figures import luminance, strip
+from papers.jensen_table import rendering
 from papers.jensen_ring import preprocess
 from papers.part import Figure, Part, Table
 from papers.verdict import Measured, counted, ratio
 from papers.words import spread
+from report import exr
 
 SIDE = 12  # pixels of a window in which contrast is local
 VIEWS = ("of the figure", "from the left", "from the right", "from low down", "from behind", "from behind, left", "from behind, right",
@@ -16,46 +18,101 @@ VIEWS = ("of the figure", "from the left", "from the right", "from low down", "f
 
 
 def times(study):
-    trials = study.sweep("figure3")
+    trials, ball = study.sweep("figure3"), study.sweep("figure2")
+    few = study.paper.number("figure2_photons")
     seconds = lambda tree: trials.column("render_cpu_s", tree=tree)
-    rows = [[tree, spread(preprocess(trials, tree=tree)), spread(seconds(tree)), f"{trials.column('map_bytes', tree=tree)[0] / 1e6:.2f}"]
-            for tree in ("balanced", "unbalanced")]
+    other = lambda tree: ball.column("render_cpu_s", method="photonmap", photons=few, tree=tree)
+    prepare = lambda tree: preprocess(trials, tree=tree)
+    unbalanced = ratio(seconds("unbalanced"), seconds("balanced"), "CPU s")
+    megabytes = [some.column("map_bytes", method="photonmap", tree="balanced", **wanted)[0] / 1e6
+                 for some, wanted in ((study.sweep("figure1"), {}), (ball, {"photons": few}), (trials, {}))]
+    rows = [[tree, spread(prepare(tree)), spread(trials.column("balance_cpu_s", tree=tree)), spread(seconds(tree)),
+             f"{trials.column('map_bytes', tree=tree)[0] / 1e6:.2f}"] for tree in ("balanced", "unbalanced")]
     return Part({
-        "cognac_unbalanced": ratio(seconds("unbalanced"), seconds("balanced"), "CPU s"),
-        "cognac_preprocess": ratio(preprocess(trials, tree="balanced"), seconds("balanced"), "CPU s")}, [
-        Table("figure3", "Figure 3: trees", ["tree", "preprocess [CPU s]", "rendering [CPU s]", "MB"], rows,
-              f"640 × 480 pixels, 4 rays a pixel, {study.paper.number('figure3_photons'):,} photons, N = 100.")], [
-        Figure("figure3", "Figure 3: a glass of cognac on fractal sand",
-               "2 · 1024² triangles of sand, alpha 0.6; three meshes that share rings: glass and air, glass and cognac, cognac and air. "
-               "Beer's law colours the light that goes through. The paper's photons and N = 100; 16 rays a pixel for print, 4 in the table.",
-               *strip([[("", study.sweep("figure3_picture").picture()[""])]]))])
+        "cognac_unbalanced": unbalanced,
+        "cognac_doubled": unbalanced,
+        "cognac_inserting": ratio(prepare("unbalanced"), prepare("balanced"), "CPU s"),
+        "cognac_preprocess": ratio(prepare("balanced"), seconds("balanced"), "CPU s"),
+        "cognac_slower": ratio(seconds("balanced"), other("balanced")[:len(seconds("balanced"))], "CPU s"),
+        "usual_megabytes": Measured(megabytes, unit="MB", counted=True, note="figures 1, 2 and 3: " + ", ".join(f"{each:.2f}" for each in megabytes))}, [
+        Table("figure3", "Figure 3: trees", ["tree", "preprocess [CPU s]", "of which the tree", "rendering [CPU s]", "MB"], rows,
+              f"{rendering(trials)}, {study.paper.number('figure3_photons'):,} photons.")], [
+        picture(study, trials)], {"cognac_trees": spread(unbalanced.samples), "ball_trees": spread(ratio(other("unbalanced"), other("balanced"), "").samples)})
+
+
+def picture(study, trials):
+    shown = study.sweep("figure3_picture")
+    sand = shown.record(shown.where()[0])["scene"]["resolved"]["sand"]
+    return Figure("figure3", "Figure 3: a glass of cognac on fractal sand",
+                  f"2 · {2 ** sand['fractal']['levels']}² triangles of sand, alpha {sand['bsdf']['alpha']:g}; three meshes that share rings: glass and air, glass "
+                  f"and cognac, cognac and air. Beer's law colours the light that goes through. {study.paper.number('figure3_photons'):,} photons; for print "
+                  f"{rendering(shown)}; in the table {rendering(trials)}.", *strip([[("", shown.picture()[""])]]))
 
 
 def twins(study):
     """The sand with alpha 0.6 and Lambert's law from several sides; with clear cognac."""
     trials, clear = study.sweep("figure3_twins"), study.sweep("figure3_clear")
-    eyes = list(dict.fromkeys(row["eye"] for row in trials.rows))
-    eyes.sort(key=lambda eye: [json.loads(eye) == list(each) for each in eyes_of(study)].index(True))
+    eyes = [next(row["eye"] for row in trials.rows if json.loads(row["eye"]) == list(eye)) for eye in eyes_of(study)]
     sands = {("alpha 0.6" if "alpha" in row["sand"] else "Lambert"): row["sand"] for row in trials.rows}
     contrast = {(name, eye): [local_contrast(layers) for layers in trials.pictures(sand=sand, eye=eye)]
                 for name, sand in sands.items() for eye in eyes}
-    ratios = [np.mean(contrast["alpha 0.6", eye]) / np.mean(contrast["Lambert", eye]) for eye in eyes]
-    rows = [[view, spread(contrast["alpha 0.6", eye]), spread(contrast["Lambert", eye]), f"{each:.3f}"]
-            for view, eye, each in zip(VIEWS, eyes, ratios)]
-    red = lambda layers: float(layers["caustic"][..., 0].sum() / layers["caustic"][..., 2].sum())
-    shades = lambda some, **wanted: [statistics.fmean(map(red, some.pictures(eye=eye, **wanted))) for eye in clear.values("eye")]
-    cognac, water = shades(trials, sand=sands["alpha 0.6"]), shades(clear)
-    shown = lambda name, eye: trials.picture(sand=sands[name], eye=eye, seed=1)[""]
-    pictures = strip([[("alpha = 0.6", shown("alpha 0.6", eyes[0])), ("Lambert's law", shown("Lambert", eyes[0]))],
-                      [("alpha = 0.6, from low down", shown("alpha 0.6", eyes[3])), ("Lambert's law, from low down", shown("Lambert", eyes[3]))],
-                      [("clear cognac", clear.picture(eye=eyes[0])[""])]])
+    ratios = {eye: ratio(contrast["alpha 0.6", eye], contrast["Lambert", eye], "local contrast").samples for eye in eyes}
+    middle = [statistics.fmean(ratios[eye]) for eye in eyes]
+    rows = [[view, spread(contrast["alpha 0.6", eye]), spread(contrast["Lambert", eye]), spread(ratios[eye])] for view, eye in zip(VIEWS, eyes)]
+    over = lambda some, count, **wanted: [statistics.fmean(each) for each in zip(*(
+        [redness(layers) for layers in some.pictures(eye=eye, **wanted)] for eye in eyes[:count]))]
+    views = len(clear.values("eye"))
+    seeds = len(trials.values("seed"))
+    shades = shades_of(study, over(clear, 1), over(trials, 1, sand=sands["alpha 0.6"]))
+    pair = f"{sum(each > 1 for each in middle)} of {len(eyes)} views have more contrast with alpha 0.6, ratios {min(middle):.3g} to {max(middle):.3g}"
     return Part({
-        "cognac_red": ratio(cognac, water, "red over blue", note="one sample a view"),
-        "cognac_flat": Measured(ratios, note="one sample a view: " + ", ".join(VIEWS))}, [
+        "cognac_red": ratio(over(trials, views, sand=sands["alpha 0.6"]), over(clear, views), "red over blue",
+                            note=f"one sample a seed, the mean of {views} views"),
+        "cognac_flat": ratio(contrast["alpha 0.6", eyes[0]], contrast["Lambert", eyes[0]], "local contrast", note=f"one sample a seed; {pair}"),
+        "cognac_flat_views": Measured(middle, note=f"one sample a view, the mean of {seeds} seeds: {pair}")}, [
         Table("figure3_twins", "Figure 3: is the Lambertian sand flat?", ["view", "local contrast, alpha 0.6", "Lambert", "ratio"], rows,
-              f"Standard deviation of the logarithm of luminance in windows of {SIDE} x {SIDE} pixels of sand, mean over the windows.")], [
-        Figure("figure3_twins", "Figure 3: its twins", "The same sand with alpha 0.6 and with Lambert's law, from two sides, and the glass with "
-               "clear cognac: without absorption the caustic is white.", *pictures)])
+              f"Standard deviation of the logarithm of luminance in windows of {SIDE} x {SIDE} pixels of sand, mean over the windows; {seeds} seeds.")], [
+        twins_figure(trials, clear, sands, eyes)], {"cognac_shades": shades, "cognac_contrasts": pair})
+
+
+def twins_figure(trials, clear, sands, eyes):
+    """Each picture the mean of the seeds."""
+    mean = lambda some, **wanted: np.mean([layers[""] for layers in some.pictures(**wanted)], axis=0)
+    shown = lambda name, view: mean(trials, sand=sands[name], eye=eyes[view])
+    below = VIEWS.index("from behind, right")
+    pictures = strip([[("alpha = 0.6", shown("alpha 0.6", 0)), ("Lambert's law", shown("Lambert", 0)), ("alpha = 0.6, clear cognac", mean(clear, eye=eyes[0]))],
+                      [("alpha = 0.6, from behind, right", shown("alpha 0.6", below)), ("Lambert's law, from behind, right", shown("Lambert", below)),
+                       ("the same, alpha = 0.6 over Lambert", shade(shown("alpha 0.6", below), shown("Lambert", below)), 1.0)]])
+    return Figure("figure3_twins", "Figure 3: its twins",
+                  "The same sand with alpha 0.6 and with Lambert's law, from the figure's side and from the opposite one, where the two differ most; and the "
+                  "glass with clear cognac: without absorption the caustic is white. Last: the ratio of luminances, grey where equal, white where alpha 0.6 "
+                  f"is twice as bright or more, black where it is half. Means of {len(trials.values('seed'))} seeds, {rendering(trials)}.", *pictures)
+
+
+def shade(above, below):
+    """The logarithm of a ratio of luminances as grey, for pictures shown at white 1."""
+    stops = np.log2(np.maximum(luminance(above), 1e-6) / np.maximum(luminance(below), 1e-6))
+    grey = np.clip(0.5 + stops / 2, 0, 1) ** 2.2
+    return np.repeat(grey[..., None], 3, axis=2)
+
+
+def shades_of(study, clear, cognac):
+    """Red over blue in the caustic with clear cognac, half and double the absorption, and the scene's own."""
+    scene = json.loads((study.scenes.parent.parent / "scenes" / "cognac.json").read_text(encoding="utf-8"))
+    found = []
+    for times in (0.5, 2):
+        absorption = json.dumps([times * each for each in scene["cognac"]["bsdf"]["absorption"]])
+        changes = [word for mesh in ("inside", "cognac") for word in ("--set", f"/{mesh}/bsdf/absorption={absorption}")]
+        file, = study.single("figure3_absorption", "render", [
+            "experiments/scenes/cognac.json", *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--threads", "1", "--spp", "4",
+            "--method", "photonmap", "--param", f"photons={study.paper.number('figure3_photons')}", "--param", "nearest=100"], f"times{times}.exr")
+        found.append(redness(exr.read_layers(file)))
+    return (f"{statistics.median(clear):.3g} with clear cognac, {found[0]:.3g} with half of the absorption, {statistics.median(cognac):.3g} with all of it, "
+            f"{found[1]:.3g} with twice as much")
+
+
+def redness(layers):
+    return float(layers["caustic"][..., 0].sum() / layers["caustic"][..., 2].sum())
 
 
 def eyes_of(study):
@@ -98,7 +155,6 @@ def one_map(study):
     study.single("views", "render", [scene, *small, *method, *photons, "--param", f"save={kept}"], "first.exr")
     read, = study.single("views", "render", [scene, *small, *other, *method, "--param", f"load={kept}"], "read.exr")
     traced, = study.single("views", "render", [scene, *small, *other, *method, *photons], "traced.exr")
-    from report import exr
     ours, theirs = exr.read_layers(read), exr.read_layers(traced)
     largest = max(float(np.abs(ours[layer] - theirs[layer]).max()) for layer in ours)
     return Part({"view_independent": counted(largest, "W/(m² sr)", "largest difference in any layer")})
