@@ -77,27 +77,41 @@ def shape(study):
     bends = {alpha: [bend(floor).index for floor in own] for alpha, own in floors.items()}
     size = lambda alpha: [abs(each) for each in bends[alpha]]
     note = f"index {spread(bends['0.1'])} at alpha 0.1, {spread(bends['1'])} at alpha 1"
-    whole, photons = study.sweep("figure2_overview"), study.paper.number("figure2_photons")
-    fov = [each.record(each.where()[0])["scene"]["resolved"]["sensor"]["fov"] for each in (whole, trials)]
-    shown = {alpha: whole.picture(alpha=alpha)[""] for alpha in floors}
-    pictures = [(f"alpha = {alpha}", picture, float(np.percentile(luminance(picture), 99.7))) for alpha, picture in shown.items()]
     return Part({
         "ball_curved": Measured(size("0.1"), note=note),
         "ball_oval": Measured(size("1"), note=note),
-        "ball_bends": Measured([a - b for a, b in zip(size("0.1"), size("1"))], note=note)}, [], [
-        Figure("figure2", "Figure 2: the caustic of a glass ball on glossy stone",
-               f"The paper's picture has alpha = 0.1; beside it the Lambertian twin, each at its own exposure. {photons:,} photons, {rendering(whole)}. The "
-               f"lamp stands 30 degrees high, at the right; the eye looks across its light, {fov[0]} degrees wide; the shape is measured {fov[1]} degrees "
-               "wide, below.", *strip([pictures])),
-        Figure("figure2_shape", "Figure 2: oval at alpha 1, curved at alpha 0.1",
-               f"The caustic alone, seen from straight above by a map of the eye's pixels onto the floor: its light over the floor's albedo, as a share of the "
-               f"spot's level (quantile {QUANTILE:g}). Mean of {len(trials.values('seed'))} seeds. Blue: the contour at {THRESHOLD:g} within which the spot is "
-               f"measured; red: its parabola. {note[0].upper()}{note[1:]}.", above(floors))])
+        "ball_bends": Measured([a - b for a, b in zip(size("0.1"), size("1"))], note=note)},
+        figures=[overview(study, trials, floors), spots(trials, floors, note)])
+
+
+def overview(study, trials, floors):
+    whole, lamp = study.sweep("figure2_overview"), json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))["light"]["position"]
+    fov = [each.record(each.where()[0])["scene"]["resolved"]["sensor"]["fov"] for each in (whole, trials)]
+    pictures = []
+    for alpha in floors:
+        picture = whole.picture(alpha=alpha)[""]
+        pictures.append((f"alpha = {alpha}", picture, float(np.percentile(luminance(picture), 99.7))))
+    return Figure("figure2", "Figure 2: the caustic of a glass ball on glossy stone",
+                  "The paper's picture has alpha = 0.1; beside it its Lambertian twin, each at its own exposure. "
+                  f"{study.paper.number('figure2_photons'):,} photons, {rendering(whole)}. The lamp stands {elevation(lamp):.0f} degrees high, at the right; "
+                  f"the eye looks across its light, {fov[0]} degrees wide; the shape, below, is measured in a view {fov[1]} degrees wide.", *strip([pictures]))
+
+
+def elevation(lamp):
+    """In degrees, as the foot of the ball sees it."""
+    return math.degrees(math.atan2(lamp[2], math.hypot(*lamp[:2])))
+
+
+def spots(trials, floors, note):
+    return Figure("figure2_shape", "Figure 2: oval at alpha 1, curved at alpha 0.1",
+                  "The caustic alone as seen from straight above: the eye's pixels moved onto the floor, light over the floor's albedo, as a share of "
+                  f"the spot's level (its quantile {QUANTILE:g}). Mean of {len(trials.values('seed'))} seeds. Blue: the contour at {THRESHOLD:g}, within "
+                  f"which the spot is measured; red: its parabola. {note[0].upper()}{note[1:]}.", above(floors))
 
 
 def above(floors):
     """PNG of the spots on the floor, with contour and parabola."""
-    x, y = np.arange(0.3, 1.15, 0.0025), np.arange(-0.34, 0.26, 0.0025)
+    x, y = np.arange(0.32, 1, 0.0025), np.arange(-0.2, 0.25, 0.0025)
     grid = np.stack(np.meshgrid(x, y), axis=-1)
 
     def draw(*axes):
@@ -112,7 +126,7 @@ def above(floors):
             ax.plot(*found.curve.T, color="#ff5a4a", linewidth=1.6)
             ax.set(title=f"alpha = {alpha}, index {found.index:.2f}", xlabel="away from the lamp [m]", xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
         axes[0].set_ylabel("towards the eye [m]")
-        axes[0].figure.colorbar(drawn, ax=axes, shrink=0.75, label="light on the floor")
+        axes[0].figure.colorbar(drawn, ax=list(axes), shrink=0.75, label="light on the floor")
 
     return plot(draw, 9, 3.4, 2)
 
@@ -120,17 +134,16 @@ def above(floors):
 def geometries(study):
     """The index where lamp and eye stand elsewhere."""
     base = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
-    usual = base["light"]["position"]
-    height = base["ball"]["center"][2]
-    far, first = math.hypot(usual[0], usual[2]), math.atan2(usual[2], -usual[0])
+    usual, height = base["light"]["position"], base["ball"]["center"][2]
+    look = base["sensor"]["to_world"][0]["look_at"]
+    middle, far, first = look["target"][0], math.hypot(usual[0], usual[2]), math.atan2(usual[2], -usual[0])
     facts = {}
     for degrees in (20, 40):
         angle = math.radians(degrees)
         lamp = [-far * math.cos(angle), 0, far * math.sin(angle)]
-        spot = base["sensor"]["to_world"][0]["look_at"]["target"][0] + height / math.tan(angle) - height / math.tan(first)
-        facts[f"ball_{degrees}"] = index_at(study, f"lamp{degrees}", base, lamp, [spot, *base["sensor"]["to_world"][0]["look_at"]["origin"][1:]], spot)
-    spot = base["sensor"]["to_world"][0]["look_at"]["target"][0]
-    facts["ball_behind"] = index_at(study, "behind", base, usual, [-0.8, 0, 2], spot)
+        spot = middle + height / math.tan(angle) - height / math.tan(first)
+        facts[f"ball_{degrees}"] = index_at(study, f"lamp{degrees}", base, lamp, [spot, *look["origin"][1:]], spot)
+    facts["ball_behind"] = index_at(study, "behind", base, usual, [-0.8, 0, 2], middle)
     return Part(facts=facts)
 
 

@@ -58,8 +58,9 @@ def blur(study):
 def more_blur(more, less, what):
     """Differences of squares: the blur of many photons cannot be told from 0, so there is no ratio."""
     shown = lambda errors: f"{100 * root(errors.blur):.2g} %"
-    return Measured([a - b for a, b in zip(more.blur, less.blur)], note=f"{what}: blur {shown(more)} against {shown(less)}, by disjoint pairs of seeds; blur is "
-                    "the deviation from the most photons that pictures of two seeds share")
+    return Measured([a - b for a, b in zip(more.blur, less.blur)],
+                    note=f"{what}: blur {shown(more)} against {shown(less)}, by disjoint pairs of seeds; blur is the deviation from the most photons that "
+                    "pictures of two seeds share")
 
 
 def root(squares):
@@ -97,14 +98,15 @@ def table(floors, found, maps):
     rows = []
     for each in maps:
         sides = [edges(floor, middle) for floor in floors[each]]
+        millimetres = lambda side: spread([1000 * each[side] for each in sides])
         rows.append([f"{int(each[0]):,}", each[1], *map(per_cent, (found[each].rmse, found[each].noise, found[each].blur)),
-                     spread([1000 * width for width, _ in sides]), spread([1000 * edge for _, edge in sides]), spread(list(map(stray, floors[each])))])
+                     millimetres(0), millimetres(1), spread(list(map(stray, floors[each])))])
     return Table("figure2_blur", "Figure 2: blur and noise over photons and N",
                  ["photons", "N", "rmse [%]", "noise [%]", "blur [%]", "half width [mm]", "edge, 90 to 10 % [mm]", "light in the dark [%]"], rows,
-                 f"alpha 0.1, {len(floors[maps[0]])} seeds. Deviations of the caustic on the floor, each divided by the caustic there and {100 * DARK:g} % of the "
-                 "spot: rmse against the mean of other seeds of the most photons, whose own noise is in it; noise from pairs of seeds; blur is what the "
-                 f"deviations of two seeds share. Width and edge: across the light's direction, summed over {2 * REACH:g} m along it. Dark: below "
-                 f"{100 * DARK:g} % of the spot.")
+                 f"alpha 0.1, {len(floors[maps[0]])} seeds. Deviations of the caustic on the floor, each divided by the caustic there and "
+                 f"{100 * DARK:g} % of the spot: rmse against the mean of other seeds of the most photons, whose own noise is in it; noise from pairs of "
+                 "seeds; blur is what the deviations of two seeds share. Width and edge: across the light's direction, summed over "
+                 f"{2 * REACH:g} m along it. Dark: below {100 * DARK:g} % of the spot.")
 
 
 def peak(floor):

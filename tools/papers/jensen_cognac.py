@@ -34,19 +34,22 @@ def times(study):
         "cognac_inserting": ratio(prepare("unbalanced"), prepare("balanced"), "CPU s"),
         "cognac_preprocess": ratio(prepare("balanced"), seconds("balanced"), "CPU s"),
         "cognac_slower": ratio(seconds("balanced"), other("balanced")[:len(seconds("balanced"))], "CPU s"),
-        "usual_megabytes": Measured(megabytes, unit="MB", counted=True, note="figures 1, 2 and 3: " + ", ".join(f"{each:.2f}" for each in megabytes))}, [
+        "usual_megabytes": Measured(megabytes, unit="MB", counted=True, note="follows from the paper's photons and the bytes of one: figures 1, 2 "
+                                    f"and 3 take {', '.join(f'{each:.2f}' for each in megabytes)} MB")}, [
         Table("figure3", "Figure 3: trees", ["tree", "preprocess [CPU s]", "of which the tree", "rendering [CPU s]", "MB"], rows,
               f"{rendering(trials)}, {study.paper.number('figure3_photons'):,} photons.")], [
-        picture(study, trials)], {"cognac_trees": spread(unbalanced.samples), "ball_trees": spread(ratio(other("unbalanced"), other("balanced"), "").samples)})
+        picture(study, trials)], {"cognac_trees": spread(unbalanced.samples),
+                                  "ball_trees": spread(ratio(other("unbalanced"), other("balanced"), "").samples)})
 
 
 def picture(study, trials):
     shown = study.sweep("figure3_picture")
     sand = shown.record(shown.where()[0])["scene"]["resolved"]["sand"]
     return Figure("figure3", "Figure 3: a glass of cognac on fractal sand",
-                  f"2 · {2 ** sand['fractal']['levels']}² triangles of sand, alpha {sand['bsdf']['alpha']:g}; three meshes that share rings: glass and air, glass "
-                  f"and cognac, cognac and air. Beer's law colours the light that goes through. {study.paper.number('figure3_photons'):,} photons; for print "
-                  f"{rendering(shown)}; in the table {rendering(trials)}.", *strip([[("", shown.picture()[""])]]))
+                  f"2 · {2 ** sand['fractal']['levels']}² triangles of sand, alpha {sand['bsdf']['alpha']:g}; three meshes that share rings: glass and air, "
+                  "glass and cognac, cognac and air. Beer's law colours the light that goes through. "
+                  f"{study.paper.number('figure3_photons'):,} photons; for print {rendering(shown)}; in the table {rendering(trials)}.",
+                  *strip([[("", shown.picture()[""])]]))
 
 
 def twins(study):
@@ -63,6 +66,7 @@ def twins(study):
         [redness(layers) for layers in some.pictures(eye=eye, **wanted)] for eye in eyes[:count]))]
     views = len(clear.values("eye"))
     seeds = len(trials.values("seed"))
+    extreme = middle.index(min(middle))
     shades = shades_of(study, over(clear, 1), over(trials, 1, sand=sands["alpha 0.6"]))
     pair = f"{sum(each > 1 for each in middle)} of {len(eyes)} views have more contrast with alpha 0.6, ratios {min(middle):.3g} to {max(middle):.3g}"
     return Part({
@@ -71,22 +75,24 @@ def twins(study):
         "cognac_flat": ratio(contrast["alpha 0.6", eyes[0]], contrast["Lambert", eyes[0]], "local contrast", note=f"one sample a seed; {pair}"),
         "cognac_flat_views": Measured(middle, note=f"one sample a view, the mean of {seeds} seeds: {pair}")}, [
         Table("figure3_twins", "Figure 3: is the Lambertian sand flat?", ["view", "local contrast, alpha 0.6", "Lambert", "ratio"], rows,
-              f"Standard deviation of the logarithm of luminance in windows of {SIDE} x {SIDE} pixels of sand, mean over the windows; {seeds} seeds.")], [
-        twins_figure(trials, clear, sands, eyes)], {"cognac_shades": shades, "cognac_contrasts": pair})
+              f"Standard deviation of the logarithm of luminance in windows of {SIDE} x {SIDE} pixels of sand, mean over them; {seeds} seeds.")], [
+        twins_figure(trials, clear, sands, eyes, extreme)], {"cognac_shades": shades, "cognac_contrasts": pair})
 
 
-def twins_figure(trials, clear, sands, eyes):
+def twins_figure(trials, clear, sands, eyes, other):
     """Each picture the mean of the seeds."""
     mean = lambda some, **wanted: np.mean([layers[""] for layers in some.pictures(**wanted)], axis=0)
     shown = lambda name, view: mean(trials, sand=sands[name], eye=eyes[view])
-    below = VIEWS.index("from behind, right")
-    pictures = strip([[("alpha = 0.6", shown("alpha 0.6", 0)), ("Lambert's law", shown("Lambert", 0)), ("alpha = 0.6, clear cognac", mean(clear, eye=eyes[0]))],
-                      [("alpha = 0.6, from behind, right", shown("alpha 0.6", below)), ("Lambert's law, from behind, right", shown("Lambert", below)),
-                       ("the same, alpha = 0.6 over Lambert", shade(shown("alpha 0.6", below), shown("Lambert", below)), 1.0)]])
+    glossy, lambertian = shown("alpha 0.6", other), shown("Lambert", other)
+    pictures = strip([[("alpha = 0.6", shown("alpha 0.6", 0)), ("Lambert's law", shown("Lambert", 0)),
+                       ("alpha = 0.6, clear cognac", mean(clear, eye=eyes[0]))],
+                      [(f"alpha = 0.6, {VIEWS[other]}", glossy), (f"Lambert's law, {VIEWS[other]}", lambertian),
+                       ("alpha = 0.6 over Lambert", shade(glossy, lambertian), 1.0)]])
     return Figure("figure3_twins", "Figure 3: its twins",
-                  "The same sand with alpha 0.6 and with Lambert's law, from the figure's side and from the opposite one, where the two differ most; and the "
-                  "glass with clear cognac: without absorption the caustic is white. Last: the ratio of luminances, grey where equal, white where alpha 0.6 "
-                  f"is twice as bright or more, black where it is half. Means of {len(trials.values('seed'))} seeds, {rendering(trials)}.", *pictures)
+                  f"The same sand with alpha 0.6 and with Lambert's law, in the figure's view and {VIEWS[other]}, where alpha 0.6 loses most contrast; "
+                  "and the glass with clear cognac: without absorption the caustic is white. Last: the ratio of luminances, grey where equal, white "
+                  f"where alpha 0.6 is twice as bright or more, black where it is half. Means of {len(trials.values('seed'))} seeds, {rendering(trials)}.",
+                  *pictures)
 
 
 def shade(above, below):
@@ -104,11 +110,12 @@ def shades_of(study, clear, cognac):
         absorption = json.dumps([times * each for each in scene["cognac"]["bsdf"]["absorption"]])
         changes = [word for mesh in ("inside", "cognac") for word in ("--set", f"/{mesh}/bsdf/absorption={absorption}")]
         file, = study.single("figure3_absorption", "render", [
-            "experiments/scenes/cognac.json", *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--threads", "1", "--spp", "4",
-            "--method", "photonmap", "--param", f"photons={study.paper.number('figure3_photons')}", "--param", "nearest=100"], f"times{times}.exr")
+            "experiments/scenes/cognac.json", *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--threads", "1",
+            "--spp", "4", "--method", "photonmap", "--param", f"photons={study.paper.number('figure3_photons')}", "--param", "nearest=100"],
+            f"times{times}.exr")
         found.append(redness(exr.read_layers(file)))
-    return (f"{statistics.median(clear):.3g} with clear cognac, {found[0]:.3g} with half of the absorption, {statistics.median(cognac):.3g} with all of it, "
-            f"{found[1]:.3g} with twice as much")
+    return (f"{statistics.median(clear):.3g} with clear cognac, {found[0]:.3g} with half of the absorption, {statistics.median(cognac):.3g} with all "
+            f"of it, {found[1]:.3g} with twice as much")
 
 
 def redness(layers):

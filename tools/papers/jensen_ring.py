@@ -33,7 +33,7 @@ def times(study):
         "ring_bare": ratio(bare("1", FIXED), seconds("1", FIXED), "CPU s"),
         "ring_preprocess": ratio(preprocess(trials, alpha=1, max_samples=FIXED, method="photonmap"), seconds("1", FIXED), "CPU s"),
         "ring_photons": noisier,
-        "ring_megabytes": counted(map_bytes / 1e6, "MB"),
+        "ring_megabytes": counted(map_bytes / 1e6, "MB", "follows from the paper's photons and the bytes of one"),
         "ring_megabytes_glossy": Measured([map_bytes / 1e6 * each for each in noisier.samples], unit="MB",
                                           note="so many photons in a disc of one size have at alpha 0.01 the noise of alpha 1"),
         "photon_bytes": counted(map_bytes / photons, "bytes", f"{short(map_bytes)} bytes over {short(photons)} photons"),
@@ -119,7 +119,7 @@ def sensitivity(study):
     worst = {name: Measured(found[least(found)], note=over_n(found)) for name, found in (("ring_time_any", times_of), ("ring_rays_any", rays_of))}
     table = Table("figure1_nearest", "Figure 1: how much N matters",
                   ["N", "CPU s at alpha 1", "CPU s at alpha 0.01", "CPU s, 0.01 over 1", "rays, 0.01 over 1"], rows,
-                  "Adaptive, as in the table above: many photons in an estimate leave little noise at either alpha, so few rays for the glossy floor.")
+                  "Adaptive, as in the table above: many photons in an estimate leave little noise at either alpha, so few more rays.")
     ends = lambda found: f"{over_n({nearest: found[nearest] for nearest in (rows[0][0], rows[-1][0])})}"
     return Part(worst, [table], facts={"ring_growth_over_n": ends(times_of), "ring_rays_over_n": ends(rays_of)})
 

@@ -18,7 +18,8 @@ def table(study):
     balance = lambda photons, tree: trials.column("balance_cpu_s", method="photonmap", photons=photons, tree=tree)
     bytes_of = lambda tree: trials.column("map_bytes", method="photonmap", photons=many, tree=tree)[0]
     grown = {tree: ratio(seconds(many, tree), seconds(few, tree), "CPU s") for tree in ("balanced", "unbalanced")}
-    inserting = lambda photons: f"inserting the photons one by one takes {spread(balance(photons, 'unbalanced'), 'CPU s')}, tracing them is as fast"
+    inserting = lambda photons: (f"of which building the tree photon by photon is {spread(balance(photons, 'unbalanced'), 'CPU s')}, balancing "
+                                 f"{spread(balance(photons, 'balanced'), 'CPU s')}; the rest is tracing")
     unbalanced = ratio(seconds(few, "unbalanced"), seconds(few), "CPU s")
     return Part({
         "ball_unbalanced": unbalanced,
@@ -34,14 +35,15 @@ def table(study):
         "ball_prepared": ratio(prepare(few), seconds(few), "CPU s"),
         "ball_prepared_many": ratio(prepare(many), seconds(many), "CPU s"),
         "ball_balancing": ratio(balance(many, "balanced"), prepare(many), "CPU s"),
-        "ball_megabytes": counted(bytes_of("balanced") / 1e6, "MB"),
+        "ball_megabytes": counted(bytes_of("balanced") / 1e6, "MB", "follows from the paper's photons and the bytes of one"),
         "ball_pointers": counted(bytes_of("unbalanced") / bytes_of("balanced"), "",
                                  f"{bytes_of('unbalanced') / 1e6:.1f} over {bytes_of('balanced') / 1e6:.1f} MB")}, [times_table(trials, few, many)])
 
 
 def times_table(trials, few, many):
     pick = lambda column, photons, tree: trials.column(column, method="photonmap", photons=photons, tree=tree)
-    rows = [[f"{photons:,}", tree, spread(preprocess(trials, method="photonmap", photons=photons, tree=tree)), spread(pick("balance_cpu_s", photons, tree)),
+    prepare = lambda photons, tree: preprocess(trials, method="photonmap", photons=photons, tree=tree)
+    rows = [[f"{photons:,}", tree, spread(prepare(photons, tree)), spread(pick("balance_cpu_s", photons, tree)),
              spread(pick("render_cpu_s", photons, tree)), f"{pick('map_bytes', photons, tree)[0] / 1e6:.1f}"]
             for photons in (few, many) for tree in ("balanced", "unbalanced")]
     rows.append(["none", "", "", "", spread(trials.column("render_cpu_s", method="none")), ""])
