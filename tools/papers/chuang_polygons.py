@@ -89,11 +89,13 @@ def load(study):
 def eyes(study):
     """The three counts from other places: how much the view matters, which the paper does not give."""
     trials = study.sweep("eyes")
-    over = lambda name: [trials.record(row)["counters"][name] / study.paper.number(name) for row in trials.rows]
+    views = [trials.record(row)["counters"] for row in trials.rows]
+    over = lambda name: [own[name] / own["receiver_points"] / (study.paper.number(name) / study.paper.number("pixels")) for own in views]
     heights = study.sweep("counts").where(method="beamtree", merging="cones", cells="[75,101]", reflected="0")
     by_height = lambda name: [study.sweep("counts").record(row)["counters"][name] / study.paper.number(name) for row in heights]
     words = lambda some: ", ".join(f"{short(min(some(name)))} to {short(max(some(name)))}" for name in COUNTS)
-    return Part(facts={"counts_over_views": words(over), "counts_over_heights": words(by_height)})
+    seen = min(own["receiver_points"] / own["camera_rays"] for own in views)
+    return Part(facts={"counts_over_views": words(over), "counts_over_heights": words(by_height), "least_seen": f"{100 * seen:.0f} %"})
 
 
 SECTIONS = {"finer-polygons": finer, "texels": texels, "load": load, "eyes": eyes}

@@ -1,0 +1,147 @@
+"""Chuang & Cheng 1995: light from the specular point, aliasing of Arvo's map, leaf rays almost parallel, receivers without polygons."""
+import pathlib
+
+import numpy as np
+
+import pool_truth
+from papers.chuang_counts import COUNTS
+from papers.figures import luminance
+from papers.part import Part, Table
+from papers.study import ROOT
+from papers.verdict import Measured, counted
+from papers.words import short, spread
+from report.records import natural
+
+OVERHEAD = pathlib.Path("experiments") / "scenes" / "pool_overhead.json"
+TRUTH_CELLS = 1024
+
+
+class Overhead(pool_truth.Pool):
+    """pool_overhead.json with other pixels; what is asked of it does not use the program."""
+
+    def __init__(self, waves, pixels):
+        super().__init__(ROOT / OVERHEAD, waves)
+        self.pixel *= self.pixels / pixels
+        self.pixels = pixels
+
+
+def truths(trials):
+    """{height of the waves: mean radiance of each pixel}."""
+    pixels = int(trials.rows[0]["width"])
+    pools = {waves: Overhead(float(waves), pixels) for waves in trials.values("wave_height")}
+    return {waves: pool.radiance(pool.irradiance(TRUTH_CELLS)) for waves, pool in pools.items()}
+
+
+def errors(trials, truth, **wanted):
+    """Mean and median over pixels of the absolute error, over the mean."""
+    off = np.abs(luminance(trials.picture(**wanted)["caustic"]) - truth)
+    return float(off.mean() / truth.mean()), float(np.median(off) / truth.mean())
+
+
+def specular_point(study):
+    trials = study.sweep("accuracy")
+    rows, better, at_points = [], [], []
+    for waves, truth in sorted(truths(trials).items(), key=lambda item: float(item[0])):
+        found = {(bound, intensity): errors(trials, truth, wave_height=waves, bound=bound, intensity=intensity)
+                 for bound in ("hybrid", "two_slice") for intensity in ("area", "refined")}
+        better.append(found["two_slice", "area"][0] / found["two_slice", "refined"][0])
+        at_points.append(found["hybrid", "area"][1] / found["hybrid", "refined"][1])
+        rows += [[waves, "4 points a pixel" if bound == "hybrid" else "mean over the pixel", "eq. 11" if intensity == "area" else "specular point",
+                  f"{100 * mean:.3g}", f"{100 * median:.3g}"] for (bound, intensity), (mean, median) in found.items()]
+    several = lambda values: ", ".join(map(short, values))
+    note = (f"means over whole pixels, waves x {', '.join(sorted(trials.values('wave_height'), key=float))}: {several(better)}; the median pixel from four points, by the "
+            f"paper's trees: {several(at_points)}")
+    return Part({"specular_point": Measured(better, unit="times the error, eq. 11 over specular point", counted=True, note=note)}, [Table(
+        "accuracy", "Light from the specular point", ["waves", "caustic of", "intensity by", "mean error [%]", "median error [%]"], rows,
+        "pool_overhead.json, 75 x 101 quads, 64 × 64 pixels; absolute error over the mean, against a quadrature of the smooth water that shares no "
+        f"code with the program (tools/pool_truth.py, {TRUTH_CELLS} x {TRUTH_CELLS} cells). Four points a pixel miss most of the narrow folds, by either "
+        "intensity: that is in the mean, and hardly in the median. Means over pixels are of bound two_slice, pixel_footprint.")])
+
+
+def aliasing(study):
+    """Arvo's map against beams: errors of both where the water is calm and rough; of the map's, what more light paths would not take away."""
+    maps, beams = study.sweep("texels"), study.sweep("accuracy")
+    truth = {waves: each for waves, each in truths(beams).items() if waves in maps.values("wave_height")}
+    sides = sorted({int(maps.value(row, "with_resolution")) for row in maps.rows})
+    rows, over = [], {}
+    for waves in sorted(truth, key=float):
+        known = truth[waves]
+        mean = lambda picture: float(np.abs(picture - known).mean() / known.mean())
+        of_map = {}
+        for side in sides:
+            pictures = [luminance(each["caustic"]) for each in maps.pictures(wave_height=waves, with_resolution=side)]
+            of_map[side] = [mean(each) for each in pictures]
+            rows.append([waves, f"map of {side} × {side} texels", spread([100 * each for each in of_map[side]]), f"{100 * mean(np.mean(pictures, axis=0)):.3g}"])
+        own, whole = (errors(beams, known, wave_height=waves, bound=bound, intensity="area")[0] for bound in ("hybrid", "two_slice"))
+        rows += [[waves, "beams, 75 × 101 quads", f"{100 * own:.3g}", ""], [waves, "beams, means over whole pixels", f"{100 * whole:.3g}", ""]]
+        over[waves] = Measured([min(seed) / own for seed in zip(*of_map.values())], unit="error of the map's best over the beams'", note=(
+            f"waves x {waves}: the map of {best(of_map)} × {best(of_map)} texels, of up to {sides[-1]} × {sides[-1]}, against beams at four points a pixel, "
+            f"{100 * own:.2g} %; by means over whole pixels the beams are off by {100 * whole:.2g} %"))
+    calm, rough = sorted(over, key=float)
+    return Part({"aliasing_rough": over[rough], "aliasing_calm": over[calm]}, [Table(
+        "aliasing", "Arvo's map and beams", ["waves", "method", "mean error [%]", "of the mean of three maps [%]"], rows,
+        "pool_overhead.json, 64 × 64 pixels of four points, against the quadrature; 1,000,000 light paths a map, three seeds. Where the mean of "
+        "three maps is hardly nearer than one, the map's own cells make the error, and not the number of its light paths.")])
+
+
+def best(of_map):
+    return min(of_map, key=lambda side: sum(of_map[side]))
+
+
+def leaf_rays(study):
+    """Spread of the rays of each polygon, about the axis of eq. 1, on the smooth waves; no rendering."""
+    limit = study.paper.number("spread_threshold")
+    cells = next(each for each in study.sweep("accuracy").values("cells"))
+    across, along = (int(each) for each in cells.strip("[]").split(","))
+    rows, below = [], []
+    for waves in sorted(study.sweep("counts").values("wave_height"), key=float):
+        spreads = spread_of_cells(Overhead(float(waves), 1), across, along)
+        apex = np.hypot(2 / across, 2 / along) / 2 / np.tan(np.radians(spreads))
+        below.append(float((spreads < limit).mean()))
+        rows.append([waves, *[f"{value:.3g}" for value in (np.median(spreads), spreads.max(), 100 * (spreads < 1).mean(), 100 * below[-1], np.median(apex))],
+                     f"{float(spread_of_cells(Overhead(float(waves), 1), 1, 1).item()):.3g}"])
+    medians = ", ".join(row[1] for row in rows)
+    return Part({"leaf_rays": Measured(below, unit="share of leaves", counted=True, note=(
+        f"median spread of a leaf {medians} degrees, apexes at {', '.join(row[5] for row in rows)} m (median), where the pool is 1 m deep; so hybrid keeps every leaf "
+        "as a single cone" if min(below) == 1 else f"median spread of a leaf {medians} degrees"))}, [Table(
+        "leaves", "Spread of the leaves' rays", ["waves", "median [degrees]", "largest", "below 1 degree [%]", f"below {limit:g} degrees [%]",
+                                                 "distance of the apex, median [m]", "four corners of the pool [degrees]"], rows,
+        "Refracted rays at the corners of 75 x 101 quads of the smooth waves, about the axis of eq. 1 and figure 4.")])
+
+
+def spread_of_cells(pool, across, along):
+    x, y = np.meshgrid(np.linspace(-pool.half_size[0], pool.half_size[0], across + 1), np.linspace(-pool.half_size[1], pool.half_size[1], along + 1))
+    _, (column, row), _ = pool.rays(x, y)
+    rays = np.stack([pool.corner[0] + column * pool.pixel - x, pool.corner[1] - row * pool.pixel - y, pool.floor - pool.surface(x, y)[0]])
+    rays /= np.linalg.norm(rays, axis=0)
+    corners = np.stack([rays[:, j:along + j, i:across + i] for j in (0, 1) for i in (0, 1)])
+    axis = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    axis /= np.linalg.norm(axis, axis=0)
+    return np.degrees(np.arccos(np.clip((corners * axis).sum(axis=1).min(axis=0), -1, 1)))
+
+
+def receivers(study):
+    """A ball as receiver: Watt's polygons on it against the tree, which has none."""
+    trials = study.sweep("receivers")
+    whole = trials.picture(method="beamtree")["caustic"]
+    own = trials.record(trials.where(method="beamtree")[0])["counters"]
+    rows = [["tree", "", "", "", f"{own[COUNTS[0]] + own[COUNTS[1]]:,}"]]
+    off = {}
+    for row in sorted(trials.where(method="causticpolygons"), key=lambda row: natural(row["receiver_resolution"])):
+        picture, found = trials.picture(method="causticpolygons", receiver_resolution=row["receiver_resolution"])["caustic"], trials.record(row)["counters"]
+        difference = np.abs(luminance(picture - whole))
+        on_ball = difference > 1e-6 * luminance(whole).max()
+        off[int(row["receiver_resolution"])] = float(difference[on_ball].sum() / luminance(whole)[on_ball].sum())
+        rows.append(["Watt's", f"{found['receiver_polygons']:,}", f"{int(on_ball.sum()):,}", f"{100 * off[int(row['receiver_resolution'])]:.3g}",
+                     f"{found['beam_polygon_tests']:,}"])
+    sides = sorted(off)
+    usual = 16
+    return Part({"receivers": counted(off[usual] / off[sides[-1]], "deviation with 16 cells over that with 32", (
+        f"on the pixels that differ, Watt's light is off by {', '.join(f'{100 * off[side]:.2g} %' for side in sides)} with {', '.join(map(str, sides))} cells along each side: "
+        "it comes nearer to the tree's light, which has no polygons there"))}, [Table(
+        "receivers", "A ball as receiver", ["method", "polygons of receivers", "pixels that differ from the tree's", "by [%]", "tests"], rows,
+        "A ball of 0.3 m in the pool, 100 × 100 pixels, 75 x 101 quads. Watt's method divides the ball and the walls into cells; tests of beam "
+        "with polygon, and the tree's tests for the picture.")])
+
+
+SECTIONS = {"specular-point": specular_point, "aliasing": aliasing, "leaf-rays": leaf_rays, "receivers": receivers}
