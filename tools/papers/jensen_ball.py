@@ -93,8 +93,9 @@ def overview(study, trials, floors):
         pictures.append((f"alpha = {alpha}", picture, float(np.percentile(luminance(picture), 99.7))))
     return Figure("figure2", "Figure 2: the caustic of a glass ball on glossy stone",
                   "The paper's picture has alpha = 0.1; beside it its Lambertian twin, each at its own exposure. "
-                  f"{study.paper.number('figure2_photons'):,} photons, {rendering(whole)}. The lamp stands {elevation(lamp):.0f} degrees high, at the right; "
-                  f"the eye looks across its light, {fov[0]} degrees wide; the shape, below, is measured in a view {fov[1]} degrees wide.", *strip([pictures]))
+                  f"{study.paper.number('figure2_photons'):,} photons, {rendering(whole)}. The lamp stands {elevation(lamp):.0f} degrees high, at "
+                  f"the right; the eye looks across its light, {fov[0]} degrees wide; the shape, below, is measured in a view {fov[1]} degrees wide.",
+                  *strip([pictures]))
 
 
 def elevation(lamp):
@@ -104,9 +105,9 @@ def elevation(lamp):
 
 def spots(trials, floors, note):
     return Figure("figure2_shape", "Figure 2: oval at alpha 1, curved at alpha 0.1",
-                  "The caustic alone as seen from straight above: the eye's pixels moved onto the floor, light over the floor's albedo, as a share of "
-                  f"the spot's level (its quantile {QUANTILE:g}). Mean of {len(trials.values('seed'))} seeds. Blue: the contour at {THRESHOLD:g}, within "
-                  f"which the spot is measured; red: its parabola. {note[0].upper()}{note[1:]}.", above(floors))
+                  "The caustic alone as seen from straight above: the eye's pixels moved onto the floor, light over the floor's albedo, as a share "
+                  f"of the spot's level (its quantile {QUANTILE:g}). Mean of {len(trials.values('seed'))} seeds. Blue: the contour at {THRESHOLD:g}, "
+                  f"within which the spot is measured; red: its parabola. {note[0].upper()}{note[1:]}.", above(floors))
 
 
 def above(floors):

@@ -59,8 +59,8 @@ def more_blur(more, less, what):
     """Differences of squares: the blur of many photons cannot be told from 0, so there is no ratio."""
     shown = lambda errors: f"{100 * root(errors.blur):.2g} %"
     return Measured([a - b for a, b in zip(more.blur, less.blur)],
-                    note=f"{what}: blur {shown(more)} against {shown(less)}, by disjoint pairs of seeds; blur is the deviation from the most photons that "
-                    "pictures of two seeds share")
+                    note=f"{what}: blur {shown(more)} against {shown(less)}, by disjoint pairs of seeds; blur is the deviation from the most photons "
+                    "that pictures of two seeds share")
 
 
 def root(squares):
@@ -104,8 +104,8 @@ def table(floors, found, maps):
     return Table("figure2_blur", "Figure 2: blur and noise over photons and N",
                  ["photons", "N", "rmse [%]", "noise [%]", "blur [%]", "half width [mm]", "edge, 90 to 10 % [mm]", "light in the dark [%]"], rows,
                  f"alpha 0.1, {len(floors[maps[0]])} seeds. Deviations of the caustic on the floor, each divided by the caustic there and "
-                 f"{100 * DARK:g} % of the spot: rmse against the mean of other seeds of the most photons, whose own noise is in it; noise from pairs of "
-                 "seeds; blur is what the deviations of two seeds share. Width and edge: across the light's direction, summed over "
+                 f"{100 * DARK:g} % of the spot: rmse against the mean of other seeds of the most photons, whose own noise is in it; noise from "
+                 "pairs of seeds; blur is what the deviations of two seeds share. Width and edge: across the light's direction, summed over "
                  f"{2 * REACH:g} m along it. Dark: below {100 * DARK:g} % of the spot.")
 
 

@@ -46,8 +46,8 @@ def picture(study, trials):
     shown = study.sweep("figure3_picture")
     sand = shown.record(shown.where()[0])["scene"]["resolved"]["sand"]
     return Figure("figure3", "Figure 3: a glass of cognac on fractal sand",
-                  f"2 · {2 ** sand['fractal']['levels']}² triangles of sand, alpha {sand['bsdf']['alpha']:g}; three meshes that share rings: glass and air, "
-                  "glass and cognac, cognac and air. Beer's law colours the light that goes through. "
+                  f"2 · {2 ** sand['fractal']['levels']}² triangles of sand, alpha {sand['bsdf']['alpha']:g}; three meshes that share rings: glass "
+                  "and air, glass and cognac, cognac and air. Beer's law colours the light that goes through. "
                   f"{study.paper.number('figure3_photons'):,} photons; for print {rendering(shown)}; in the table {rendering(trials)}.",
                   *strip([[("", shown.picture()[""])]]))
 
@@ -89,10 +89,10 @@ def twins_figure(trials, clear, sands, eyes, other):
                       [(f"alpha = 0.6, {VIEWS[other]}", glossy), (f"Lambert's law, {VIEWS[other]}", lambertian),
                        ("alpha = 0.6 over Lambert", shade(glossy, lambertian), 1.0)]])
     return Figure("figure3_twins", "Figure 3: its twins",
-                  f"The same sand with alpha 0.6 and with Lambert's law, in the figure's view and {VIEWS[other]}, where alpha 0.6 loses most contrast; "
-                  "and the glass with clear cognac: without absorption the caustic is white. Last: the ratio of luminances, grey where equal, white "
-                  f"where alpha 0.6 is twice as bright or more, black where it is half. Means of {len(trials.values('seed'))} seeds, {rendering(trials)}.",
-                  *pictures)
+                  f"The same sand with alpha 0.6 and with Lambert's law, in the figure's view and {VIEWS[other]}, where alpha 0.6 loses most "
+                  "contrast; and the glass with clear cognac: without absorption the caustic is white. Last: the ratio of luminances, grey where "
+                  f"equal, white where alpha 0.6 is twice as bright or more, black where it is half. Means of {len(trials.values('seed'))} seeds, "
+                  f"{rendering(trials)}.", *pictures)
 
 
 def shade(above, below):
