@@ -11,7 +11,9 @@ namespace caustics::experiments {
 
 namespace {
 
-std::string three(const Eigen::Array3f& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }
+std::string numbers_of(const Eigen::Array3f& v) {
+    return fmt::format("{} {} {}", v[0], v[1], v[2]);
+}
 
 std::string sixteen(const Eigen::Matrix4d& m) {
     std::string text;
@@ -47,7 +49,7 @@ private:
         if (emitter.to_world) transform("to_world", *emitter.to_world);
         for (const auto& [type, name, given] : emitter.values) {
             if (const auto* numbers = std::get_if<Vec3>(&given))
-                value(type, name, three(*numbers));
+                value(type, name, numbers_of(*numbers));
             else
                 number(name, std::get<double>(given));
         }
@@ -140,7 +142,7 @@ private:
             open_exact(i, name);
         if (shape.radiance) {
             xml_.open("emitter", {{"type", "area"}});
-            value("rgb", "radiance", three(*shape.radiance));
+            value("rgb", "radiance", numbers_of(*shape.radiance));
             xml_.close();
         }
         write_bsdf(i, name);
@@ -210,11 +212,11 @@ private:
 
     void write_texture(const std::string& name, const Texture& texture, const std::string& shape) {
         if (const auto* colour = std::get_if<Spectrum>(&texture)) {
-            value("rgb", name, three(*colour));
+            value("rgb", name, numbers_of(*colour));
         } else if (const auto* board = std::get_if<Checkerboard>(&texture)) {
             xml_.open("texture", {{"name", name}, {"type", "checkerboard"}});
-            value("rgb", "color0", three(board->color0));
-            value("rgb", "color1", three(board->color1));
+            value("rgb", "color0", numbers_of(board->color0));
+            value("rgb", "color1", numbers_of(board->color1));
             transform("to_uv", board->to_uv.matrix().cast<double>());
             xml_.close();
         } else {

@@ -10,7 +10,7 @@ namespace caustics::experiments {
 namespace {
 
 template <class Vector>
-std::string three(const Vector& v) {
+std::string vector_of(const Vector& v) {
     return fmt::format("<{}, {}, {}>", v[0], v[1], v[2]);
 }
 
@@ -45,9 +45,10 @@ std::string mesh_list(const char* name, const Items& items, const Text& text) {
 
 std::string mesh2(const TriangleMesh& mesh, const Checkerboard* board) {
     std::string text = "mesh2 {\n";
-    text += mesh_list("vertex_vectors", mesh.positions, [](const Vec3& p) { return three(p); });
+    text += mesh_list("vertex_vectors", mesh.positions, [](const Vec3& p) { return vector_of(p); });
     if (!mesh.normals.empty())
-        text += mesh_list("normal_vectors", mesh.normals, [](const Vec3& n) { return three(n); });
+        text +=
+            mesh_list("normal_vectors", mesh.normals, [](const Vec3& n) { return vector_of(n); });
     if (board != nullptr)
         text += mesh_list("uv_vectors", mesh.uvs, [board](const Vec2& uv) {
             const Vec3 placed = board->to_uv * Vec3(uv.x(), uv.y(), 0);
@@ -127,7 +128,7 @@ private:
         text_ += fmt::format(
             "global_settings {{\n  assumed_gamma 1.0\n  ambient_light rgb {}\n"
             "  max_trace_level {}\n  adc_bailout 0\n",
-            is_black(scene_.ambient) ? "0" : three(scene_.ambient), settings_.max_bounces + 2);
+            is_black(scene_.ambient) ? "0" : vector_of(scene_.ambient), settings_.max_bounces + 2);
         if (casters)
             text_ += fmt::format(
                 "  #ifndef (Photon_Count) #declare Photon_Count = 200000; #end\n"
@@ -163,19 +164,20 @@ private:
         text_ += fmt::format(
             "camera {{\n  perspective\n  location {} * Unit\n  right {}\n  up {}\n  direction "
             "{}\n}}\n",
-            three(Vec3d(camera.to_world.translation())), three(Vec3d(-extent.x() * axes.col(0))),
-            three(Vec3d(extent.y() * axes.col(1))), three(Vec3d(axes.col(2))));
+            vector_of(Vec3d(camera.to_world.translation())),
+            vector_of(Vec3d(-extent.x() * axes.col(0))), vector_of(Vec3d(extent.y() * axes.col(1))),
+            vector_of(Vec3d(axes.col(2))));
     }
 
     void write_light(const PovrayLight& light) {
         if (!light.refused.empty()) refuse_export(settings_, light.name, light.refused);
-        text_ += fmt::format("light_source {{\n  {} * Unit, rgb {}\n", three(light.from),
-                             three(light.colour));
+        text_ += fmt::format("light_source {{\n  {} * Unit, rgb {}\n", vector_of(light.from),
+                             vector_of(light.colour));
         if (light.fade_distance)
             text_ +=
                 fmt::format("  fade_distance {} * Unit\n  fade_power 2\n", *light.fade_distance);
         if (light.point_at)
-            text_ += fmt::format("  parallel\n  point_at {} * Unit\n", three(*light.point_at));
+            text_ += fmt::format("  parallel\n  point_at {} * Unit\n", vector_of(*light.point_at));
         text_ += "  photons { reflection on refraction on }\n}\n";
     }
 
@@ -232,12 +234,12 @@ private:
     std::string pigment(const Shape& shape, const PovraySurface& surface) const {
         if (!surface.pigment) return "pigment { rgb 0 }";
         if (const auto* colour = std::get_if<Spectrum>(&*surface.pigment))
-            return fmt::format("pigment {{ rgb {} }}", three(*colour));
+            return fmt::format("pigment {{ rgb {} }}", vector_of(*colour));
         const Checkerboard* board = checkerboard(surface);
         if (board == nullptr)
             refuse(shape, "bitmap textures are not exported to POV-Ray; give the shape one colour");
         return fmt::format("uv_mapping pigment {{ checker color rgb {}, color rgb {} scale 0.5 }}",
-                           three(board->color0), three(board->color1));
+                           vector_of(board->color0), vector_of(board->color1));
     }
 
     // With the mirror of a blend.
@@ -248,7 +250,7 @@ private:
             mirror ? Spectrum(mirror->weight * mirror->reflectance) : surface.reflection;
         return fmt::format(
             "finish {{ ambient {} diffuse {}{}{} }}", diffuse, diffuse, surface.highlight,
-            reflection ? fmt::format(" reflection {{ rgb {} }}", three(*reflection)) : "");
+            reflection ? fmt::format(" reflection {{ rgb {} }}", vector_of(*reflection)) : "");
     }
 
     // One-sided surfaces are black from behind.
@@ -295,7 +297,7 @@ private:
         // Fading of power 1000 and above is exp(-(1 - fade_color) d / fade_distance).
         if (const float most = glass.absorption.maxCoeff(); most > 0)
             text_ += fmt::format(" fade_distance {} * Unit fade_power 1001 fade_color rgb {}",
-                                 1 / most, three(Spectrum(1 - glass.absorption / most)));
+                                 1 / most, vector_of(Spectrum(1 - glass.absorption / most)));
         text_ += " }\n  photons { target reflection on refraction on collect off }\n";
     }
 

@@ -306,6 +306,20 @@ TEST(PovrayScene, MakesPixelsRadiances) {
     EXPECT_NEAR(numbers_after(sun, "rgb ").at(0), 3 / pi_d, 1e-6);
 }
 
+TEST(PovrayScene, PutsColoursIntoBrackets) {
+    SceneDesc desc = small_scene();
+    desc.shapes[0].bsdf = support::diffuse(0.5F);
+    desc.shapes[1].bsdf = support::glass(1.5F, 1, Spectrum(0.5F, 0.2F, 0));
+    const std::string pov = file(to_povray(desc, {}), "scene.pov");
+    std::size_t colours = 0;
+    for (std::size_t at = pov.find("rgb "); at != std::string::npos;
+         at = pov.find("rgb ", at + 1)) {
+        EXPECT_EQ(pov[at + 4], '<') << pov.substr(at, 40);
+        ++colours;
+    }
+    EXPECT_GE(colours, 4U) << "two lights, a wall, a glass";
+}
+
 TEST(PovrayScene, AbsorbsByBeersLaw) {
     SceneDesc desc = small_scene();
     const Spectrum absorption(0.5F, 0.2F, 0);
