@@ -27,7 +27,7 @@ def times(study):
         part.measured[f"ring_rays_{alpha}"] = ratio(maps("camera_rays", alpha, ADAPTIVE), maps("camera_rays", before, ADAPTIVE), "rays")
         part.measured[FIXED_ROWS[alpha]] = ratio(seconds(alpha, FIXED), seconds("1", FIXED), "CPU s")
     part.measured |= {
-        "ring_time": ratio(seconds("0.01"), seconds("1"), "CPU s", note=f"{n_of(trials)}; the sign depends on N, which the paper does not give: "
+        "ring_time": ratio(seconds("0.01"), seconds("1"), "CPU s", note=f"{n_of(trials)}, which the paper does not give: "
                            f"{over_n(growth(study, 'render_cpu_s'))}"),
         "ring_reason": ratio(a_ray("0.01"), a_ray("1"), "CPU µs a ray"),
         "ring_bare": ratio(bare("1", FIXED), seconds("1", FIXED), "CPU s"),
@@ -119,7 +119,7 @@ def sensitivity(study):
     worst = {name: Measured(found[least(found)], note=over_n(found)) for name, found in (("ring_time_any", times_of), ("ring_rays_any", rays_of))}
     table = Table("figure1_nearest", "Figure 1: how much N matters",
                   ["N", "CPU s at alpha 1", "CPU s at alpha 0.01", "CPU s, 0.01 over 1", "rays, 0.01 over 1"], rows,
-                  "Adaptive, as in the table above: many photons in an estimate leave little noise at either alpha, so few more rays.")
+                  f"Adaptive, as in the table above, {len(others.values('seed'))} seeds.")
     ends = lambda found: f"{over_n({nearest: found[nearest] for nearest in (rows[0][0], rows[-1][0])})}"
     return Part(worst, [table], facts={"ring_growth_over_n": ends(times_of), "ring_rays_over_n": ends(rays_of)})
 
