@@ -76,9 +76,10 @@ def shape(study):
     floors = {alpha: [Floor(layers, scene) for layers in trials.pictures(alpha=alpha)] for alpha in ("1", "0.1")}
     bends = {alpha: [bend(floor).index for floor in own] for alpha, own in floors.items()}
     size = lambda alpha: [abs(each) for each in bends[alpha]]
-    note = f"index {spread(bends['0.1'])} at alpha 0.1, {spread(bends['1'])} at alpha 1"
+    note, places = f"index {spread(bends['0.1'])} at alpha 0.1, {spread(bends['1'])} at alpha 1", elsewhere(study)
     return Part({
-        "ball_curved": Measured(size("0.1"), note=note),
+        "ball_curved": Measured(size("0.1"), note=f"{note}; elsewhere, one seed each: {places['ball_20']} with the lamp 20 degrees high, "
+                                f"{places['ball_40']} with it 40 degrees high, {places['ball_behind']} from behind the lamp"),
         "ball_oval": Measured(size("1"), note=note),
         "ball_bends": Measured([a - b for a, b in zip(size("0.1"), size("1"))], note=note)},
         figures=[overview(study, trials, floors), spots(trials, floors, note)])
@@ -133,7 +134,11 @@ def above(floors):
 
 
 def geometries(study):
-    """The index where lamp and eye stand elsewhere."""
+    return Part(facts=elsewhere(study))
+
+
+def elsewhere(study):
+    """The index where lamp and eye stand elsewhere, as words."""
     base = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
     usual, height = base["light"]["position"], base["ball"]["center"][2]
     look = base["sensor"]["to_world"][0]["look_at"]
@@ -145,7 +150,7 @@ def geometries(study):
         spot = middle + height / math.tan(angle) - height / math.tan(first)
         facts[f"ball_{degrees}"] = index_at(study, f"lamp{degrees}", base, lamp, [spot, *look["origin"][1:]], spot)
     facts["ball_behind"] = index_at(study, "behind", base, usual, [-0.8, 0, 2], middle)
-    return Part(facts=facts)
+    return facts
 
 
 def index_at(study, name, base, lamp, eye, spot):

@@ -35,7 +35,8 @@ def times(study):
         "ring_photons": noisier,
         "ring_megabytes": counted(map_bytes / 1e6, "MB", "follows from the paper's photons and the bytes of one"),
         "ring_megabytes_glossy": Measured([map_bytes / 1e6 * each for each in noisier.samples], unit="MB",
-                                          note="so many photons in a disc of one size have at alpha 0.01 the noise of alpha 1"),
+                                          note="so many photons in discs of one size have at alpha 0.01 the noise of alpha 1; the "
+                                          "paper's own figure 1 has the same photons at all four"),
         "photon_bytes": counted(map_bytes / photons, "bytes", f"{short(map_bytes)} bytes over {short(photons)} photons"),
     }
     part.tables.append(pictures_table(study, trials))
