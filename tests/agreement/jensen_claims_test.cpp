@@ -14,7 +14,8 @@
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 
-// What [J96 sec. 5] claims of its figures 1 and 2, where a closed form or a measure of shape can check it.
+// What [J96 sec. 5] claims of its figures 1 and 2, where a closed form or a measure of shape can
+// check it.
 namespace caustics {
 namespace {
 
