@@ -10,13 +10,14 @@ import pathlib
 import struct
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 TARGET = pathlib.Path("experiments/papers/scenes/dolphin.ply")
 # x along the body: half height, half width.
 SECTIONS = {0: (0.008, 0.010), 0.04: (0.016, 0.020), 0.10: (0.022, 0.026), 0.13: (0.052, 0.050), 0.20: (0.078, 0.072), 0.30: (0.098, 0.092),
             0.40: (0.105, 0.098), 0.50: (0.098, 0.090), 0.60: (0.082, 0.072), 0.70: (0.060, 0.050), 0.80: (0.040, 0.030), 0.90: (0.024, 0.016),
             0.97: (0.016, 0.010)}
-ALONG, AROUND, FIN_ALONG, FIN_ACROSS = 72, 32, 12, 12  # cells
+ALONG, AROUND, FIN_ALONG, FIN_ACROSS = 128, 80, 16, 24  # cells
 
 
 def spine(x):
@@ -41,12 +42,11 @@ def rings(points, around):
 
 
 def body():
-    known = np.array(list(SECTIONS))
-    sizes = np.array(list(SECTIONS.values()))
+    sizes = PchipInterpolator(list(SECTIONS), list(SECTIONS.values()))
     points = []
     for i in range(ALONG + 1):
         x = 0.97 * (0.5 - 0.5 * math.cos(math.pi * i / ALONG))  # closer at both ends
-        high, wide = (np.interp(x, known, sizes[:, k]) for k in range(2))
+        high, wide = sizes(x)
         turn = [2 * math.pi * k / AROUND for k in range(AROUND)]
         points.append([(x, wide * math.cos(t), spine(x) + high * math.sin(t)) for t in turn])
     return rings(points, AROUND)

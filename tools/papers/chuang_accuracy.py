@@ -49,13 +49,14 @@ def specular_point(study):
         rows += [[waves, "4 points a pixel" if bound == "hybrid" else "mean over the pixel", "eq. 11" if intensity == "area" else "specular point",
                   f"{100 * mean:.3g}", f"{100 * median:.3g}"] for (bound, intensity), (mean, median) in found.items()]
     several = lambda values: ", ".join(map(short, values))
-    note = (f"means over whole pixels, waves x {', '.join(sorted(trials.values('wave_height'), key=float))}: {several(better)}; the median pixel from four points, by the "
-            f"paper's trees: {several(at_points)}")
+    heights = ", ".join(sorted(trials.values("wave_height"), key=float))
+    note = (f"means over whole pixels, waves x {heights}: {several(better)}; the median pixel from four points, by the paper's trees: "
+            f"{several(at_points)}")
     return Part({"specular_point": Measured(better, unit="times the error, eq. 11 over specular point", counted=True, note=note)}, [Table(
         "accuracy", "Light from the specular point", ["waves", "caustic of", "intensity by", "mean error [%]", "median error [%]"], rows,
         "pool_overhead.json, 75 x 101 quads, 64 × 64 pixels; absolute error over the mean, against a quadrature of the smooth water that shares no "
-        f"code with the program (tools/pool_truth.py, {TRUTH_CELLS} x {TRUTH_CELLS} cells). Four points a pixel miss most of the narrow folds, by either "
-        "intensity: that is in the mean, and hardly in the median. Means over pixels are of bound two_slice, pixel_footprint.")])
+        f"code with the program (tools/pool_truth.py, {TRUTH_CELLS} x {TRUTH_CELLS} cells). Four points a pixel miss most of the narrow folds, by "
+        "either intensity: that is in the mean, and hardly in the median. Means over pixels are of bound two_slice, pixel_footprint.")])
 
 
 def aliasing(study):
@@ -71,12 +72,13 @@ def aliasing(study):
         for side in sides:
             pictures = [luminance(each["caustic"]) for each in maps.pictures(wave_height=waves, with_resolution=side)]
             of_map[side] = [mean(each) for each in pictures]
-            rows.append([waves, f"map of {side} × {side} texels", spread([100 * each for each in of_map[side]]), f"{100 * mean(np.mean(pictures, axis=0)):.3g}"])
+            rows.append([waves, f"map of {side} × {side} texels", spread([100 * each for each in of_map[side]]),
+                         f"{100 * mean(np.mean(pictures, axis=0)):.3g}"])
         own, whole = (errors(beams, known, wave_height=waves, bound=bound, intensity="area")[0] for bound in ("hybrid", "two_slice"))
         rows += [[waves, "beams, 75 × 101 quads", f"{100 * own:.3g}", ""], [waves, "beams, means over whole pixels", f"{100 * whole:.3g}", ""]]
         over[waves] = Measured([min(seed) / own for seed in zip(*of_map.values())], unit="error of the map's best over the beams'", note=(
-            f"waves x {waves}: the map of {best(of_map)} × {best(of_map)} texels, of up to {sides[-1]} × {sides[-1]}, against beams at four points a pixel, "
-            f"{100 * own:.2g} %; by means over whole pixels the beams are off by {100 * whole:.2g} %"))
+            f"waves x {waves}: the map of {best(of_map)} × {best(of_map)} texels, of up to {sides[-1]} × {sides[-1]}, against beams at four points a "
+            f"pixel, {100 * own:.2g} %; by means over whole pixels the beams are off by {100 * whole:.2g} %"))
     calm, rough = sorted(over, key=float)
     return Part({"aliasing_rough": over[rough], "aliasing_calm": over[calm]}, [Table(
         "aliasing", "Arvo's map and beams", ["waves", "method", "mean error [%]", "of the mean of three maps [%]"], rows,
@@ -98,12 +100,13 @@ def leaf_rays(study):
         spreads = spread_of_cells(Overhead(float(waves), 1), across, along)
         apex = np.hypot(2 / across, 2 / along) / 2 / np.tan(np.radians(spreads))
         below.append(float((spreads < limit).mean()))
-        rows.append([waves, *[f"{value:.3g}" for value in (np.median(spreads), spreads.max(), 100 * (spreads < 1).mean(), 100 * below[-1], np.median(apex))],
-                     f"{float(spread_of_cells(Overhead(float(waves), 1), 1, 1).item()):.3g}"])
+        whole = spread_of_cells(Overhead(float(waves), 1), 1, 1).item()
+        numbers = (np.median(spreads), spreads.max(), 100 * (spreads < 1).mean(), 100 * below[-1], np.median(apex), whole)
+        rows.append([waves, *[f"{value:.3g}" for value in numbers]])
     medians = ", ".join(row[1] for row in rows)
     return Part({"leaf_rays": Measured(below, unit="share of leaves", counted=True, note=(
-        f"median spread of a leaf {medians} degrees, apexes at {', '.join(row[5] for row in rows)} m (median), where the pool is 1 m deep; so hybrid keeps every leaf "
-        "as a single cone" if min(below) == 1 else f"median spread of a leaf {medians} degrees"))}, [Table(
+        f"waves x {', '.join(row[0] for row in rows)}: median spread of a leaf {medians} degrees, apexes at {', '.join(row[5] for row in rows)} m "
+        f"(median), where the pool is {-Overhead(1.0, 1).floor:g} m deep"))}, [Table(
         "leaves", "Spread of the leaves' rays", ["waves", "median [degrees]", "largest", "below 1 degree [%]", f"below {limit:g} degrees [%]",
                                                  "distance of the apex, median [m]", "four corners of the pool [degrees]"], rows,
         "Refracted rays at the corners of 75 x 101 quads of the smooth waves, about the axis of eq. 1 and figure 4.")])
@@ -128,17 +131,18 @@ def receivers(study):
     rows = [["tree", "", "", "", f"{own[COUNTS[0]] + own[COUNTS[1]]:,}"]]
     off = {}
     for row in sorted(trials.where(method="causticpolygons"), key=lambda row: natural(row["receiver_resolution"])):
-        picture, found = trials.picture(method="causticpolygons", receiver_resolution=row["receiver_resolution"])["caustic"], trials.record(row)["counters"]
+        picture = trials.picture(method="causticpolygons", receiver_resolution=row["receiver_resolution"])["caustic"]
+        found, side = trials.record(row)["counters"], int(row["receiver_resolution"])
         difference = np.abs(luminance(picture - whole))
         on_ball = difference > 1e-6 * luminance(whole).max()
-        off[int(row["receiver_resolution"])] = float(difference[on_ball].sum() / luminance(whole)[on_ball].sum())
-        rows.append(["Watt's", f"{found['receiver_polygons']:,}", f"{int(on_ball.sum()):,}", f"{100 * off[int(row['receiver_resolution'])]:.3g}",
+        off[side] = float(difference[on_ball].sum() / luminance(whole)[on_ball].sum())
+        rows.append(["Watt's", f"{found['receiver_polygons']:,}", f"{int(on_ball.sum()):,}", f"{100 * off[side]:.3g}",
                      f"{found['beam_polygon_tests']:,}"])
     sides = sorted(off)
     usual = 16
     return Part({"receivers": counted(off[usual] / off[sides[-1]], "deviation with 16 cells over that with 32", (
-        f"on the pixels that differ, Watt's light is off by {', '.join(f'{100 * off[side]:.2g} %' for side in sides)} with {', '.join(map(str, sides))} cells along each side: "
-        "it comes nearer to the tree's light, which has no polygons there"))}, [Table(
+        f"on the pixels that differ, Watt's light is off by {', '.join(f'{100 * off[side]:.2g} %' for side in sides)} with "
+        f"{', '.join(map(str, sides))} cells along each side: it comes nearer to the tree's light, which has no polygons there"))}, [Table(
         "receivers", "A ball as receiver", ["method", "polygons of receivers", "pixels that differ from the tree's", "by [%]", "tests"], rows,
         "A ball of 0.3 m in the pool, 100 × 100 pixels, 75 x 101 quads. Watt's method divides the ball and the walls into cells; tests of beam "
         "with polygon, and the tree's tests for the picture.")])

@@ -1,9 +1,8 @@
-"""Chuang & Cheng 1995: the three counts, brute force, Watt's n_s n_d n_l, the trees' heights, convergent and divergent beams."""
+"""Chuang & Cheng 1995: the three counts by each reading of the paper, brute force, Watt's n_s n_d n_l."""
 import dataclasses
 import json
 
-from papers.figures import plot
-from papers.part import Figure, Part, Table
+from papers.part import Part, Table
 from papers.verdict import HOLDS, Measured, compare, counted
 from papers.words import short
 from report.beam_trials import exponent
@@ -50,8 +49,9 @@ def pictures_of(study):
         for row in trials.where(method="beamtree"):
             same = {key: row[key] for key in ("wave_height", "cells", "reflected") if row.get(key)}
             across, along = json.loads(row.get("cells") or "[75, 101]")
-            found.append(Picture(scene, across * along * (2 if kind == "triangles" else 1), kind, row.get("wave_height") or "1.5", row["reflected"] == "0",
-                                 row["merging"], trials.record(row)["counters"], counters(trials, method="causticpolygons", **same), receivers))
+            polygons, waves = across * along * (2 if kind == "triangles" else 1), row.get("wave_height") or "1.5"
+            found.append(Picture(scene, polygons, kind, waves, row["reflected"] == "0", row["merging"], trials.record(row)["counters"],
+                                 counters(trials, method="causticpolygons", **same), receivers))
     return sorted(found, key=lambda each: (each.scene != "pool", each.kind, -each.polygons, not each.is_alone, float(each.waves), each.merging))
 
 
@@ -66,8 +66,9 @@ def counts(study):
     ends = lambda values: f"{short(min(values))} to {short(max(values))}"
     part.measured |= {
         "brute_force": counted(max(missed), "hits", f"largest difference of {len(missed)} pictures, pool and dolphin"),
-        "beam_tests_spared": counted(min(over(COUNTS[1:2])), "times", f"tests of every beam over a receiver, over those of the tree: {ends(over(COUNTS[1:2]))}; "
-                                                                      f"with its cone-point tests {ends(over(COUNTS[:2]))}")}
+        "beam_tests_spared": counted(min(over(COUNTS[1:2])), "times", (
+            f"tests of every beam over a receiver, over those of the tree: {ends(over(COUNTS[1:2]))}; with its cone-point tests "
+            f"{ends(over(COUNTS[:2]))}"))}
     part.tables += [counts_table(study.paper, pictures), readings_table(study.paper, claims, pool)]
     part.facts |= matters(pictures, main)
     return part
@@ -93,7 +94,8 @@ def counts_table(paper, pictures):
              a_pixel(theirs, paper.number("pixels")), *[short(theirs[a] / theirs[b]) for a, b in zip(COUNTS, COUNTS[1:])], "", ""]]
     for each in pictures:
         polygons, refraction, merging = each.reading()
-        rows.append([each.scene, polygons, each.waves, refraction, merging, *[f"{each.own[count]:,} ({each.own[count] / theirs[count]:.2f})" for count in COUNTS],
+        rows.append([each.scene, polygons, each.waves, refraction, merging,
+                     *[f"{each.own[count]:,} ({each.own[count] / theirs[count]:.2f})" for count in COUNTS],
                      a_pixel(each.own, each.own["camera_rays"]), f"{each.own[COUNTS[0]] / each.own[COUNTS[1]]:.1f}",
                      f"{each.own[COUNTS[1]] / each.own[COUNTS[2]]:.2f}", f"{each.brute[COUNTS[2]]:,}",
                      f"{each.brute['beams']:,} x {each.receivers:,} = {each.brute['beams'] * each.receivers:,}"])
@@ -102,7 +104,8 @@ def counts_table(paper, pictures):
         "cone / beam", "beam / success", "successes by brute force", "Watt's n_s n_d"], rows,
         "100 × 100 pixels, one ray each; in brackets over the paper's. Brute force: Watt's method with two cells a receiver, in which a "
         "point asks every beam that falls on its part of the receiver. n_s n_d: Watt's tests of beam with polygon for this picture, beams times "
-        "the polygons of pool and dolphin with 16 x 16 cells a wall. cones: the paper's merging (eqs. 4 to 10); rays: a node's cone round all its vertex rays.")
+        "the polygons of pool and dolphin with 16 x 16 cells a wall. cones: the paper's merging (eqs. 4 to 10); rays: a node's cone round all its "
+        "vertex rays.")
 
 
 def readings_table(paper, claims, pool):
@@ -117,9 +120,10 @@ def readings_table(paper, claims, pool):
             cells.append(f"{min(values) / theirs:.2f} to {max(values) / theirs:.2f} ({held} of {len(values)})")
         rows.append([*reading, *cells])
     return Table("readings", "The three counts by each reading of the paper", [
-        "specular polygons", "refraction", "merging", "cone-point tests", "beam-point tests", "successes", "cone / beam", "beam / success", "hits a pixel"],
-        rows, "Ours over the paper's, least to greatest over the three heights of the waves; in brackets at how many of them the claim would hold. "
-              "The first row is the one that is judged.")
+        "specular polygons", "refraction", "merging", "cone-point tests", "beam-point tests", "successes", "cone / beam", "beam / success",
+        "hits a pixel"], rows,
+        "Ours over the paper's, least to greatest over the three heights of the waves; in brackets at how many of them the claim would hold. "
+        "The first row is the one that is judged.")
 
 
 def matters(pictures, main):
@@ -157,15 +161,16 @@ def watt(study):
     return Part(watts_powers(trials) | {"tree_sum": trees}, [Table(
         "watt", "Watt's tests", ["n_s, beams of a light", "n_d, diffuse polygons", "n_l, lights", "tests of beam with polygon", "over n_s n_d n_l",
                                  "tree: tests of one small picture"], rows,
-        "experiments/scenes/pool_area.json: points of an area light serve as lights; beams of reflection and refraction. The tests are n_s n_d n_l by "
-        "construction; the claims are judged by the CPU time they take. The tree's tests are of a picture of 32 x 24 points; Watt's have to be done "
-        "once for any picture.")])
+        "experiments/scenes/pool_area.json: points of an area light serve as lights; beams of reflection and refraction. The tests are n_s n_d n_l "
+        "by construction; the claims are judged by the CPU time they take. The tree's tests are of a picture of 32 x 24 points; Watt's have to be "
+        "done once for any picture.")])
 
 
 def watts_powers(trials):
     """How the CPU time of the sweep of beams through all polygons grows with each of the three numbers, one sample a repeat."""
     def of(**wanted):
-        found = [trials.record(row) for row in trials.where(method="causticpolygons", **{"cells": 32, "receiver_resolution": 8, "light_samples": 4, **wanted})]
+        usual = {"cells": 32, "receiver_resolution": 8, "light_samples": 4}
+        found = [trials.record(row) for row in trials.where(method="causticpolygons", **(usual | wanted))]
         return [each["phases"]["precompute/polygons"]["cpu"] for each in found], found[0]["counters"]
 
     measured = {}
@@ -173,93 +178,9 @@ def watts_powers(trials):
         key = "receiver_polygons" if name == "n_d" else "beams"
         grown = more[1][key] / less[1][key]
         measured[f"watt_{name}"] = Measured([exponent([1, grown], [a, b]) for a, b in zip(less[0], more[0])], note=(
-            f"{short(min(less[0]))} to {short(max(less[0]))} CPU s, and {short(min(more[0]))} to {short(max(more[0]))} with {short(grown)} times as many"))
+            f"{short(min(less[0]))} to {short(max(less[0]))} CPU s, and {short(min(more[0]))} to {short(max(more[0]))} with {short(grown)} times "
+            "as many"))
     return measured
 
 
-def bounds(study):
-    trials = study.sweep("bounds")
-    waves = sorted(trials.values("wave_height"), key=float)
-    kinds = [("single", "cones", ""), ("single", "rays", ""), ("double", "cones", ""), ("double", "rays", ""),
-             *[("hybrid", "cones", each) for each in trials.values("spread_threshold")]]
-    own = {(bound, merging, angle, height): counters(trials, bound=bound, merging=merging, wave_height=height, **({"spread_threshold": angle} if angle else {}))
-           for bound, merging, angle in kinds for height in waves}
-    rows = [[height, bound, angle, merging, *[f"{found[count]:,}" for count in COUNTS]]
-            for (bound, merging, angle, height), found in sorted(own.items(), key=lambda item: float(item[0][3]))]
-    over = lambda top, bottom, count: [own[*top, height][count] / own[*bottom, height][count] for height in waves]
-    ends = lambda values: f"{short(min(values))} to {short(max(values))}"
-    single, double = ("single", "cones", ""), ("double", "cones", "")
-    note = (f"waves x {', '.join(waves)}; with merging of rays {ends(over(('single', 'rays', ''), ('double', 'rays', ''), COUNTS[1]))}; cone-point tests, double over "
-            f"single: {ends(over(double, single, COUNTS[0]))} by the paper's merging, {ends(over(('double', 'rays', ''), ('single', 'rays', ''), COUNTS[0]))} by rays")
-    usual = f"{study.paper.number('spread_threshold'):g}"
-    angles = {angle: [over(("hybrid", "cones", angle), ("hybrid", "cones", usual), count) for count in COUNTS[:2]]
-              for angle in trials.values("spread_threshold") if angle != usual}
-    return Part({"double_pool": Measured(over(single, double, COUNTS[1]), unit="beam-point tests, single over double", counted=True, note=note)}, [Table(
-        "bounds", "Single and double cones", ["waves", "bound", "threshold [degrees]", "merging", "cone-point tests", "beam-point tests", "successes"], rows,
-        "The pool, 75 x 101 quads, refraction alone. hybrid: single up to the spread of the threshold, double above.")],
-        facts={"over_thresholds": "; ".join(f"{angle} degrees: {ends(cone)} and {ends(beam)}" for angle, (cone, beam) in angles.items())})
-
-
-def heights(study):
-    trials = study.sweep("height")
-    found = {merging: [(int(row["cells"].strip("[]").split(",")[0]), trials.record(row)["counters"])
-                       for row in sorted(trials.where(merging=merging), key=lambda row: natural(row["cells"].strip("[]").split(",")[0]))]
-             for merging in ("cones", "rays")}
-    a_point = lambda own, count: own[count] / own["camera_rays"]
-    rows = [[merging, f"{cells * cells:,}", str(own["height"]), short(a_point(own, COUNTS[0])), f"{a_point(own, COUNTS[0]) / own['height']:.2f}",
-             short(a_point(own, COUNTS[1]))] for merging, group in found.items() for cells, own in group]
-    measured, steps = {}, {}
-    for merging, group in found.items():
-        tests, levels = [a_point(own, COUNTS[0]) for _, own in group], [own["height"] for _, own in group]
-        steps[merging] = [b - a for a, b in zip(tests, tests[1:])]
-        measured[f"height_{merging}"] = counted(exponent(levels, tests), "", "power of the height; one more level costs "
-                                                + ", ".join(f"{step:.1f}" for step in steps[merging]) + " tests a point, from the coarsest mesh on")
-        measured[f"height_polygons_{merging}"] = counted(exponent([cells * cells for cells, _ in group], tests), "",
-                                                         "power of the number of polygons")
-    heading = ["merging", "polygons", "height", "cone-point tests a point", "over the height", "beam-point tests a point"]
-    return Part(measured, [Table("height", "Cost a point over the tree's height", heading, rows,
-                                 "The pool in quads, waves x 1.5, refraction alone: one tree.")],
-                [Figure("height", "Cost a point over the height of the tree", "Points: measured; each further level has four times the polygons. Dashed: what "
-                        "the paper states, cost in proportion to the height, through the lowest tree. Measured costs grow by nearly the same for each level, "
-                        "but along a line that meets the axis at a height above zero.", plot(lambda ax: draw_heights(ax, found), 5.2, 3.2))])
-
-
-def draw_heights(ax, found):
-    for merging, group in found.items():
-        levels = [own["height"] for _, own in group]
-        tests = [own[COUNTS[0]] / own["camera_rays"] for _, own in group]
-        line, = ax.plot(levels, tests, "o-", label=f"merging: {merging}")
-        ax.plot([0, levels[-1]], [0, tests[0] / levels[0] * levels[-1]], "--", color=line.get_color(), linewidth=0.9, label="in proportion to the height")
-    ax.set_xlabel("height of the tree")
-    ax.set_ylabel("cone-point tests a point")
-    ax.set_xticks(range(levels[-1] + 1))
-    ax.set_xlim(0, levels[-1] + 0.3)
-    ax.set_ylim(0)
-    ax.legend()
-
-
-def lens(study):
-    trials = study.sweep("lens")
-    height_of = lambda row: json.loads(row["dome"])[0]["amplitude"]
-    own = {(height_of(row), row["bound"]): trials.record(row)["counters"] for row in trials.rows}
-    domes = sorted(height for height, bound in own if height > 0 and bound == "single")
-    a_hit = lambda found, count: found[count] / found[COUNTS[2]]
-    rows = [[f"{abs(height):g}", "convergent" if height > 0 else "divergent", bound, *[f"{found[count]:,}" for count in COUNTS],
-             f"{a_hit(found, COUNTS[0]):.1f}", f"{a_hit(found, COUNTS[1]):.2f}"]
-            for (height, bound), found in sorted(own.items(), key=lambda item: (abs(item[0][0]), -item[0][0], item[0][1]))]
-    compare_at = lambda bound, count: [a_hit(own[dome, bound], count) / a_hit(own[-dome, bound], count) for dome in domes]
-    tighter = lambda sign: [own[sign * dome, "single"][COUNTS[1]] / own[sign * dome, "double"][COUNTS[1]] for dome in domes]
-    several = lambda values: ", ".join(map(short, values))
-    at = f"domes of {', '.join(f'{dome:g}' for dome in domes)} m, from far before the focus to near it"
-    return Part({
-        "convergent_single": Measured(compare_at("single", COUNTS[0]), unit="cone-point tests a success", counted=True, note=(
-            f"{at}: {several(compare_at('single', COUNTS[0]))}; beam-point tests {several(compare_at('single', COUNTS[1]))}; by double cones "
-            f"{several(compare_at('double', COUNTS[0]))}")),
-        "double_tighter": Measured(tighter(1), unit="beam-point tests, single over double", counted=True, note=(
-            f"{at}: {several(tighter(1))}; for divergent beams {several(tighter(-1))}"))}, [Table(
-        "lens", "Convergent and divergent beams (figure 5)", ["amplitude of the dome [m]", "beams", "bound", "cone-point tests", "beam-point tests", "successes",
-                                                              "cone-point tests a success", "beam-point tests a success"], rows,
-        "Light through a dome of water and through the same dome turned over; the spreads of their beams are alike.")])
-
-
-SECTIONS = {"counts": counts, "watt": watt, "bounds": bounds, "heights": heights, "figure5": lens}
+SECTIONS = {"counts": counts, "watt": watt}

@@ -1,6 +1,5 @@
 """Chuang & Cheng 1995: how fine polygons and illumination maps have to be, how the load falls on the two steps, other views."""
 import math
-import statistics
 
 import numpy as np
 
@@ -39,8 +38,9 @@ def finer(study):
 
     note = f"the caustic comes as near as the surface of {sides[0]} × {sides[0]} cells with {needed:.0f} × {needed:.0f}"
     return Part({"finer_polygons": counted(needed / sides[0], "sides of polygons", note)}, [Table(
-        "finer", "Polygons for the caustic and for the surface", ["cells", "deviation of the caustic [%]", "of the picture without caustics [%]", "ratio"],
-        rows, "The pool, waves x 1.5, 100 × 100 pixels, 4 rays each; mean deviation from the picture of the finest mesh, "
+        "finer", "Polygons for the caustic and for the surface", [
+            "cells", "deviation of the caustic [%]", "of the picture without caustics [%]", "ratio"], rows,
+        "The pool, waves x 1.5, 100 × 100 pixels, 4 rays each; mean deviation from the picture of the finest mesh, "
               f"{last} × {last} cells, over its mean.")], [
         Figure("finer", "Polygons for the caustic and for the surface", "How far pictures are from those of the finest mesh. A mesh that shows the "
                "water well is far too coarse for the light below it: a caustic follows the curvature, the surface its slope.", plot(draw, 5.2, 3.2))])
@@ -86,6 +86,26 @@ def load(study):
                                            "built once, whatever the picture's size")})
 
 
+def memory(study):
+    """Bytes of Watt's map and of Arvo's over those of the tree for the same water."""
+    small, maps, least = study.sweep("small_pictures"), study.sweep("texels"), study.sweep("counts")
+    tree = {(scene, polygons): small.column("map_bytes", scene=scene, method="beamtree", with_polygons=polygons)[0]
+            for scene in small.values("scene") for polygons in ("quads", "triangles")}
+    watt = [small.column("map_bytes", scene=scene, method="causticpolygons", with_polygons=polygons)[0] / own
+            for (scene, polygons), own in tree.items()]
+    coarse = [least.column("map_bytes", method=method, wave_height=1.5, cells="[75,101]", reflected=1)[0]
+              for method in ("causticpolygons", "beamtree")]
+    side = max(int(maps.value(row, "with_resolution")) for row in maps.rows)
+    arvo = maps.column("map_bytes", with_resolution=side)[0]
+    quads = tree["chuang_pool", "quads"]
+    return Part({
+        "memory_watt": Measured(watt, unit="bytes, Watt's over the tree's", counted=True, note=(
+            f"{', '.join(f'{scene} in {polygons} {short(each)}' for (scene, polygons), each in zip(tree, watt))}, with 16 cells along a "
+            f"wall; chuang_pool in quads with 2 cells {short(coarse[0] / coarse[1])}")),
+        "memory_arvo": counted(arvo / quads, "bytes, Arvo's over the tree's", (
+            f"one map of {side} × {side} texels takes {short(arvo / 1e6)} MB, the trees of the pool's quads {short(quads / 1e6)} MB"))})
+
+
 def eyes(study):
     """The three counts from other places: how much the view matters, which the paper does not give."""
     trials = study.sweep("eyes")
@@ -98,4 +118,4 @@ def eyes(study):
     return Part(facts={"counts_over_views": words(over), "counts_over_heights": words(by_height), "least_seen": f"{100 * seen:.0f} %"})
 
 
-SECTIONS = {"finer-polygons": finer, "texels": texels, "load": load, "eyes": eyes}
+SECTIONS = {"finer-polygons": finer, "texels": texels, "load": load, "memory": memory, "eyes": eyes}
