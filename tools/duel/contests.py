@@ -28,7 +28,8 @@ class Setting:
     param: tuple  # sorted (name, value)
 
     def text(self):
-        words = [f"{name} {shown(value)}" for name, value in self.param if name not in ("tree", "bound", "max_bounces", "leaf") or value in ("balanced", "unbalanced")]
+        words = [f"{name} {shown(value)}" for name, value in self.param
+                 if name not in ("tree", "bound", "max_bounces", "leaf") or value in ("balanced", "unbalanced")]
         words += [f"mesh {self.mesh}"] if self.mesh is not None else []
         return ", ".join([*words, f"{self.spp} spp"])
 
@@ -52,12 +53,11 @@ class Duel:
         read = lambda name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
         self.rules, self.space, self.text = read("scenes"), read("methods"), read("hypotheses")
         self.scenes = [Scene(each) for each in self.rules["scenes"]]
-        self.hypotheses = self.text["hypotheses"]
+        self.hypotheses, self.judged = self.text["hypotheses"], read("judged")
         names = [scene.name for scene in self.scenes]
-        for key in ("pilot", "quick"):
-            unknown = [name for name in self.rules[key] if name not in names]
-            if unknown:
-                raise RecordsError(f"scenes.json: {key}: no scene {unknown[0]} (known: {', '.join(names)})")
+        unknown = [name for name in self.rules["quick"] if name not in names]
+        if unknown:
+            raise RecordsError(f"scenes.json: quick: no scene {unknown[0]} (known: {', '.join(names)})")
 
     def scene(self, name):
         return next(scene for scene in self.scenes if scene.name == name)
@@ -133,8 +133,8 @@ def sweep(scene, settings, seeds, rules):
             "methods": [{"method": each.method, "param": dict(each.param)} if each.param else {"method": each.method} for each in settings],
             "seeds": list(seeds), "spp": first.spp, "threads": rules["threads"]}
     if not scene.quadrature():
-        made["reference"] = {"method": "lighttrace", "param": {"paths": scene.truth["paths"], "emission": "stratified", **scene.text.get("param", {})},
-                             "seed": rules["reference_seed"]}
+        param = {"paths": scene.truth["paths"], "emission": "stratified", **scene.text.get("param", {})}
+        made["reference"] = {"method": "lighttrace", "param": param, "seed": rules["reference_seed"]}
     return made
 
 

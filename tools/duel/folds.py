@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 
-from duel import contests, curves, truth
+from duel import contests, truth
+from duel.ranges import student
 from duel.scores import Scored, write_csv
 from report.records import read_rows
 
 NEAREST = (10, 30, 100, 300)
+BEAMS, PIXELS = "beamtree", "beamtree, pixels"  # asked at points, and for the squares of pixels
 PHOTONS, NEAR, FAR = 100_000, 1.0, (3.0, 6.0)  # photons; pixels from a fold
 COLUMNS = ("method", "nearest", "seeds", "bias_square", "variance", "noise", "rms_bias_near", "rms_bias_far", "mean_bias_near", "mean_bias_far")
 
@@ -17,7 +19,8 @@ def settings(scene):
     common = (("filter", "epanechnikov"), *scene.param.items(), ("photons", PHOTONS), ("tree", "packed"))
     maps = [contests.Setting("photonmap", "photonmap", "points", 4, 256, tuple(sorted((*common, ("nearest", n))))) for n in NEAREST]
     beams = (("bound", "two_slice"), ("intensity", "refined"), *scene.param.items())
-    return [*maps, contests.Setting("beamtree", "beamtree", "points", 4, 256, tuple(sorted(beams)))]
+    return [*maps, contests.Setting(BEAMS, "beamtree", "points", 4, 256, tuple(sorted(beams))),
+            contests.Setting(PIXELS, "beamtree", "the pixel", 1, 256, tuple(sorted((*beams, ("footprint", scene.pixel)))))]
 
 
 def run(race):
@@ -34,7 +37,7 @@ def run(race):
         trials.setdefault(contests.setting_of(row, own, scene), []).append(row["trial"])
     away = truth.fold_distance(truth.smooth_pool(scene, folder), scene.size[0])
     biases = {setting: bias(scored, of) for setting, of in trials.items()}
-    rows = [{**scored.spread(setting, of), "method": setting.method, "nearest": dict(setting.param).get("nearest", 0),
+    rows = [{**scored.spread(setting, of), "method": setting.label, "nearest": dict(setting.param).get("nearest", 0),
              **near_and_far(scored, biases[setting].mean(axis=0), away)} for setting, of in trials.items()]
     write_csv(race.output / "records" / "folds.csv", COLUMNS, rows)
     path.write_text(json.dumps(decay(scored, trials, biases, away), indent=1) + "\n", encoding="utf-8")
@@ -65,16 +68,22 @@ def rms_bias(differences, where):
 
 
 def decay(scored, trials, biases, away):
-    """The far bias over the near one, photon map (N = 100) over beam tree, with its interval over the seeds (jackknife)."""
+    """Photon map (N = 100) over the beam tree, at points and for pixels: the far bias over the near one, as was asked for, and the far one alone."""
     near, far = bands(away)
-    of = lambda method, n: next(biases[setting] for setting in trials if setting.method == method and dict(setting.param).get("nearest", 0) == n)
-    photons, beams = of("photonmap", 100), of("beamtree", 0)
-    ratio = lambda keep: (rms_bias(photons[keep], far) / rms_bias(photons[keep], near)) / (rms_bias(beams[keep], far) / rms_bias(beams[keep], near))
-    seeds = np.arange(len(photons))
-    whole = ratio(seeds)
+    of = lambda label, n=0: next(biases[setting] for setting in trials if setting.label == label and dict(setting.param).get("nearest", 0) == n)
+    photons, points, pixels = of("photonmap", 100), of(BEAMS), of(PIXELS)
+    falls = lambda made: rms_bias(made, far) / rms_bias(made, near)
+    alone = lambda made: rms_bias(made, far)
+    return {"decay": jackknifed(falls, photons, points), "far": jackknifed(alone, photons, points), "far_pixels": jackknifed(alone, photons, pixels),
+            "note": f"far over near: photon map {falls(photons):.3g}, beam tree {falls(points):.3g}"}
+
+
+def jackknifed(measure, top, bottom):
+    """[measure(top) / measure(bottom), and the ends of its 95 % interval over the seeds]."""
+    seeds = np.arange(len(top))
+    ratio = lambda keep: measure(top[keep]) / measure(bottom[keep])
     left = np.log([ratio(np.delete(seeds, i)) for i in seeds])
-    n = len(seeds)
+    n, whole = len(seeds), ratio(seeds)
     spread = math.sqrt((n - 1) / n * float(((left - left.mean()) ** 2).sum()))
-    reach = math.exp(curves.student(n - 1) * spread)
-    return {"decay": [whole, whole / reach, whole * reach],
-            "note": f"far over near: photon map {rms_bias(photons, far) / rms_bias(photons, near):.3g}, beam tree {rms_bias(beams, far) / rms_bias(beams, near):.3g}"}
+    reach = math.exp(student(n - 1) * spread)
+    return [whole, whole / reach, whole * reach]

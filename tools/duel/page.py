@@ -1,9 +1,9 @@
 """results/duel: the teacher's page, tables, verdicts and plots, all from records."""
 import json
-import re
 
-from duel import curves, measures, plots, scores, tables, verdicts
+from duel import factors, measures, plots, prose, scores, tables, variables, verdicts
 from duel.curves import Field
+from duel.ranges import OUTSIDE
 from duel.race import LEFT_OUT, SEARCH, FINAL, cells_of
 from papers.latex import latex_tables
 from papers.page import comma, markdown_table
@@ -11,15 +11,16 @@ from papers.part import Table
 from papers.verdict import FAILS, HOLDS, UNDECIDED, UNMEASURED
 from report.report_files import write
 
+WORDS = ("id", "question", "hypothesis", "says", "refuted_if", "metric", "swept")
 ORDER = (FAILS, HOLDS, UNDECIDED, UNMEASURED)
 
 
-class Records(measures.Results):
+class Records(factors.Results):
     """What is in OUTPUT/records."""
 
     def __init__(self, duel, output):
         folder = output / "records"
-        self.rows, self.left_out, self.spread, self.plain = [], [], {}, {}
+        self.rows, left_out, self.spread, self.plain = [], [], {}, {}
         fields, searched = {}, {}
         for scene in duel.scenes:
             for phase in (SEARCH, FINAL):
@@ -28,23 +29,24 @@ class Records(measures.Results):
                     continue
                 rows = scores.read_csv(path)
                 self.rows += rows
-                self.read_more(path, phase)
+                left_out += self.read_more(path, phase)
                 cells = cells_of(duel.settings(scene), rows)
                 if phase == SEARCH:
                     searched[scene.name] = cells
                 else:
-                    fields[scene.name] = Field(cells)
-                    self.plain[scene.name] = Field(cells_of(duel.settings(scene), rows, True))
-        environment, folds = output / "environment.json", folder / "folds.json"
-        self.environment = json.loads(environment.read_text(encoding="utf-8")) if environment.is_file() else {}
+                    pixels = scene.size[0] * scene.size[1]
+                    fields[scene.name] = Field(cells, pixels)
+                    self.plain[scene.name] = Field(cells_of(duel.settings(scene), rows, True), pixels)
+        self.environment, self.before, folds = map(json_if, (output / "environment.json", output / "verdicts_before.json", folder / "folds.json"))
         super().__init__(duel, fields, searched, read_if(folder / "folds.csv", ("method",)), read_if(folder / "counts.csv", counted_texts()),
-                         json.loads(folds.read_text(encoding="utf-8")) if folds.is_file() else None)
+                         folds, left_out)
 
     def read_more(self, path, phase):
-        self.left_out += read_if(path.with_name(f"{path.stem}_left_out.csv"), LEFT_OUT)
+        """Spreads of final runs; returns what was left out."""
         if phase == FINAL:
             for row in read_if(path.with_name(f"{path.stem}_spread.csv"), ("scene", "label", "settings")):
                 self.spread[row["scene"], row["label"], row["settings"]] = row
+        return read_if(path.with_name(f"{path.stem}_left_out.csv"), LEFT_OUT)
 
     def spread_of(self, *key):
         return self.spread.get(key)
@@ -56,8 +58,8 @@ class Records(measures.Results):
         cpu = sum(row["build_s"] + row["query_s"] for row in self.rows) / 60
         built = f"{self.environment['compiler']}, {self.environment['flags']}" if self.environment else "its build is not known"
         built += "" if "NDEBUG" in built else ", assertions on"
-        return (f"{several('cpu')}, one thread a trial; causticbench {several('code_version')}, {built}; load average {loads[0]:.0f} to {loads[-1]:.0f} by other "
-                f"work (times are CPU times); {len(self.rows)} trials, {cpu:.0f} CPU minutes in the methods.")
+        return (f"{several('cpu')}, one thread a trial; causticbench {several('code_version')}, {built}; load average {loads[0]:.0f} to "
+                f"{loads[-1]:.0f} by other work (times are CPU times); {len(self.rows)} trials, {cpu:.0f} CPU minutes in the methods.")
 
 
 def counted_texts():
@@ -70,15 +72,40 @@ def read_if(path, texts):
     return scores.read_csv(path, texts) if path.is_file() else []
 
 
+def json_if(path):
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+
+
 def entries(results):
-    """One a hypothesis: its words, its cases and its verdict."""
+    """One a hypothesis: its words, its cases and its verdict; what it was before, where it is judged anew, and why."""
+    judged = [(hypothesis, measures.cases_of(hypothesis, results)) for hypothesis in results.duel.hypotheses]
+    of = sum(len(cases) for _, cases in judged)
+    before = {entry["id"]: entry for entry in results.before or []}
     found = []
-    for hypothesis in results.duel.hypotheses:
-        cases = measures.cases_of(hypothesis, results)
+    for hypothesis, cases in judged:
         verdict, own = verdicts.judge(hypothesis, cases)
-        found.append({**{key: hypothesis[key] for key in ("id", "question", "hypothesis", "says", "refuted_if", "metric", "swept")}, "verdict": verdict,
-                      "cases": [{"case": case.name, "measured": case.text(), "verdict": each, "note": case.note} for case, each in zip(cases, own)]})
+        strict, _ = verdicts.judge(hypothesis, cases, OUTSIDE / of)
+        hidden = lambda case: f", {tables.HIDDEN}" if verdicts.is_hidden(case, hypothesis["region"]) else ""
+        measured = [{"case": case.name, "measured": case.text() + hidden(case), "verdict": each, "note": case.note} for case, each in zip(cases, own)]
+        entry = {**{key: hypothesis[key] for key in WORDS}, "verdict": verdict, "of_all_at_once": strict, "cases": measured}
+        exploratory = results.duel.judged["exploratory"].get(hypothesis["id"])
+        if exploratory:
+            entry["exploratory"] = exploratory
+        was = before.get(hypothesis["id"])
+        if was and was["verdict"] != verdict:
+            why = results.duel.judged["anew"].get(hypothesis["id"], "not said")
+            entry["before"] = {"verdict": was["verdict"], "measured": measured_words(was), "why": why}
+        found.append(entry)
     return found
+
+
+def measured_words(entry):
+    return "; ".join(f"{case['case']}: {case['measured']}" for case in entry["cases"]) or "–"
+
+
+def verdict_words(entry):
+    words = [f"**{entry['verdict']}**"] + (["exploratory"] if "exploratory" in entry else [])
+    return ", ".join(words) + (f"; judged anew, before: {entry['before']['verdict']}" if "before" in entry else "")
 
 
 def verdict_table(found):
@@ -86,10 +113,25 @@ def verdict_table(found):
     for verdict in ORDER:
         for entry in found:
             if entry["verdict"] == verdict:
-                measured = "; ".join(f"{case['case']}: {case['measured']}" for case in entry["cases"]) or "–"
-                rows.append([entry["question"], f"{entry['hypothesis']} ({entry['says']})", measured, f"**{verdict}**"])
+                rows.append([entry["question"], f"{entry['hypothesis']} ({entry['says']})", measured_words(entry), verdict_words(entry)])
     return Table("verdicts", "Hypotheses", ["question", "hypothesis", "measured", "verdict"], rows,
-                 "95 % intervals in brackets. A hypothesis does not hold where one case lies outside of the region that refutes it.")
+                 "95 % intervals in brackets; < and > are bounds. A hypothesis does not hold where one case lies outside of the region that refutes "
+                 "it. " + multiplicity(found))
+
+
+def multiplicity(found):
+    """What becomes of the verdicts where all cases are judged at once (Bonferroni)."""
+    changed = [f"{entry['id']} ({entry['of_all_at_once']})" for entry in found if entry["of_all_at_once"] != entry["verdict"]]
+    cases = sum(len(entry["cases"]) for entry in found)
+    return (f"Each of the {cases} cases is judged at 95 %, with no correction. At 95 % for all at once (Bonferroni) "
+            f"{'other verdicts: ' + ', '.join(changed) if changed else 'the verdicts are the same'}.")
+
+
+def anew_table(found):
+    before = lambda entry: f"{entry['before']['verdict']} ({entry['before']['measured']})"
+    rows = [[entry["question"], before(entry), f"**{entry['verdict']}** ({measured_words(entry)})", entry["before"]["why"]]
+            for entry in found if "before" in entry]
+    return Table("anew", "Judged anew", ["question", "before", "now", "why"], rows)
 
 
 def plain(table):
@@ -109,43 +151,28 @@ def not_measured(results):
     return Table("not_measured", "Not measured here", ["question", "says", "why"], rows)
 
 
-def number(results, found, kind, words):
-    """A number of the page's prose: {error SCENE METHOD SECONDS}, {factor SCENE SECONDS}, {case HYPOTHESIS CASE}, {last SCENE METHOD}
-    (seconds at the end of a front)."""
-    if kind == "case":
-        name, _, case = words.partition(" ")
-        return next((each["measured"] for each in found[name]["cases"] if each["case"] == case), "not measured")
-    if kind == "last":
-        scene, _, method = words.partition(" ")
-        field = results.fields.get(scene)
-        return tables.seconds(field.curve(method)[-1][0]) if field else "not measured"
-    scene, *method, seconds = words.split(" ")
-    field = results.fields.get(scene)
-    if field is None:
-        return "not measured"
-    if kind == "factor":
-        return tables.factor(curves.quantity(field.seeds, lambda draw: measures.errors_at(field, draw, float(seconds))))
-    error = curves.at_time(field.curve(" ".join(method)), float(seconds))
-    return tables.percent(error) if error else "no picture yet"
-
-
 def rendered(results):
     """{file name: text} of all pages."""
     found, every = entries(results), tables.everything(results)
     verdict, lacking = verdict_table(found), not_measured(results)
-    of = {entry["id"]: entry for entry in found}
-    kept = [verdict, *every, lacking]
+    kept = [verdict, anew_table(found), *every, lacking]
     words = (results.duel.folder / "page.md").read_text(encoding="utf-8")
     tally = ", ".join(f"{sum(entry['verdict'] == each for entry in found)} {'hold' if each == HOLDS else each}" for each in ORDER)
-    facts = {"machine": results.machine(), "tally": tally.replace("does not hold", "do not hold"), "seeds": str(max(field.seeds for field in results.fields.values())),
+    facts = {**prose.facts(results), "tally": tally.replace("does not hold", "do not hold"),
              **{table.name: section(table).lstrip("\n").partition("\n\n")[2].rstrip("\n") for table in kept}}
-    for name, text in facts.items():
-        words = words.replace("{" + name + "}", text)
-    words = re.sub(r"\{(error|factor|case|last) ([^}]+)\}", lambda place: number(results, of, *place.groups()), words)
+    words = prose.filled(words, results, {entry["id"]: entry for entry in found}, facts)
     title = "The duel of photon map and beam tree"
     return {"README.md": words, "verdicts.json": json.dumps(found, indent=1, ensure_ascii=False) + "\n",
             "tables.md": f"# {title}: all tables\n\n{results.machine()}\n" + "".join(map(section, kept)),
-            "tables.csv": comma(list(map(plain, kept))), "tables.tex": latex_tables(title, list(map(plain, kept)))}
+            "tables.csv": comma(list(map(plain, kept))), "tables.tex": latex(title, list(map(plain, kept)))}
+
+
+def latex(title, found):
+    """latex_tables has no dagger: here it goes through as a control character."""
+    carried, mark = tables.CARRIED, "\x01"
+    hidden = lambda text: str(text).replace(carried, mark)
+    found = [Table(table.name, table.title, table.heading, [list(map(hidden, row)) for row in table.rows], hidden(table.note)) for table in found]
+    return latex_tables(title, found).replace(mark, r"$\dagger$")
 
 
 def write_all(duel, output, quick=False):
@@ -153,3 +180,4 @@ def write_all(duel, output, quick=False):
     for name, text in rendered(results).items():
         write(output / name, text)
     plots.write(results, output / "plots")
+    variables.write(results, output / "plots")

@@ -21,7 +21,7 @@ LEFT_OUT = ("scene", "label", "settings", "seed", "status", "message")
 class Race:
     def __init__(self, duel, output, program, jobs, quick):
         self.duel, self.output, self.program, self.jobs = duel, output, str(program), jobs
-        self.scenes = [scene for scene in duel.scenes if not quick or scene.name in duel.rules["quick"]]
+        self.pilots = self.scenes = [scene for scene in duel.scenes if not quick or scene.name in duel.rules["quick"]]
         self.start, self.spent, self.done, self.seeds = time.monotonic(), 0.0, 0, []
 
     def folder(self, scene):
@@ -44,29 +44,24 @@ class Race:
 
     def race(self, scene):
         begin = time.monotonic()
-        searched = self.search(scene, self.search_seeds(scene))
+        searched = self.search(scene)
         picked = self.choice(scene, searched)
         self.measure(scene, picked, self.seeds, FINAL)
         self.spent, self.done = self.spent + time.monotonic() - begin, self.done + 1
 
-    def search_seeds(self, scene):
-        return self.duel.rules["pilot_seeds" if scene.name in self.duel.rules["pilot"] else "search_seeds"]
-
-    def search(self, scene, seeds):
-        return self.measure(scene, self.duel.settings(scene), seeds, SEARCH)
+    def search(self, scene):
+        return self.measure(scene, self.duel.settings(scene), self.duel.rules["search_seeds"], SEARCH)
 
     def pilot(self):
-        """The seeds of the final runs: as many as the pilot's scatter asks for, by the rule in scenes.json; kept once written."""
+        """The seeds of the final runs: as many as the scatter of the search on every scene asks for, by the rule in scenes.json; kept once
+        written."""
         path = self.output / "pilot.json"
         rules = self.duel.rules
         if not path.is_file():
-            scatter = {}
-            for name in rules["pilot"]:
-                cells = self.search(self.duel.scene(name), rules["pilot_seeds"])
-                scatter[name] = statistics.median(scatter_of(cell) for cell in fronts(cells, self.duel) if scatter_of(cell) > 0)
-            wanted = wanted_seeds(max(scatter.values()), rules["half_interval"], rules["least_seeds"], rules["most_seeds"])
+            found = {scene.name: fronts(self.search(scene), self.duel) for scene in self.pilots}
             path.parent.mkdir(parents=True, exist_ok=True)
-            write(path, json.dumps({"scatter": scatter, "seeds": wanted}, indent=1) + "\n")
+            scatter = {name: upper_scatter(cells) for name, cells in found.items()}
+            write(path, json.dumps({"scatter": scatter, "seeds": wanted_of(found.values(), rules)}, indent=1) + "\n")
         wanted = json.loads(path.read_text(encoding="utf-8"))["seeds"]
         return list(range(rules["first_seed"], rules["first_seed"] + wanted))
 
@@ -125,7 +120,8 @@ class Race:
 
     def run_sweep(self, files, folder):
         """A sweep of the program, whose trials that fail become rows."""
-        words = ["sweep", *map(str, files), "-o", str(folder), "--jobs", str(self.jobs), "--timeout", str(self.duel.rules["longest_s"]), "--memory", MEMORY]
+        longest = str(self.duel.rules["longest_s"])
+        words = ["sweep", *map(str, files), "-o", str(folder), "--jobs", str(self.jobs), "--timeout", longest, "--memory", MEMORY]
         status = subprocess.run([self.program, *words], cwd=contests.ROOT, stdin=subprocess.DEVNULL, stdout=sys.stderr).returncode
         if status not in (0, 1):
             raise ChildProcessError(f"{folder.name}: the sweep ended with exit code {status}")
@@ -138,10 +134,10 @@ def cells_of(settings, rows, plain=False):
     return [curves.Cell(setting, groups[setting.label, setting.text()], plain) for setting in settings if (setting.label, setting.text()) in groups]
 
 
-def fronts(cells, duel):
-    """What each method's search chooses, method by method."""
+def fronts(cells, duel, tie=curves.Cell.raw):
+    """What each method's search chooses, method by method; `tie` decides between errors that the truth hides."""
     labels = dict.fromkeys(cell.label for cell in cells)
-    return [cell for label in labels for cell in curves.chosen([each for each in cells if each.label == label], duel.kept(label))]
+    return [cell for label in labels for cell in curves.chosen([each for each in cells if each.label == label], duel.kept(label), tie)]
 
 
 def scatter_of(cell):
@@ -149,6 +145,17 @@ def scatter_of(cell):
     if len(cell.squares) < 2:
         return 0.0
     return float(cell.squares.std(ddof=1) / cell.squares.mean() / 2)
+
+
+def upper_scatter(cells):
+    """The upper quartile of the settings' scatter: a quarter of them scatter more."""
+    scatter = [scatter_of(cell) for cell in cells if scatter_of(cell) > 0]
+    return statistics.quantiles(scatter, n=4, method="inclusive")[2] if len(scatter) > 1 else sum(scatter)
+
+
+def wanted_of(groups, rules):
+    """Seeds for the scene that scatters most."""
+    return wanted_seeds(max(map(upper_scatter, groups)), rules["half_interval"], rules["least_seeds"], rules["most_seeds"])
 
 
 def wanted_seeds(scatter, half_interval, least, most):

@@ -61,7 +61,8 @@ class Scored:
 
     def truth_for(self, row):
         if self.truth is None:
-            self.truth = Truth.of_quadrature(self.scene, self.folder) if self.scene.quadrature() else Truth.of_reference(row["reference"], self.folder)
+            self.truth = (Truth.of_quadrature(self.scene, self.folder) if self.scene.quadrature()
+                          else Truth.of_reference(row["reference"], self.folder))
         return self.truth
 
     def picture(self, trial):
