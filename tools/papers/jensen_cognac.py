@@ -11,6 +11,7 @@ from papers.part import Figure, Part, Table
 from papers.verdict import Measured, counted, ratio
 from papers.words import spread
 from report import exr
+from report.records import natural
 
 SIDE = 12  # pixels of a window in which contrast is local
 VIEWS = ("of the figure", "from the left", "from the right", "from low down", "from behind", "from behind, left", "from behind, right",
@@ -23,7 +24,8 @@ def times(study):
     seconds = lambda tree: trials.column("render_cpu_s", tree=tree)
     other = lambda tree: ball.column("render_cpu_s", method="photonmap", photons=few, tree=tree)
     prepare = lambda tree: preprocess(trials, tree=tree)
-    unbalanced = ratio(seconds("unbalanced"), seconds("balanced"), "CPU s")
+    trees = trees_over_n(study)
+    unbalanced = ratio(seconds("unbalanced"), seconds("balanced"), "CPU s", note=f"over N: {trees}")
     megabytes = [some.column("map_bytes", method="photonmap", tree="balanced", **wanted)[0] / 1e6
                  for some, wanted in ((study.sweep("figure1"), {}), (ball, {"photons": few}), (trials, {}))]
     rows = [[tree, spread(prepare(tree)), spread(trials.column("balance_cpu_s", tree=tree)), spread(seconds(tree)),
@@ -38,8 +40,18 @@ def times(study):
                                     f"and 3 take {', '.join(f'{each:.2f}' for each in megabytes)} MB")}, [
         Table("figure3", "Figure 3: trees", ["tree", "preprocess [CPU s]", "of which the tree", "rendering [CPU s]", "MB"], rows,
               f"{rendering(trials)}, {study.paper.number('figure3_photons'):,} photons.")], [
-        picture(study, trials)], {"cognac_trees": spread(unbalanced.samples),
+        picture(study, trials)], {"cognac_trees": trees,
                                   "ball_trees": spread(ratio(other("unbalanced"), other("balanced"), "").samples)})
+
+
+def trees_over_n(study):
+    """Unbalanced over balanced rendering at the table's N and at others, as words."""
+    found = {}
+    for trials in (study.sweep("figure3"), study.sweep("figure3_nearest")):
+        for nearest in trials.values("nearest"):
+            seconds = lambda tree: trials.column("render_cpu_s", nearest=nearest, tree=tree)
+            found[nearest] = spread(ratio(seconds("unbalanced"), seconds("balanced"), "").samples)
+    return ", ".join(f"{found[nearest]} at N = {nearest}" for nearest in sorted(found, key=natural))
 
 
 def picture(study, trials):
