@@ -256,13 +256,13 @@ std::unique_ptr<const IndirectEstimator> build(const Scene& scene, const GlobalM
 
 namespace {
 
-bool is_traced(const GlobalMapParams& params) { return params.load.empty(); }
+bool is_map_traced(const GlobalMapParams& params) { return params.load.empty(); }
 
-void settle(const JsonNode& node, GlobalMapParams& params) {
+void settle_map(const JsonNode& node, GlobalMapParams& params) {
     const auto precompute = node.find("precompute");
     if (precompute && params.gather == 0)
         precompute->fail("serves the rays of final gathering: gather is 0");
-    if (is_traced(params)) return;
+    if (is_map_traced(params)) return;
     for (const char* key : {"save", "photons", "max_bounces", "diffuse_bounces"})
         if (const auto given = node.find(key))
             given->fail("cannot be given with load: the photons of " + params.load.string() +
@@ -283,9 +283,9 @@ const DescribedMethod<GlobalMapParams, IndirectEstimator>& globalphotonmap_metho
                                           .meaning = "Photons to store, of all events.",
                                           .unit = "photons",
                                           .source = "[C11]"})
-                  .only_if(is_traced),
-              parameter::max_bounces<P>().only_if(is_traced),
-              parameter::diffuse_bounces<P>().only_if(is_traced),
+                  .only_if(is_map_traced),
+              parameter::max_bounces<P>().only_if(is_map_traced),
+              parameter::diffuse_bounces<P>().only_if(is_map_traced),
               parameter::whole_number<P>(&P::nearest, 2, 100'000,
                                          {.key = "nearest",
                                           .meaning = "N, the photons of an estimate.",
@@ -324,7 +324,7 @@ const DescribedMethod<GlobalMapParams, IndirectEstimator>& globalphotonmap_metho
                   &P::load, photon_map_checksum,
                   {.key = "load",
                    .meaning = "File that the photons come from, in place of being traced."})},
-         .settle = settle,
+         .settle = settle_map,
          .take_least_work = [](P& params) {
              params.photons = 1;
              params.shadow_photons = 0;

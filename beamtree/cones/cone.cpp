@@ -13,7 +13,7 @@ constexpr float turn = 1e-6F;
 float rounded_down_cosine(double cosine) { return static_cast<float>(cosine) - 2e-7F; }
 float rounded_up_sine(double sine) { return std::min(1.0F, static_cast<float>(sine) + turn); }
 
-Eigen::AlignedBox3d box_of(const NodeRays& rays) {
+Eigen::AlignedBox3d box_of_rays(const NodeRays& rays) {
     Eigen::AlignedBox3d box;
     for (const Vec3d& p : rays.positions) box.extend(p);
     return box;
@@ -29,7 +29,7 @@ SweptSphere::SweptSphere(const NodeRays& rays, const Cap& cap)
     : axis(cap.axis.cast<float>()),
       cosine(rounded_down_cosine(cap.cosine)),
       sine(rounded_up_sine(cap.sine())) {
-    const Eigen::AlignedBox3d box = box_of(rays);
+    const Eigen::AlignedBox3d box = box_of_rays(rays);
     centre = Vec3d(box.center()).cast<float>();
     double farthest = 0;
     double least = 0;
@@ -59,7 +59,7 @@ SingleCone::SingleCone(const NodeRays& rays, const Cap& cap)
     : axis(cap.axis.cast<float>()),
       cosine(rounded_down_cosine(cap.cosine)),
       sine(rounded_up_sine(cap.sine())) {
-    const Eigen::AlignedBox3d box = box_of(rays);
+    const Eigen::AlignedBox3d box = box_of_rays(rays);
     const Vec3 rounding = Vec3::Constant(widen * size_of(box));
     low = Vec3d(box.min()).cast<float>() - rounding;
     high = Vec3d(box.max()).cast<float>() + rounding;

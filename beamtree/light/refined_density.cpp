@@ -93,7 +93,7 @@ private:
     double area_ = 0;
 };
 
-double flux_of(const Beam& beam, std::size_t which) {
+double flux_of_triangle(const Beam& beam, std::size_t which) {
     const auto flux = static_cast<double>(beam.flux.mean());
     if (beam.triangle_count() == 1) return flux;
     const auto first = static_cast<double>(beam.first_share);
@@ -117,14 +117,14 @@ std::optional<double> density_on(const TestPlane& plane, const BeamSet& set, con
     const Beam& beam = set.beams[hit.beam];
     const auto own = SmoothTriangle::on(plane, set, beam, hit.triangle, hit.place());
     if (!own) return {};
-    double flux = flux_of(beam, hit.triangle);
+    double flux = flux_of_triangle(beam, hit.triangle);
     double found = own->flux();
     const Partner partner = partner_of(set, hit);
     std::optional<SmoothTriangle> other;
     if (partner.beam != nullptr)
         other = SmoothTriangle::on(plane, set, *partner.beam, partner.triangle, hit.place());
     if (other) {
-        flux += flux_of(*partner.beam, partner.triangle);
+        flux += flux_of_triangle(*partner.beam, partner.triangle);
         found += other->flux();
     } else if (beam.triangle_count() == 2 && hit.flux_share == 1) {
         return {};  // the other half shares [CC95 (11)]'s flux of the whole quad with this one

@@ -137,7 +137,7 @@ private:
 };
 
 // Sorts the beams by the hierarchy.
-Hierarchy split(SlicedBeams& from, const Slicer& slicer, int threads) {
+Hierarchy split_beams(SlicedBeams& from, const Slicer& slicer, int threads) {
     std::vector<BoxedBeam> boxed(from.beams.size());
     std::size_t most_triangles = 1;
     for (const BeamNumber& number : from.beams)
@@ -183,7 +183,7 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy& hierarchy, Isa isa, int
 SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa, int threads)
     : frame_(frame_of(beams)), plane_(Vec3::Zero(), beams.normal), walk_(walk_for(isa)) {
     const Slicer slicer(beams, frame_, threads);
-    const Hierarchy hierarchy = given != nullptr ? *given : split(beams, slicer, threads);
+    const Hierarchy hierarchy = given != nullptr ? *given : split_beams(beams, slicer, threads);
     SliceNodes made = widen(hierarchy, triangles_of(beams, slicer, threads), threads);
     nodes_ = std::move(made.nodes);
     leaves_ = std::move(made.leaves);

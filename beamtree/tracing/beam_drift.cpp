@@ -20,7 +20,7 @@ VertexRay beyond(const VertexRay& from, const VertexRay& middle) {
 
 /// How far a curved surface may lie off the straight line that a ray's start moves along between the ends of the bin, where
 /// it starts at `point` at one of them: chord times turn over 4, as of polygons, both twice those to the middle.
-float bulge(const PathPoint& point, const VertexRay& middle, const Departure& from) {
+float bulge_between(const PathPoint& point, const VertexRay& middle, const Departure& from) {
     if (!point.alive) return 0;
     return (point.ray.position - middle.position).norm() * (point.from.normal - from.normal).norm();
 }
@@ -60,8 +60,8 @@ DriftAccount BeamDrift::add_to(Level& level, const std::vector<bool>& kept) cons
             const PathPoint a = first.from(level.traced.origins[ray]);
             const PathPoint b = last.from(level.traced.origins[ray]);
             const VertexRay& middle = set.rays[ray];
-            bulges[ray] = std::max(bulge(a, middle, level.departures[ray]),
-                                   bulge(b, middle, level.departures[ray]));
+            bulges[ray] = std::max(bulge_between(a, middle, level.departures[ray]),
+                                   bulge_between(b, middle, level.departures[ray]));
             account.rays += 1;
             known[ray] = a.alive || b.alive ? Known::yes : Known::no;
             if (known[ray] == Known::no) continue;

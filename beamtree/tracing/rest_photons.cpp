@@ -46,16 +46,16 @@ Name name_of_way(const BeamSet& set, const std::optional<Event>& event) {
     return name;
 }
 
-bool is_whole(const LeftOut& part) {
+bool is_whole_triangle(const LeftOut& part) {
     return std::ranges::all_of(part.corners, [](const RayOrigin* corner) {
         return corner->vertex != RayOrigin::no_vertex;
     });
 }
 
-double fraction(double x) { return x - std::floor(x); }
+double fine_fraction(double x) { return x - std::floor(x); }
 
 // Evenly over a triangle.
-Vec3 weights_at(double u, double v) {
+Vec3 weights_in_triangle(double u, double v) {
     const double root = std::sqrt(u);
     return Eigen::Vector3d(1 - root, root * (1 - v), root * v).cast<float>();
 }
@@ -136,25 +136,25 @@ void RestPhotons::trace(const Level& level, const LeftOut& part,
     const BeamSet& set = level.traced.set;
     Name name = name_of_way(set, part.event);
     double rounding = 0;
-    if (is_whole(part))
+    if (is_whole_triangle(part))
         rounding = golden * set.beams[part.beam].triangle +
                    Rng(seed_, Stage::beams, name.of_stream()).next_fine();
     for (const RayOrigin* corner : part.corners) name.add(corner->position);
     Rng rng(seed_, Stage::beams, name.of_stream());
     const double shift_u = rng.next_fine();
     const double shift_v = rng.next_fine();
-    if (!is_whole(part)) rounding = rng.next_fine();
+    if (!is_whole_triangle(part)) rounding = rng.next_fine();
     const double wanted = part.flux / watts_;
-    const auto count = static_cast<std::uint64_t>(wanted + fraction(rounding));
+    const auto count = static_cast<std::uint64_t>(wanted + fine_fraction(rounding));
     if (count == 0) return;
     const Path path(scene_, surface_, level, part.beam);
     const double measured = measure(set.light, part.corners[0]->position, part.corners[1]->position,
                                     part.corners[2]->position);
     for (std::uint64_t i = 0; i < count; ++i) {
         const auto number = static_cast<double>(i);
-        const PathPoint point = path.inside(
-            part.corners,
-            weights_at(fraction(shift_u + number * r2[0]), fraction(shift_v + number * r2[1])));
+        const PathPoint point =
+            path.inside(part.corners, weights_in_triangle(fine_fraction(shift_u + number * r2[0]),
+                                                          fine_fraction(shift_v + number * r2[1])));
         if (!goes_on(point)) continue;
         const double share = closeness(set.light, part, point.origin.position, measured) / wanted;
         Flight flight{{}, point.origin.weight * static_cast<float>(measured * share)};

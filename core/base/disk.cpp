@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& place, int error) {
+[[noreturn]] void fail_to_sync(const fs::path& place, int error) {
     throw InputError(place.string() + ": cannot be written (" +
                      std::generic_category().message(error) + ")");
 }
@@ -29,14 +29,14 @@ fs::path folder_above(const fs::path& place) {
 
 void bring_to_disk(int descriptor, const fs::path& place) {
     // EINVAL: a file system that cannot be asked to; it writes when it likes.
-    if (fsync(descriptor) != 0 && errno != EINVAL) fail(place, errno);
+    if (fsync(descriptor) != 0 && errno != EINVAL) fail_to_sync(place, errno);
 }
 
 void bring_to_disk(const fs::path& place) {
     const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     // A folder that may be written into, but not read.
     if (descriptor < 0 && errno == EACCES && fs::is_directory(place)) return;
-    if (descriptor < 0) fail(place, errno);
+    if (descriptor < 0) fail_to_sync(place, errno);
     try {
         bring_to_disk(descriptor, place);
     } catch (...) {

@@ -24,7 +24,7 @@ void* open_library(const fs::path& library) {
     return dlopen(is_there ? beside.c_str() : library.filename().c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 
-[[noreturn]] void fail() {
+[[noreturn]] void fail_to_load() {
     const char* const why = dlerror();
     throw std::runtime_error(why != nullptr ? why : "it has no such function");
 }
@@ -42,11 +42,11 @@ std::size_t library_threads() { return begun_by_libraries; }
 void* load_function(const std::string& library, const char* function) {
     const std::size_t before = thread_count();
     void* const opened = open_library(library);
-    if (opened == nullptr) fail();
+    if (opened == nullptr) fail_to_load();
     const std::size_t after = thread_count();
     if (after > before) begun_by_libraries += after - before;
     void* const found = dlsym(opened, function);
-    if (found == nullptr) fail();
+    if (found == nullptr) fail_to_load();
     return found;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_pieces = 4096;
 
-std::string shown(const Vec2d& p) { return fmt::format("[{:g}, {:g}]", p.x(), p.y()); }
+std::string place_text(const Vec2d& p) { return fmt::format("[{:g}, {:g}]", p.x(), p.y()); }
 
 // The points with their neighbours, which lie across the axis at a pole and across the seam of a ring.
 class Curve {
@@ -116,12 +116,14 @@ void check_points(const LatheProfile& profile) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec2d& p = points[i].at;
         if (p.x() < 0)
-            throw InputError(fmt::format("point {} {} lies across the axis (r < 0)", i, shown(p)));
+            throw InputError(
+                fmt::format("point {} {} lies across the axis (r < 0)", i, place_text(p)));
         if (i + 1 < points.size() && (points[i + 1].at - p).norm() == 0)
-            throw InputError(fmt::format("points {} and {} coincide at {}", i, i + 1, shown(p)));
+            throw InputError(
+                fmt::format("points {} and {} coincide at {}", i, i + 1, place_text(p)));
         if (p.x() == 0 && i > 0 && i + 1 < points.size())
             throw InputError(
-                fmt::format("point {} {} is on the axis between the ends", i, shown(p)));
+                fmt::format("point {} {} is on the axis between the ends", i, place_text(p)));
     }
     if (points.size() == 2 && points[0].at.x() == 0 && points[1].at.x() == 0)
         throw InputError("the profile runs along the axis");
@@ -136,7 +138,7 @@ void check_ends(const Curve& curve, bool open) {
             throw InputError(fmt::format(
                 "the profile's {} end {} is off the axis (r = 0), so the surface has a hole; give "
                 "\"open\": true if it should",
-                end == 0 ? "first" : "last", shown(curve.at(end))));
+                end == 0 ? "first" : "last", place_text(curve.at(end))));
 }
 
 // Whether two closed pieces of lines have a point in common.
@@ -154,10 +156,11 @@ void check_crossings(const std::vector<ProfileStation>& stations, const Curve& c
     const std::size_t pieces = stations.size() - 1;
     const auto fail = [&](std::size_t i, std::size_t j) {
         const auto per_span = static_cast<std::size_t>(segments);
-        throw InputError(fmt::format(
-            "the profile meets itself near {}: between points {} and {}, "
-            "and between points {} and {}",
-            shown(stations[j].at), i / per_span, i / per_span + 1, j / per_span, j / per_span + 1));
+        throw InputError(
+            fmt::format("the profile meets itself near {}: between points {} and {}, "
+                        "and between points {} and {}",
+                        place_text(stations[j].at), i / per_span, i / per_span + 1, j / per_span,
+                        j / per_span + 1));
     };
     for (std::size_t i = 0; i < pieces; ++i) {
         const Vec2d &a = stations[i].at, &b = stations[i + 1].at;
@@ -194,7 +197,7 @@ std::vector<ProfileStation> profile_stations(const LatheProfile& profile) {
     for (std::size_t i = 1; i < stations.size(); ++i) {
         const Vec2d& p = stations[i].at;
         if (p.x() <= 0 && i + 1 < stations.size())
-            throw InputError("the curve crosses the axis near " + shown(p));
+            throw InputError("the curve crosses the axis near " + place_text(p));
         stations[i].v = stations[i - 1].v + (p - stations[i - 1].at).norm();
     }
     for (ProfileStation& station : stations) station.v /= stations.back().v;

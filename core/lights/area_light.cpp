@@ -48,7 +48,7 @@ bool is_flat(const Shape& shape) {
 }
 
 // Whether the light is so large that it is better aimed piece by piece.
-bool is_large(const Surroundings& scene, const Shape& shape) {
+bool needs_pieces(const Surroundings& scene, const Shape& shape) {
     const BoundingSphere light = bounding_sphere(shape);
     const auto near = [&](std::uint32_t caster) {
         const BoundingSphere other = bounding_sphere(scene.shapes[caster]);
@@ -92,7 +92,7 @@ void AreaLight::add_to(ValueHash& hash) const {
 std::vector<AimedSource> AreaLight::aim(const Surroundings& scene) const {
     std::vector<AimedSource> sources;
     const Shape& on = scene.shapes[shape];
-    const int n = is_large(scene, on) ? pieces : 1;
+    const int n = needs_pieces(scene, on) ? pieces : 1;
     for (int i = 0; i < n * n; ++i) {
         AimedSource source;
         source.low =

@@ -16,7 +16,7 @@ using namespace scene_file;
 namespace {
 
 // cos^e a; 0 beyond a right angle.
-float lobe(float exponent, const Vec3& n, const Vec3& wo, const Vec3& wi) {
+float phong_lobe(float exponent, const Vec3& n, const Vec3& wo, const Vec3& wi) {
     const float cosine = std::min(1.0F, 2 * n.dot(wo) * n.dot(wi) - wo.dot(wi));
     return cosine > 0 ? std::pow(cosine, exponent) : 0;
 }
@@ -44,7 +44,7 @@ bool keeps_energy(const Texture& diffuse, const Texture& specular) {
 }  // namespace
 
 Spectrum Phong::f_r(const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) const {
-    const float about_mirror = lobe(exponent, n, wo, wi);
+    const float about_mirror = phong_lobe(exponent, n, wo, wi);
     const float specular = model == Model::normalised ? (exponent + 2) / (2 * pi) * about_mirror
                                                       : about_mirror / n.dot(wi);
     return evaluate(diffuse_reflectance, uv) * (1 / pi) +
@@ -69,7 +69,7 @@ std::optional<Vec3> Phong::sample(const Vec3& n, const Vec3& wo, const Vec3& u) 
 
 float Phong::pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const {
     return (1 - lobe_share) * n.dot(wi) / pi +
-           lobe_share * (exponent + 1) / (2 * pi) * lobe(exponent, n, wo, wi);
+           lobe_share * (exponent + 1) / (2 * pi) * phong_lobe(exponent, n, wo, wi);
 }
 
 ObjectText Phong::text() {

@@ -9,17 +9,20 @@ namespace caustics {
 namespace {
 
 // A lobe with one width below its middle and another above.
-double lobe(double nm, double middle, double below, double above) {
+double matching_lobe(double nm, double middle, double below, double above) {
     const double t = (nm - middle) / (nm < middle ? below : above);
     return std::exp(-0.5 * t * t);
 }
 
 // The densities but for their integrals.
 SpectrumSum unscaled_density(double nm) {
-    const double x = 1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
-                     0.065 * lobe(nm, 501.1, 20.4, 26.2);
-    const double y = 0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1);
-    const double z = 1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8);
+    const double x = 1.056 * matching_lobe(nm, 599.8, 37.9, 31.0) +
+                     0.362 * matching_lobe(nm, 442.0, 16.0, 26.7) -
+                     0.065 * matching_lobe(nm, 501.1, 20.4, 26.2);
+    const double y =
+        0.821 * matching_lobe(nm, 568.8, 46.9, 40.5) + 0.286 * matching_lobe(nm, 530.9, 16.3, 31.1);
+    const double z =
+        1.217 * matching_lobe(nm, 437.0, 11.8, 36.0) + 0.681 * matching_lobe(nm, 459.0, 26.0, 13.8);
     const SpectrumSum rgb(3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
                           -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
                           0.0556434 * x - 0.2040259 * y + 1.0572252 * z);

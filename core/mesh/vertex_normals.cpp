@@ -37,7 +37,7 @@ std::uint32_t hash(const Vec3& position) {
     return hash ^ hash >> 16U;
 }
 
-Vec3 direction(const NormalSum& sum) {
+Vec3 direction_of(const NormalSum& sum) {
     // Angles are exact to rounding only: less than this is a sum that cancels, not a direction.
     if (sum.weighted.norm() > 1e-9) return sum.weighted.normalized().cast<float>();
     if (!sum.first.isZero(0)) return sum.first.cast<float>();
@@ -85,7 +85,7 @@ void complete_normals(TriangleMesh& mesh) {
     for (std::size_t vertex = 0; vertex < mesh.normals.size(); ++vertex) {
         Vec3& normal = mesh.normals[vertex];
         if (normal.isZero(0))
-            normal = direction(sums[numbers[vertex]]);
+            normal = direction_of(sums[numbers[vertex]]);
         else
             normal = normal.cast<double>().normalized().cast<float>();
     }

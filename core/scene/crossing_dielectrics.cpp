@@ -31,7 +31,7 @@ std::vector<std::uint32_t> dielectrics_of(const Scene& scene) {
     return all;
 }
 
-BoxTree boxes_of(const Scene& scene, const std::vector<std::uint32_t>& shapes) {
+BoxTree dielectric_boxes(const Scene& scene, const std::vector<std::uint32_t>& shapes) {
     std::vector<Box> boxes;
     for (const std::uint32_t shape : shapes) boxes.push_back(bounds(scene.shapes()[shape]));
     return BoxTree(std::move(boxes));
@@ -50,7 +50,7 @@ public:
     explicit CrossingSearch(const Scene& scene)
         : scene_(scene),
           dielectrics_(dielectrics_of(scene)),
-          boxes_(boxes_of(scene, dielectrics_)) {}
+          boxes_(dielectric_boxes(scene, dielectrics_)) {}
 
     std::vector<Crossing> run() {
         for (const std::uint32_t shape : dielectrics_) {

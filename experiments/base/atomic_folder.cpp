@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 constexpr const char* lock_name = ".lock";  ///< of FolderLock
 
 /// Without "." and "..", and without a slash at the end.
-fs::path plain(const fs::path& target) {
+fs::path normal_target(const fs::path& target) {
     const fs::path whole = fs::absolute(target).lexically_normal();
     return whole.has_filename() ? whole : whole.parent_path();
 }
@@ -47,7 +47,7 @@ void bring_all_to_disk(const fs::path& folder) {
 }  // namespace
 
 AtomicFolder::AtomicFolder(const fs::path& target)
-    : target_(plain(target)), temporary_(target_.string() + ".part") {
+    : target_(normal_target(target)), temporary_(target_.string() + ".part") {
     if (fs::exists(fs::symlink_status(temporary_)) && !is_part(temporary_))
         throw InputError(
             fmt::format("{}: is in the way of {}", temporary_.string(), target.string()));

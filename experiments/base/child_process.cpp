@@ -39,7 +39,7 @@ constexpr char threw_letter = 'e';
 /// Those that ask a process to end.
 constexpr int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
-[[noreturn]] void fail(const char* what) {
+[[noreturn]] void fail_call(const char* what) {
     throw std::system_error(errno, std::generic_category(), what);
 }
 
@@ -97,7 +97,7 @@ void run_on(const std::vector<int>& processors) {
     cpu_set_t set;
     CPU_ZERO(&set);
     for (const int processor : processors) CPU_SET(static_cast<std::size_t>(processor), &set);
-    if (sched_setaffinity(0, sizeof set, &set) != 0) fail("sched_setaffinity");
+    if (sched_setaffinity(0, sizeof set, &set) != 0) fail_call("sched_setaffinity");
 }
 
 void print_to(const std::filesystem::path& log) {
@@ -198,14 +198,14 @@ ChildProcess::ChildProcess(const Work& work, const ChildLimits& limits,
     require_no_other_thread();
     std::fflush(nullptr);  // or the child would print it again
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) fail("pipe");
+    if (pipe2(ends, O_CLOEXEC) != 0) fail_call("pipe");
     const pid_t parent = getpid();
     const InterruptsHeld held;  // or the child would end like its parent
     process_ = fork();
     if (process_ < 0) {
         close(ends[0]);
         close(ends[1]);
-        fail("fork");
+        fail_call("fork");
     }
     if (process_ == 0) {
         close(ends[0]);

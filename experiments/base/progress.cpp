@@ -6,6 +6,10 @@
 
 namespace caustics::experiments {
 
+double seconds_since(std::chrono::steady_clock::time_point time) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - time).count();
+}
+
 std::string eta_text(const std::optional<Eta>& remaining) {
     if (!remaining) return "-";
     return (remaining->at_least ? "at least " : "") + clock_text(remaining->seconds);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ private:
     std::size_t finished_;
     StatusLine line_;
 };
+
+/// On the clock that never goes back [s].
+double seconds_since(std::chrono::steady_clock::time_point time);
 
 /// "0:12", "at least 0:12", or "-" where nothing is known.
 std::string eta_text(const std::optional<Eta>& remaining);

@@ -6,14 +6,6 @@
 
 namespace caustics::experiments {
 
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point time) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - time).count();
-}
-
-}  // namespace
-
 void StepProgress::begin(const std::string& what, std::optional<double> expected) {
     what_ = what;
     expected_ = expected;

@@ -114,7 +114,7 @@ std::string judged_layer(const CompareOptions& options, const Film& picture,
     return options.layer;
 }
 
-void require_png(const std::string& strip) {
+void require_png_strip(const std::string& strip) {
     if (std::filesystem::path(strip).extension() != ".png")
         throw InputError(fmt::format("--strip {}: strips are drawn as .png", strip));
     require_writable_place(strip);
@@ -193,7 +193,7 @@ std::string as_text(const Comparison& found, const CompareOptions& options, cons
 }
 
 int compare(const CompareOptions& options) {
-    if (!options.strip.empty()) require_png(options.strip);
+    if (!options.strip.empty()) require_png_strip(options.strip);
     const Film picture = read_exr(options.picture);
     const Film reference = read_exr(options.reference);
     const Comparison found = compared(options, picture, reference);

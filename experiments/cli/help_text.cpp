@@ -37,7 +37,7 @@ std::string wrapped(const std::string& start, const std::string& text) {
 }
 
 /// "whole number, 1 to 1000 paths, default 16 [J96 sec. 2]"
-std::string kind_of(const KeyText& key) {
+std::string kind_of_key(const KeyText& key) {
     std::string text = key.type == "choice" ? "one of " + key.choices : key.type;
     if (key.type != "choice" && !key.choices.empty()) text += ", " + key.choices;
     if (!key.unit.empty()) text += (key.choices.empty() ? ", " : " ") + key.unit;
@@ -49,7 +49,7 @@ std::string kind_of(const KeyText& key) {
 std::string key_lines(const std::vector<KeyText>& keys) {
     std::string text;
     for (const KeyText& key : keys)
-        text += wrapped(fmt::format("  {:<20} ", key.key), kind_of(key)) +
+        text += wrapped(fmt::format("  {:<20} ", key.key), kind_of_key(key)) +
                 wrapped(std::string(6, ' '), key.meaning);
     return text;
 }

@@ -20,7 +20,7 @@ std::string point(const Vec3& p) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
 
-double luminance(const Spectrum& s) { return static_cast<double>(s.mean()); }
+double mean_of_channels(const Spectrum& s) { return static_cast<double>(s.mean()); }
 
 /// Flux of all photons [W] and the box that holds them.
 std::string extent(const photonmap::TracedPhotons& photons) {
@@ -83,7 +83,7 @@ Picture draw_photons(const Scene& scene, photonmap::TracedPhotons photons, doubl
     const Film film = render(scene, *dots, options).film;
     double brightest = 0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i)
-        brightest = std::max(brightest, luminance(film.rgb("caustic", i)));
+        brightest = std::max(brightest, mean_of_channels(film.rgb("caustic", i)));
     const double scale = brightest > 0 ? 1 / brightest : 0;
     const double behind = dimmed * std::exp2(auto_exposure(film, "direct"));
     Film drawn(film.width(), film.height());

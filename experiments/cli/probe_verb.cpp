@@ -29,7 +29,7 @@ struct ProbeOptions {
 };
 
 /// The request that the command line makes, but for the method of a layer that is not asked for.
-RunRequest request_of(const ProbeOptions& options) {
+RunRequest request_of_probe(const ProbeOptions& options) {
     RunRequest request{options.scene.file, options.scene.overrides(), {}, options.run.seed, 1};
     if (options.layer == "indirect") {
         if (!options.method.name.empty() || !options.method.params.empty())
@@ -63,7 +63,7 @@ int probe_points(const ProbeOptions& options) {
     const bool to_file = options.output != "-";
     if (to_file) require_writable_place(options.output);
     SceneFile file = options.scene.load();
-    const RunRequest request = request_of(options);
+    const RunRequest request = request_of_probe(options);
     std::vector<std::filesystem::path> read = file.files;
     if (options.points != "-") read.emplace_back(options.points);
     require_files_apart(to_file ? std::vector{options.output} : std::vector<std::string>(), request,

@@ -101,7 +101,7 @@ Picture picture_of(const RenderOptions& options) {
 }
 
 /// What the time of --seconds goes into.
-WorkParameter work_of(const RenderOptions& options) {
+WorkParameter work_parameter(const RenderOptions& options) {
     constexpr std::int64_t most_of_scene = 4096;
     if (!options.work.empty())
         return {.parameter = options.work, .power = 2, .first = 8, .most = most_of_scene};
@@ -166,7 +166,7 @@ Picture told_of_misfit(Picture picture, double seconds) {
 
 /// The picture that takes the wanted time.
 Picture picture_in_time(const RenderOptions& options) {
-    const WorkParameter work = work_of(options);
+    const WorkParameter work = work_parameter(options);
     require_whole_work(options);
     TimeBudget budget(*options.seconds, work);
     std::optional<Picture> last;

@@ -12,13 +12,13 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written as memory holds them");
 
 template <class Value>
-void append(std::string& bytes, const Value& value) {
+void append_bytes(std::string& bytes, const Value& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 template <class Vector>
 void append_vector(std::string& bytes, const Vector& v) {
-    for (Eigen::Index i = 0; i < v.size(); ++i) append(bytes, v[i]);
+    for (Eigen::Index i = 0; i < v.size(); ++i) append_bytes(bytes, v[i]);
 }
 
 }  // namespace
@@ -39,8 +39,8 @@ std::string ply_bytes(const TriangleMesh& mesh) {
         if (uvs) append_vector(bytes, mesh.uvs[i]);
     }
     for (const auto& triangle : mesh.triangles) {
-        append(bytes, std::uint8_t{3});
-        for (const std::uint32_t corner : triangle) append(bytes, corner);
+        append_bytes(bytes, std::uint8_t{3});
+        for (const std::uint32_t corner : triangle) append_bytes(bytes, corner);
     }
     return bytes;
 }

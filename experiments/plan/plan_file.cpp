@@ -38,7 +38,7 @@ void require_column(const std::string& name) {
         throw InputError("swept: no column is named " + json(name).dump());
 }
 
-PlanFile from_json(const json& file) {
+PlanFile plan_from_json(const json& file) {
     if (file.at("version") != json(plan_version))
         throw InputError(fmt::format("version {}, this program reads {}", file.at("version").dump(),
                                      plan_version));
@@ -94,7 +94,7 @@ PlanFile read_plan_of(const std::filesystem::path& folder) {
         return InputError(fmt::format("{}: broken ({})", name.string(), error.what()));
     };
     try {
-        return from_json(parse_bounded(read_whole_file(name)));
+        return plan_from_json(parse_bounded(read_whole_file(name)));
     } catch (const json::exception& error) {
         throw broken(error);
     } catch (const InputError& error) {

@@ -14,30 +14,31 @@ KeyText whole(const std::string& key, const std::string& meaning, const std::str
         .key = key, .meaning = meaning, .type = "whole number", .usual = usual, .choices = range};
 }
 
-KeyText list(const std::string& key, const std::string& meaning, const std::string& of,
-             const std::string& usual = {}) {
+KeyText list_key(const std::string& key, const std::string& meaning, const std::string& of,
+                 const std::string& usual = {}) {
     return {.key = key, .meaning = meaning, .type = "list of " + of, .usual = usual};
 }
 
-ObjectText sweep() {
-    return {"sweep",
-            "The file itself: one trial for each combination of the lists' values.",
-            {whole("version", "Of the format.", "", "1 to 1"),
-             list("scenes", "The scenes, relative to the sweep file.", "files"),
-             {.key = "set",
-              .meaning = "Values of the scenes: axes under names that become columns.",
-              .type = "object",
-              .usual = "{}"},
-             list("methods", "What makes the pictures.", "methods"),
-             list("indirect", "What makes the light between diffuse surfaces.", "methods", "none"),
-             list("seeds", "Of all random numbers, each from 0 to 1e15.", "whole numbers", "[1]"),
-             whole("repeats", "The same picture again, for its times.", "1", "1 to 1000000000"),
-             whole("spp", "Camera samples a pixel.", "16", "1 to 1000000"),
-             whole("threads", "Of a trial.", "1", fmt::format("1 to {}", most_threads)),
-             {.key = "reference",
-              .meaning = "What errors are measured against; without one there are none.",
-              .type = "object",
-              .usual = "none"}}};
+ObjectText sweep_object() {
+    return {
+        "sweep",
+        "The file itself: one trial for each combination of the lists' values.",
+        {whole("version", "Of the format.", "", "1 to 1"),
+         list_key("scenes", "The scenes, relative to the sweep file.", "files"),
+         {.key = "set",
+          .meaning = "Values of the scenes: axes under names that become columns.",
+          .type = "object",
+          .usual = "{}"},
+         list_key("methods", "What makes the pictures.", "methods"),
+         list_key("indirect", "What makes the light between diffuse surfaces.", "methods", "none"),
+         list_key("seeds", "Of all random numbers, each from 0 to 1e15.", "whole numbers", "[1]"),
+         whole("repeats", "The same picture again, for its times.", "1", "1 to 1000000000"),
+         whole("spp", "Camera samples a pixel.", "16", "1 to 1000000"),
+         whole("threads", "Of a trial.", "1", fmt::format("1 to {}", most_threads)),
+         {.key = "reference",
+          .meaning = "What errors are measured against; without one there are none.",
+          .type = "object",
+          .usual = "none"}}};
 }
 
 KeyText method_key() {
@@ -50,7 +51,7 @@ ObjectText axis() {
             {{.key = "pointer",
               .meaning = "JSON pointer into the scene, as of --set: /water/resolution.",
               .type = "text"},
-             list("values", "What stands there, one after another.", "any values")}};
+             list_key("values", "What stands there, one after another.", "any values")}};
 }
 
 ObjectText method() {
@@ -84,7 +85,7 @@ ObjectText reference() {
 }  // namespace
 
 const std::vector<ObjectText>& sweep_keys() {
-    static const std::vector<ObjectText> all = {sweep(), axis(), method(), reference()};
+    static const std::vector<ObjectText> all = {sweep_object(), axis(), method(), reference()};
     return all;
 }
 

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr const char* file_name = ".table";
 
-json to_json(const TableIndex& index) {
+json index_to_json(const TableIndex& index) {
     json rows = json::array();
     for (const TableIndex::Row& row : index.rows)
         rows.push_back({row.trial, row.record, row.offset});
@@ -30,7 +30,7 @@ json to_json(const TableIndex& index) {
             {"variances", std::move(variances)}};
 }
 
-TableIndex from_json(const json& file) {
+TableIndex index_from_json(const json& file) {
     TableIndex index;
     for (const json& row : file.at("rows"))
         index.rows.push_back({row.at(0).get<std::string>(), row.at(1).get<std::string>(),
@@ -49,7 +49,7 @@ TableIndex from_json(const json& file) {
 }  // namespace
 
 void write_table_index(const TableIndex& index, const std::filesystem::path& folder) {
-    write_atomic_file(folder / file_name, to_json(index).dump() + "\n");
+    write_atomic_file(folder / file_name, index_to_json(index).dump() + "\n");
 }
 
 TableIndex read_table_index(const std::filesystem::path& folder) {
@@ -57,7 +57,7 @@ TableIndex read_table_index(const std::filesystem::path& folder) {
     try {
         const json file = parse_bounded(read_whole_file(folder / file_name));
         // Other code may make other rows of the same records.
-        if (file.at("code_version") == code_version()) return from_json(file);
+        if (file.at("code_version") == code_version()) return index_from_json(file);
     } catch (const json::exception&) {
     } catch (const InputError&) {}
     return {};

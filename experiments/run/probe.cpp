@@ -21,7 +21,7 @@ namespace {
 constexpr float receiver_tolerance = 1e-4F;  // of the scene's diameter
 constexpr std::size_t points_per_batch = 64;
 
-[[noreturn]] void fail(const ProbeList& list, std::size_t row, const std::string& reason) {
+[[noreturn]] void fail_at(const ProbeList& list, std::size_t row, const std::string& reason) {
     throw InputError(fmt::format("{}: row {}: {}", list.file.string(), row + 1, reason));
 }
 
@@ -35,7 +35,7 @@ Vec3d vector_at(const ProbeList& list, std::size_t row, const std::array<const c
 Vec3 direction_at(const ProbeList& list, std::size_t row, const std::array<const char*, 3>& names,
                   const char* what) {
     const Vec3d v = vector_at(list, row, names);
-    if (!(v.norm() > 0)) fail(list, row, fmt::format("the {} is zero", what));
+    if (!(v.norm() > 0)) fail_at(list, row, fmt::format("the {} is zero", what));
     return v.normalized().cast<float>();
 }
 
@@ -94,19 +94,21 @@ Questions questions(const Scene& scene, const MethodOf<Estimator>& method, const
     for (std::size_t row = 0; row < list.points.size(); ++row) {
         const ProbePoint& point = list.points[row];
         if (needs_radius && point.radius == 0)
-            fail(list, row,
-                 fmt::format(
-                     "{} gathers over a disc round the point: give a column radius or {} "
-                     "radius=metres",
-                     method.name,
-                     std::is_same_v<Estimator, CausticEstimator> ? "--param" : "--indirect-param"));
+            fail_at(
+                list, row,
+                fmt::format(
+                    "{} gathers over a disc round the point: give a column radius or {} "
+                    "radius=metres",
+                    method.name,
+                    std::is_same_v<Estimator, CausticEstimator> ? "--param" : "--indirect-param"));
         const std::optional<SurfacePoint> surface = find_receiver(scene, point);
         if (!surface)
-            fail(list, row,
-                 fmt::format("the point ({}, {}, {}) is farther than 1e-4 of the scene's diameter "
-                             "({} m) from every receiver",
-                             point.position.x(), point.position.y(), point.position.z(),
-                             receiver_tolerance * scene.diameter()));
+            fail_at(
+                list, row,
+                fmt::format("the point ({}, {}, {}) is farther than 1e-4 of the scene's diameter "
+                            "({} m) from every receiver",
+                            point.position.x(), point.position.y(), point.position.z(),
+                            receiver_tolerance * scene.diameter()));
         std::optional<ReceiverPoint> receiver = receiver_point(scene, *surface, point.normal);
         if (!receiver) continue;
         receiver->wo = point.wo;
@@ -152,11 +154,11 @@ struct Ask {
     }
 };
 
-void append(std::string& line, const Spectrum& value) {
+void append_colour(std::string& line, const Spectrum& value) {
     for (int c = 0; c < 3; ++c) line += ',' + shortest(value[c]);
 }
 
-void require_finite(const ProbeList& list, const std::vector<Estimate>& answers) {
+void require_finite_answers(const ProbeList& list, const std::vector<Estimate>& answers) {
     for (std::size_t row = 0; row < answers.size(); ++row)
         if (!is_finite(answers[row].value) || !is_finite(answers[row].standard_error))
             throw std::runtime_error(fmt::format("{}: row {}: the method's answer is not finite",
@@ -182,19 +184,20 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
         ProbePoint point;
         point.position = vector_at(list, row, {"x", "y", "z"});
         if (!within_limit(point.position))
-            fail(list, row,
-                 fmt::format("x, y, z reach beyond {:g} m from the origin", farthest_coordinate));
+            fail_at(
+                list, row,
+                fmt::format("x, y, z reach beyond {:g} m from the origin", farthest_coordinate));
         point.normal = direction_at(list, row, {"nx", "ny", "nz"}, "normal");
         point.wo = list.has_viewer ? direction_at(list, row, {"wx", "wy", "wz"}, "viewer direction")
                                    : point.normal;
         if (!(point.wo.dot(point.normal) > 0))
-            fail(list, row, "the viewer direction lies below the surface its normal names");
+            fail_at(list, row, "the viewer direction lies below the surface its normal names");
         if (table.column("radius") != none) {
             point.radius = static_cast<float>(table.rows[row][table.column("radius")]);
             if (!(point.radius > 0 && static_cast<double>(point.radius) <= farthest_coordinate))
-                fail(list, row,
-                     fmt::format("the radius must be above 0, and {:g} m at most",
-                                 farthest_coordinate));
+                fail_at(list, row,
+                        fmt::format("the radius must be above 0, and {:g} m at most",
+                                    farthest_coordinate));
         }
         list.points.push_back(point);
     }
@@ -231,7 +234,7 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
     }
     for (std::vector<Estimate>* const all : {&answers.irradiance, &answers.radiance}) {
         for (Estimate& mean : *all) mean.value /= static_cast<float>(passes);
-        require_finite(list, *all);
+        require_finite_answers(list, *all);
     }
     return answers;
 }
@@ -258,10 +261,10 @@ std::string probe_table(const ProbeList& list, const ProbeAnswers& answers) {
     text += '\n';
     for (std::size_t row = 0; row < list.points.size(); ++row) {
         std::string line = list.table.lines[row];
-        append(line, answers.irradiance[row].value);
-        if (list.has_viewer) append(line, answers.radiance[row].value);
-        if (errors) append(line, answers.irradiance[row].standard_error);
-        if (errors && list.has_viewer) append(line, answers.radiance[row].standard_error);
+        append_colour(line, answers.irradiance[row].value);
+        if (list.has_viewer) append_colour(line, answers.radiance[row].value);
+        if (errors) append_colour(line, answers.irradiance[row].standard_error);
+        if (errors && list.has_viewer) append_colour(line, answers.radiance[row].standard_error);
         text += line + '\n';
     }
     return text;

@@ -7,14 +7,6 @@
 
 namespace caustics::experiments {
 
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point time) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - time).count();
-}
-
-}  // namespace
-
 void RunEta::begin(std::string_view phase, double now) {
     (rendering_ ? render_seconds_ : build_seconds_) += now - begun_;
     const bool rendering = phase == "render";

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// One name of a file, whatever it is called and whether it is there or not.
-fs::path place_of(const fs::path& file) {
+fs::path real_place(const fs::path& file) {
     std::error_code unknown;
     const fs::path whole = fs::absolute(file, unknown);
     const fs::path place = fs::weakly_canonical(whole, unknown);
@@ -26,10 +26,10 @@ fs::path place_of(const fs::path& file) {
 /// Who reads and writes which file.
 class Users {
 public:
-    void add_read(const fs::path& file) { read_.insert(place_of(file)); }
+    void add_read(const fs::path& file) { read_.insert(real_place(file)); }
 
     void add_written(const std::string& file, const std::string& option) {
-        const fs::path place = place_of(file);
+        const fs::path place = real_place(file);
         if (read_.contains(place))
             throw InputError(fmt::format(
                 "{}: is read, and {} would take its place; name another file", file, option));

@@ -15,7 +15,7 @@ constexpr std::size_t codes = 65'536;
 /// More than what the arithmetic of a cosine takes off.
 constexpr float rounding = 1e-5F;
 
-[[noreturn]] void fail_not_finite(std::size_t index, const Photon& photon) {
+[[noreturn]] void fail_of_photon(std::size_t index, const Photon& photon) {
     std::ostringstream message;
     message << "photonmap: photon " << index << " is at (" << photon.position[0] << ", "
             << photon.position[1] << ", " << photon.position[2]
@@ -68,7 +68,7 @@ ArrivalDirections::ArrivalDirections(std::span<const Photon> photons) : empty_(p
     std::bitset<codes> seen;
     std::bitset<(facing_mask >> facing_shift) + 1> facings;
     for (std::size_t i = 0; i < photons.size(); ++i) {
-        if (!is_finite(photons[i])) fail_not_finite(i, photons[i]);
+        if (!is_finite(photons[i])) fail_of_photon(i, photons[i]);
         seen.set(photons[i].theta * 256U + photons[i].phi);
         facings.set((photons[i].flags & facing_mask) >> facing_shift);
     }
