@@ -1,4 +1,5 @@
 """Chuang & Cheng 1995: light from the specular point, aliasing of Arvo's map, leaf rays almost parallel, receivers without polygons."""
+import functools
 import pathlib
 
 import numpy as np
@@ -25,11 +26,11 @@ class Overhead(pool_truth.Pool):
         self.pixels = pixels
 
 
-def truths(trials):
-    """{height of the waves: mean radiance of each pixel}."""
-    pixels = int(trials.rows[0]["width"])
-    pools = {waves: Overhead(float(waves), pixels) for waves in trials.values("wave_height")}
-    return {waves: pool.radiance(pool.irradiance(TRUTH_CELLS)) for waves, pool in pools.items()}
+@functools.cache
+def truth_of(waves, pixels):
+    """Mean radiance of each pixel."""
+    pool = Overhead(float(waves), pixels)
+    return pool.radiance(pool.irradiance(TRUTH_CELLS))
 
 
 def errors(trials, truth, **wanted):
@@ -41,7 +42,8 @@ def errors(trials, truth, **wanted):
 def specular_point(study):
     trials = study.sweep("accuracy")
     rows, better, at_points = [], [], []
-    for waves, truth in sorted(truths(trials).items(), key=lambda item: float(item[0])):
+    for waves in sorted(trials.values("wave_height"), key=float):
+        truth = truth_of(waves, int(trials.rows[0]["width"]))
         found = {(bound, intensity): errors(trials, truth, wave_height=waves, bound=bound, intensity=intensity)
                  for bound in ("hybrid", "two_slice") for intensity in ("area", "refined")}
         better.append(found["two_slice", "area"][0] / found["two_slice", "refined"][0])
@@ -62,11 +64,10 @@ def specular_point(study):
 def aliasing(study):
     """Arvo's map against beams: errors of both where the water is calm and rough; of the map's, what more light paths would not take away."""
     maps, beams = study.sweep("texels"), study.sweep("accuracy")
-    truth = {waves: each for waves, each in truths(beams).items() if waves in maps.values("wave_height")}
     sides = sorted({int(maps.value(row, "with_resolution")) for row in maps.rows})
     rows, over = [], {}
-    for waves in sorted(truth, key=float):
-        known = truth[waves]
+    for waves in sorted(maps.values("wave_height"), key=float):
+        known = truth_of(waves, int(beams.rows[0]["width"]))
         mean = lambda picture: float(np.abs(picture - known).mean() / known.mean())
         of_map = {}
         for side in sides:
@@ -74,10 +75,10 @@ def aliasing(study):
             of_map[side] = [mean(each) for each in pictures]
             rows.append([waves, f"map of {side} × {side} texels", spread([100 * each for each in of_map[side]]),
                          f"{100 * mean(np.mean(pictures, axis=0)):.3g}"])
-        own, whole = (errors(beams, known, wave_height=waves, bound=bound, intensity="area")[0] for bound in ("hybrid", "two_slice"))
+        own, whole = (errors(beams, known, wave_height=waves, bound=name, intensity="area")[0] for name in ("hybrid", "two_slice"))
         rows += [[waves, "beams, 75 × 101 quads", f"{100 * own:.3g}", ""], [waves, "beams, means over whole pixels", f"{100 * whole:.3g}", ""]]
         over[waves] = Measured([min(seed) / own for seed in zip(*of_map.values())], unit="error of the map's best over the beams'", note=(
-            f"waves x {waves}: the map of {best(of_map)} × {best(of_map)} texels, of up to {sides[-1]} × {sides[-1]}, against beams at four points a "
+            f"waves x {waves}: the map of {best(of_map)} × {best(of_map)} texels{bound(of_map)}, against beams at four points a "
             f"pixel, {100 * own:.2g} %; by means over whole pixels the beams are off by {100 * whole:.2g} %"))
     calm, rough = sorted(over, key=float)
     return Part({"aliasing_rough": over[rough], "aliasing_calm": over[calm]}, [Table(
@@ -88,6 +89,10 @@ def aliasing(study):
 
 def best(of_map):
     return min(of_map, key=lambda side: sum(of_map[side]))
+
+
+def bound(of_map):
+    return " (the finest; finer ones may do better)" if best(of_map) == max(of_map) else ""
 
 
 def leaf_rays(study):

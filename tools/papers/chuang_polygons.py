@@ -96,14 +96,17 @@ def memory(study):
     coarse = [least.column("map_bytes", method=method, wave_height=1.5, cells="[75,101]", reflected=1)[0]
               for method in ("causticpolygons", "beamtree")]
     side = max(int(maps.value(row, "with_resolution")) for row in maps.rows)
-    arvo = maps.column("map_bytes", with_resolution=side)[0]
+    scene = small.record(small.where(scene="chuang_pool", method="beamtree")[0])["scene"]["resolved"]
+    walls = sum(isinstance(each, dict) and each.get("type") == "rectangle" for each in scene.values())
+    arvo = walls * maps.column("map_bytes", with_resolution=side)[0]
     quads = tree["chuang_pool", "quads"]
     return Part({
         "memory_watt": Measured(watt, unit="bytes, Watt's over the tree's", counted=True, note=(
             f"{', '.join(f'{scene} in {polygons} {short(each)}' for (scene, polygons), each in zip(tree, watt))}, with 16 cells along a "
             f"wall; chuang_pool in quads with 2 cells {short(coarse[0] / coarse[1])}")),
         "memory_arvo": counted(arvo / quads, "bytes, Arvo's over the tree's", (
-            f"one map of {side} × {side} texels takes {short(arvo / 1e6)} MB, the trees of the pool's quads {short(quads / 1e6)} MB"))})
+            f"maps of {side} × {side} texels on floor and walls, {walls} of them, take {short(arvo / 1e6)} MB, the trees of the pool's quads "
+            f"{short(quads / 1e6)} MB"))})
 
 
 def eyes(study):
