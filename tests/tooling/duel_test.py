@@ -39,7 +39,8 @@ class Scores(unittest.TestCase):
         deviations = (0.1, 0.2, 0.3, 0.4, 0.5)
         cells = [cell("a", 1, [1 - each / math.sqrt(2), 1 + each / math.sqrt(2)]) for each in deviations]
         self.assertAlmostEqual(race.upper_scatter(cells), 0.2)
-        self.assertEqual(race.wanted_of([cells, cells[:1]], {"half_interval": 0.1, "least_seeds": 5, "most_seeds": 30}), race.wanted_seeds(0.2, 0.1, 5, 30))
+        rules = {"half_interval": 0.1, "least_seeds": 5, "most_seeds": 30}
+        self.assertEqual(race.wanted_of([cells, cells[:1]], rules), race.wanted_seeds(0.2, 0.1, 5, 30))
 
     def test_a_jackknifed_ratio_of_known_biases(self):
         """Pictures off by 0.2 and by 0.1 everywhere, without noise and with noise that cancels in the products of two seeds."""

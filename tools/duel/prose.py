@@ -71,7 +71,8 @@ def facts(results):
             "most_tried": str(max(tried)), "least_tried": str(min(tried)),
             "noisy": "; ".join(noisy) or "none", "far_over": short(photons / beams), "far_photons": short(photons), "far_beams": short(beams),
             "scatter": f"{100 * statistics.quantiles(scatter, n=10)[-1]:.2g} %" if len(scatter) > 1 else "not known", "limit": limit(results),
-            "quartile_seeds": quartile_seeds(results), "resamples": f"{RESAMPLES:,}", "truth_times": str(TRUTHS), "slack": f"{100 * (SLACK - 1):.0f} %",
+            "quartile_seeds": quartile_seeds(results),
+            "resamples": f"{RESAMPLES:,}", "truth_times": str(TRUTHS), "slack": f"{100 * (SLACK - 1):.0f} %",
             "slopes": slopes(results), "bright": bright(results)}
 
 
