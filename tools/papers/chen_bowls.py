@@ -1,61 +1,120 @@
 """Chen 2011: bowls of glass and of cut crystal by three methods; lights; three views by one map; what is seen through the glass; open meshes."""
 import json
 import subprocess
+import time
 
 import numpy as np
 
 from papers.figures import luminance, strip, white
 from papers.jensen_ball import Floor
 from papers.part import Figure, Part, Table
-from papers.verdict import counted, ratio, unmeasured
-from papers.words import spread
+from papers.verdict import Measured, counted, ratio, unmeasured
+from papers.words import short, spread
 from report import exr
 
 BOWLS = {"bowl": "glass, n = 1.5", "crystal_bowl": "cut crystal, n = 1.7"}
+SUFFIX = {"bowl": "", "crystal_bowl": "_crystal"}
 LAMPS = ("a point", "a disc of 2 cm", "a disc of 6 cm")
 CHECKS = '{"type": "checkerboard", "color0": 0.7, "color1": 0.2, "to_uv": [{"scale": [50, 50, 1]}]}'
 VIEWS = ("[0.1,-0.62,0.42]", "[-0.55,-0.3,0.35]", "[0.3,-0.25,0.6]")
 
 
 def columns(study):
-    """Both bowls under a point and a disc: ray tracing only, photons, beams."""
-    trials = study.sweep("bowls")
-    beams = {(scene, lamp): study.sweep(f"beams{suffix}{area}")
-             for scene, suffix in (("bowl", ""), ("crystal_bowl", "_crystal")) for lamp, area in (("a point", ""), ("a disc of 2 cm", "_area"))}
-    lamps = dict(zip(LAMPS, sorted(trials.values("lamp"), key=disc_size)))
-    rows, table, brighter, peak = [], [], [], []
+    """Both bowls under a point and a disc: ray tracing only, with a plain shadow or light that goes straight through, photons, beams."""
+    part = Part()
+    rows, table, lighter, peak = [], [], {}, []
     for scene, what in BOWLS.items():
+        trials = study.sweep(f"bowls{SUFFIX[scene]}")
+        lamps = dict(zip(LAMPS, sorted(trials.values("lamp"), key=disc_size)))
         for lamp, value in lamps.items():
-            bare = trials.picture(scene=scene, lamp=value, method="none")
-            photons, tree = trials.where(scene=scene, lamp=value, method="photonmap")[0], beams[scene, lamp].rows[0]
-            layers = trials.picture(scene=scene, lamp=value, method="photonmap")
-            by_beams = beams[scene, lamp].picture()
-            level = white(layers[""])
-            rows.append([(f"{what}, {lamp}: ray tracing", bare[""], level), ("photons", layers[""], level), ("beams", by_beams[""], level)])
-            table += [row_of(f"{what}, {lamp}", name, row, float(own["caustic"].mean() / layers["caustic"].mean()))
-                      for name, row, own in (("photons", photons, layers), ("beams", tree, by_beams))]
-            brighter.append(float(layers[""].mean() / bare[""].mean()))
-            peak.append(float(layers["caustic"].max() / layers["direct"].max()))
-    return Part({"caustics_added": counted(min(brighter), "mean radiance, photons over ray tracing", f"the least of the four; a caustic's brightest pixel "
-                                           f"is {min(peak):.1f} to {max(peak):.1f} times the brightest of the direct light")}, [Table(
+            bare, straight, layers = (trials.pictures(lamp=value, **which) for which in (
+                {"shadows": "opaque"}, {"shadows": "transparent"}, {"method": "photonmap"}))
+            tree = study.sweep(f"beams{SUFFIX[scene]}{'' if lamp == LAMPS[0] else '_area'}")
+            by_beams = tree.picture()
+            level = white(mean_of(layers))
+            rows.append([(f"{what}, {lamp}", mean_of(bare), level), ("light straight through glass", mean_of(straight), level),
+                         ("photons", mean_of(layers), level), ("beams", by_beams[""], level)])
+            caustic = [float(each["caustic"].mean()) for each in layers]
+            table += [photon_row(f"{what}, {lamp}", trials.where(lamp=value, method="photonmap")),
+                      beam_row(f"{what}, {lamp}", tree.rows[0], [float(by_beams["caustic"].mean()) / each for each in caustic])]
+            lighter[scene, lamp] = [float(a[""].mean() / b[""].mean()) for a, b in zip(layers, bare)]
+            peak += [float(each["caustic"].max() / each["direct"].max()) for each in layers]
+    least = [min(each) for each in zip(*lighter.values())]
+    part.measured["caustics_added"] = Measured(least, unit="mean radiance, photons over ray tracing", note="the least of both bowls under both lamps; a "
+                                               f"caustic's brightest pixel is {min(peak):.1f} to {max(peak):.1f} times the brightest of the direct light")
+    part.facts["bowls_lighter"] = ", ".join(f"{spread([100 * (each - 1) for each in lighter[scene, LAMPS[0]]], '%')} ({what})"
+                                            for scene, what in BOWLS.items())
+    part.tables.append(Table(
         "bowls", "The bowls by photons and by beams",
-        ["bowl and lamp", "by", "photons or beams", "preprocess [CPU s]", "rendering [CPU s]", "caustic over photons"], table,
-        "320 × 240 pixels, 16 rays each with photons, 4 with beams. Photons follow up to 64 events, beams 4, so that light that goes round in "
-        "the glass is missing from them; the beams' glass bowl has 48 sectors (24 under the disc), the crystal's inside 24, its light 3 "
-        "wavelengths (1 under the disc). Beams take the disc as 4 points.")], [Figure(
-            "bowls", "A bowl of glass and one of cut crystal, by three methods, under two lamps", "Ray tracing only has a plain shadow where the "
-            "photon map and the beams have the caustic. Under the disc the photons' caustic softens; beams take it as a few points, whose caustics "
-            "lie beside each other. Each row at one exposure.", *strip(rows))])
+        ["bowl and lamp", "by", "photons or beams", "captured [%]", "of it by photons [%]", "preprocess [CPU s]", "rendering [CPU s]",
+         "caustic over photons"], table,
+        f"320 × 240 pixels, {trials.rows[0]['spp']} rays each; photons of {len(least)} seeds. Beams follow up to "
+        f"{parameter(tree, 'max_bounces')} events, photons {parameter(trials, 'max_bounces', method='photonmap')}. Beams that are too weak to be "
+        "followed, and those of polygons too coarse for what they meet, are completed by photons (rest: photons). Captured: share of the light on "
+        "glass that beams and these photons carry to its last specular event. The beams' bowls are coarser meshes. Both bowls without dispersion; "
+        f"beams take the disc as {parameter(tree, 'light_samples')} points."))
+    part.figures.append(Figure(
+        "bowls", "A bowl of glass and one of cut crystal, by ray tracing, photons and beams, under two lamps", "Ray tracing only has a plain shadow, "
+        "or weakened light that goes straight through, where the photon map and the beams have the caustic. Under the disc the photons' caustic "
+        f"softens; beams take it as {parameter(tree, 'light_samples')} points, whose caustics lie beside each other. Each row at one exposure; ray "
+        f"tracing and photons are means of {len(least)} seeds. Without dispersion, which figures overview and glass have.", *strip(rows)))
+    return part
+
+
+def mean_of(pictures):
+    return np.mean([each[""] for each in pictures], axis=0)
+
+
+def parameter(trials, name, **which):
+    return trials.record(trials.where(**which)[0])["method"]["parameters"][name]
+
+
+def photon_row(what, rows):
+    column = lambda name: spread([float(row[name]) for row in rows])
+    return [what, "photons", f"{int(rows[0]['photons_stored']):,}", "", "", column("precompute_cpu_s"), column("render_cpu_s"), "1"]
+
+
+def beam_row(what, row, over):
+    share = lambda name: short(100 * float(row[name] or 0))
+    return [what, "beams", f"{int(row['beams']):,}", share("flux_share_captured"), share("flux_share_rest"), short(float(row["precompute_cpu_s"])),
+            short(float(row["render_cpu_s"])), spread(over)]
+
+
+def events(study):
+    """How much of the caustic comes after the fourth event: by photons on the beams' own meshes, which tells a cut from a lack."""
+    rows, facts = [], []
+    for scene, what in BOWLS.items():
+        trials = study.sweep(f"events{SUFFIX[scene]}")
+        caustic = lambda **which: [float(layers["caustic"].mean()) for layers in trials.pictures(**which)]
+        most = max(trials.values("max_bounces"), key=int)
+        whole = caustic(method="photonmap", max_bounces=most)
+        over = lambda **which: [a / b for a, b in zip(caustic(**which), whole)]
+        beams = trials.where(method="beamtree")
+        few = beams[0]["max_bounces"]
+        for count in sorted(trials.values("max_bounces"), key=int):
+            share = spread([100 * within(trials.record(row)["counters"]) for row in trials.where(method="photonmap", max_bounces=count)])
+            rows.append([what, "photons", count, share, spread(over(method="photonmap", max_bounces=count))])
+        captured = f"{short(100 * float(beams[0]['flux_share_captured']))} captured"
+        rows.append([what, "beams", few, captured, spread(over(method="beamtree"))])
+        same = [a / b for a, b in zip(caustic(method="beamtree"), caustic(method="photonmap", max_bounces=few))]
+        facts.append(f"{what}: photons of {few} events have {spread(over(method='photonmap', max_bounces=few))} of the light of those of {most}, "
+                     f"beams of {few} events {spread(same)} of that of photons of {few}")
+    return Part(tables=[Table(
+        "events", "Where beams of few events are darker", ["bowl", "by", "most events", "still within glass, of paths that meet it [%]",
+                                                           f"caustic over photons of {most} events"], rows,
+        f"The beams' own meshes under the point lamp, 160 × 120 pixels, {len(beams)} seeds. {'; '.join(facts)}. So the number of events makes beams "
+        "dark, not the share of light that they capture, which counts up to the last event that is asked for.")],
+        facts={"events_cut": "; ".join(facts)})
+
+
+def within(counters):
+    """The share, of the paths that meet glass, that is cut by the number of events."""
+    return counters["photons_depth_limited"] / (counters["photons_aimed"] - counters["photons_missed"])
 
 
 def disc_size(text):
     """Of a lamp in a sweep; a point has none."""
     return json.loads(text).get("to_world", [{"scale": [0]}])[0]["scale"][0]
-
-
-def row_of(what, name, row, light):
-    return [what, name, f"{int(float(row['photons_stored'] or row['beams'])):,}", f"{float(row['precompute_cpu_s']):.2f}",
-            f"{float(row['render_cpu_s']):.2f}", f"{light:.3f}"]
 
 
 def lights(study):
@@ -71,13 +130,14 @@ def lights(study):
 
     soft = {lamp: [half_lit(layers) for layers in trials.pictures(lamp=lamp)] for lamp in lamps}
     rows = [[name, spread([100 * each for each in soft[lamp]], "%")] for name, lamp in zip(LAMPS, lamps)]
-    pictures = strip([[(name, trials.picture(lamp=lamp, seed=1)[""]) for name, lamp in zip(LAMPS, lamps)]])
+    pictures = strip([[(name, mean_of(trials.pictures(lamp=lamp))) for name, lamp in zip(LAMPS, lamps)]])
     return Part({"soft_area": ratio(soft[lamps[1]], soft[lamps[0]], "of the table in half-shadow"),
                  "softer": ratio(soft[lamps[2]], soft[lamps[1]], "of the table in half-shadow")}, [Table(
         "lights", "Hard and soft shadows", ["lamp", "share of the table in half-shadow"], rows,
         "Direct light alone, 9 rays a pixel; half-shadow: between 10 % and 90 % of what a point lamp sends there (in closed form).")], [Figure(
             "lights", "Point and area lights",
-            "The bowl under lamps of one power: a point, discs of 2 and 6 cm radius. Shadow and caustic soften together.", *pictures)])
+            "The bowl under lamps of one power: a point, discs of 2 and 6 cm radius. Shadow and caustic soften together. Means of "
+            f"{len(soft[lamps[0]])} seeds.", *pictures)])
 
 
 def seen_share(layers, scene):
@@ -93,7 +153,7 @@ def seen_share(layers, scene):
 def views(study):
     """Three views of the crystal bowl by one map."""
     scene = "experiments/scenes/crystal_bowl.json"
-    words = [scene, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--spp", "16", "--threads", "1", "--method", "photonmap",
+    words = [scene, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--spp", "64", "--threads", "1", "--method", "photonmap",
              "--param", "nearest=100", "--param", "tree=packed"]
     photons = ["--param", "photons=300000", "--param", "max_bounces=64"]
     kept = study.output / "trials" / "views" / "crystal.photons"
@@ -116,13 +176,17 @@ def through(study):
     trials = study.sweep("through")
     air = trials.pictures(index=1)
     bowl = (trials.picture(index=1.5)["albedo"] > 0.9).all(axis=2)  # glass has an albedo of 1
-    moved = lambda index: [float(np.abs(luminance(a[""] - b[""]))[bowl].mean() / luminance(b[""])[bowl].mean())
-                           for a, b in zip(trials.pictures(index=index), air)]
-    glass, crystal = moved(1.5), moved(1.7)
-    shown = strip([[(f"n = {index}", trials.picture(index=index)[""]) for index in (1.5, 1.7)]])
-    return Part({"distorts": ratio(crystal, glass, "mean deviation over the light of the table seen without glass")}, [], [Figure(
-        "through", "The table seen through the bowl", "A checkered table through one bowl of n = 1.5 and of 1.7: the greater index moves what "
-        "is seen farther, and reflects more.", *shown)])
+    pairs = lambda index: [(luminance(a[""])[bowl], luminance(b[""])[bowl]) for a, b in zip(trials.pictures(index=index), air)]
+    lost = lambda index: [float(1 - np.corrcoef(a, b)[0, 1]) for a, b in pairs(index)]
+    moved = lambda index: [float(np.abs(a - b).mean() / b.mean()) for a, b in pairs(index)]
+    glass, crystal = lost(1.5), lost(1.7)
+    with_light = spread(ratio(moved(1.7), moved(1.5), "").samples)
+    shown = strip([[("without glass", air[0][""])] + [(f"n = {index}", trials.picture(index=index)[""]) for index in (1.5, 1.7)]])
+    return Part({"distorts": ratio(crystal, glass, "of the correlation lost", note="1 less the correlation with the view without glass, which neither a "
+                                   "weaker nor an added even light changes, over the pixels of the bowl; reflections in it count still. By the mean "
+                                   f"deviation, which the reflected light raises, too: {with_light}")}, [], [Figure(
+        "through", "The table seen through the bowl", "A checkered table through a bowl of air, and one of n = 1.5 and of 1.7: the greater index "
+        "moves what is seen farther, and reflects more.", *shown)])
 
 
 def look(study, name, shapes):
@@ -130,20 +194,20 @@ def look(study, name, shapes):
     changes = ["/sensor/film/width=320", "/sensor/film/height=240", "/sensor/sampler/split_depth=4", f"/table/bsdf/reflectance={CHECKS}",
                *[f"/{shape}/{key}" for shape in shapes for key in ("face_normals=true", "resolution=96")]]
     file, = study.single("difference", "render", [study.scenes / f"chen_{name}.json", *[word for each in changes for word in ("--set", each)], "--method",
-                                                  "none", "--param", "shadows=transparent", "--spp", "9", "--threads", "1"], f"{name}.exr")
+                                                  "none", "--param", "shadows=transparent", "--spp", "36", "--threads", "1"], f"{name}.exr")
     return exr.read_layers(file)[""]
 
 
 def difference(study):
     """A bowl made as a difference, its inner surface turned inside out: what `info` says of it, and of a sound one."""
-    told = {}
+    told, start = {}, time.monotonic()
     for name in ("sound", "inverted"):
         scene = study.scenes / f"chen_{name}.json"
         done = subprocess.run([study.program, "info", str(scene)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
         if done.returncode != 0:
             return Part({"difference": unmeasured(f"info fails: {done.stderr.strip()}")})
         told[name] = [line.strip() for line in done.stdout.splitlines() if "caster" in line and "mesh" in line]
-    study.keep("info", ["info", study.scenes / "chen_inverted.json"], 1)
+    study.keep("info", ["info", study.scenes / "chen_inverted.json"], time.monotonic() - start)
     seen = [(title, look(study, name, shapes)) for name, title, shapes in (
         ("sound", "one closed surface", ("bowl",)), ("inverted", "a difference of two", ("outside", "taken_away")))]
     flawed = {name: any("inwards" in line or "open edges" in line or " lie on " in line for line in lines) for name, lines in told.items()}
@@ -152,4 +216,4 @@ def difference(study):
                "taken away, whose faces look inwards: light that enters the glass never leaves it rightly.", *strip([seen]))])
 
 
-SECTIONS = {"bowls": columns, "lights": lights, "views": views, "through": through, "difference": difference}
+SECTIONS = {"bowls": columns, "events": events, "lights": lights, "views": views, "through": through, "difference": difference}

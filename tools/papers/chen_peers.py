@@ -1,91 +1,127 @@
-"""Chen 2011: both bowls by POV-Ray, which the text used, and by today's Mitsuba, beside the photon map; what is not installed is left out."""
+"""Chen 2011: both bowls by POV-Ray, which the text used, and by today's Mitsuba, beside ours; what is not installed is left out."""
 import json
 import os
 import pathlib
+import shlex
 import shutil
-import statistics
 import subprocess
+import time
 
 import numpy as np
 
-from papers.chuang_pictures import enlarged
 from papers.figures import luminance, strip, white
 from papers.part import Figure, Part, Table
-from papers.study import ROOT
+from papers.study import ROOT, Cost, shown
 from papers.verdict import Measured, unmeasured
 from papers.words import spread
 from peers.aimed_lamp import DARK, aimed
 from report import exr
 
-BOWLS = {"bowl": "glass, n = 1.5", "crystal_bowl": "cut crystal, n = 1.7"}
-SETTING = ("/room/radiance=0", "/sensor/film/width=160", "/sensor/film/height=120", "/sensor/sampler/sample_count=4")
-INDEX = {"bowl": (), "crystal_bowl": ("/bowl/bsdf/int_ior=1.7",)}
+SETTING = ("/room/radiance=0", "/sensor/film/width=240", "/sensor/film/height=180", "/sensor/sampler/sample_count=4")
+# case -> title, scene, what is changed
+BOWLS = {"bowl": ("glass, n = 1.5", "bowl", ()),
+         "facets": ("glass, n = 1.5, bent by its facets' planes", "bowl", ("/bowl/face_normals=true",)),
+         "crystal": ("cut crystal, n = 1.7", "crystal_bowl", ("/bowl/bsdf/int_ior=1.7", "/bowl/face_normals=true"))}
+SHOWN = ("bowl", "crystal")
 SEEDS = (1, 2, 3)
 PHOTONS = {1: 30000, 2: 30390, 3: 29610}  # POV-Ray's: it has no seed
-RAYS = 256  # a pixel, of Mitsuba's light paths; its sampler wants a square
-CUTOFF = 20  # degrees: the spot light in the point light's place lights all that the picture shows
+RAYS, EYE_RAYS = 256, 64  # a pixel, of Mitsuba's light paths and of its path tracer; its sampler wants squares
+CUTOFF = 20  # degrees: the spot light in the point light's place lights all that is compared
 
 
-def words(scene):
-    return [word for each in (*SETTING, *INDEX[scene]) for word in ("--set", each)]
+def words(case):
+    return [f"experiments/scenes/{BOWLS[case][1]}.json", *[word for each in (*SETTING, *BOWLS[case][2]) for word in ("--set", each)]]
 
 
-def ours(study, scene, seed):
-    file, = study.single("peers", "render", [f"experiments/scenes/{scene}.json", *words(scene), "--method", "photonmap", "--param", "photons=300000",
-                                             "--param", "nearest=100", "--param", "max_bounces=64", "--seed", str(seed), "--threads", "1"],
-                         f"ours-{scene}-s{seed}.exr")
+def ours(study, case, seed, method, *parameters):
+    file, = study.single("peers", "render", [*words(case), "--method", method, *[word for each in parameters for word in ("--param", each)], "--seed",
+                                             str(seed), "--threads", "1"], f"{method}-{case}-s{seed}.exr")
     return exr.read_layers(file)
 
 
-def exported(study, scene, target):
-    folder = study.output / "trials" / "peers" / f"{target}-{scene}"
+def photon_map(study, case, seed):
+    return ours(study, case, seed, "photonmap", "photons=300000", "nearest=100", "max_bounces=64")
+
+
+def light_traced(study, case, seed):
+    return ours(study, case, seed, "lighttrace", "paths=3000000", "max_bounces=64")
+
+
+def exported(study, case, target):
+    """(folder, command) of a scene as another program reads it."""
+    folder = study.output / "trials" / "peers" / f"{target}-{case}"
+    command = ["export", *words(case), "--to", target, "-o", folder]
     if not any(folder.glob("scene.*")):
-        study.run(["export", f"experiments/scenes/{scene}.json", *words(scene), "--to", target, "-o", folder])
-        if target == "mitsuba":
-            aim(folder / "scene.xml", json.loads((ROOT / "experiments" / "scenes" / f"{scene}.json").read_text(encoding="utf-8"))["sun"]["position"])
-    return folder
+        study.run(command)
+    return folder, command
 
 
-def aim(file, position):
+def aim(source, position):
     """Mitsuba's point lights send nearly all their particles past the scene."""
-    text = file.read_text(encoding="utf-8")
-    file.write_text(aimed(text, file, position, (0, 0, 0), (0, 0, 1), CUTOFF, 0.999 * CUTOFF), encoding="utf-8")
+    file = source.with_name("aimed.xml")
+    file.write_text(aimed(source.read_text(encoding="utf-8"), source, position, (0, 0, 0), (0, 0, 1), CUTOFF, 0.999 * CUTOFF), encoding="utf-8")
+    return file
 
 
 def timed(command, folder):
-    """CPU seconds of a program of one thread; raises ChildProcessError."""
-    before = os.times()
+    """(CPU seconds, seconds) of a program of one thread; raises ChildProcessError."""
+    before, start = os.times(), time.monotonic()
     done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     if done.returncode != 0:
         raise ChildProcessError(f"{pathlib.Path(command[0]).name}: exit code {done.returncode}: {' '.join(done.stderr.strip().splitlines()[-1:])}")
     after = os.times()
-    return after.children_user + after.children_system - before.children_user - before.children_system
+    return after.children_user + after.children_system - before.children_user - before.children_system, time.monotonic() - start
 
 
-def povray(study, scene, seed):
-    """(picture, CPU seconds), kept as a file."""
-    kept = study.output / "trials" / "peers" / f"povray-{scene}-{PHOTONS[seed]}.npz"
-    if not kept.is_file():
-        study.log(f"POV-Ray: {scene}, {PHOTONS[seed]} photons")
-        folder = exported(study, scene, "povray")
-        used = timed(["povray", "scene.ini", "+WT1", f"Declare=Photon_Count={PHOTONS[seed]}"], folder)
-        np.savez_compressed(kept, picture=exr.read_layers(folder / "scene.exr")[""][..., :3], cpu_s=used)
-    return load(kept)
+def kept_run(study, name, title, make):
+    """(picture, CPU seconds) of NAME.npz, which make(file) writes and whose command it gives; what it cost goes to the page."""
+    file = study.output / "trials" / "peers" / f"{name}.npz"
+    note = file.with_suffix(".json")
+    if not (file.is_file() and note.is_file()):
+        study.log(f"{title}: {name}")
+        command, seconds = make(file)
+        note.write_text(json.dumps({"command": command, "seconds": seconds}) + "\n")
+    told = json.loads(note.read_text())
+    cost = study.costs.setdefault(title.lower().replace("-", ""), Cost(told["command"]))
+    cost.seconds += told["seconds"]
+    cost.bytes += file.stat().st_size
+    with np.load(file) as found:
+        return found["picture"].astype(np.float64), float(found["cpu_s"])
 
 
-def mitsuba(study, scene, seed):
-    kept = study.output / "trials" / "peers" / f"mitsuba-{scene}-{RAYS}-s{seed}.npz"
-    if not kept.is_file():
-        study.log(f"Mitsuba: {scene}, seed {seed}")
-        file = exported(study, scene, "mitsuba") / "scene.xml"
-        timed([mitsuba_python(), ROOT / "tools" / "papers" / "mitsuba_picture.py", file, RAYS, seed, kept], file.parent)
-    picture, used = load(kept)
+def povray(study, case, seed):
+    def make(file):
+        folder, command = exported(study, case, "povray")
+        call = ["povray", "scene.ini", "+WT1", f"Declare=Photon_Count={PHOTONS[seed]}"]
+        used, seconds = timed(call, folder)
+        np.savez_compressed(file, picture=exr.read_layers(folder / "scene.exr")[""][..., :3], cpu_s=used)
+        return also(command, folder, call), seconds
+
+    return kept_run(study, f"povray-{case}-{PHOTONS[seed]}", "POV-Ray", make)
+
+
+def mitsuba(study, case, seed):
+    picture, used = by_mitsuba(study, case, seed, "ptracer", RAYS)
     return picture / DARK, used
 
 
-def load(file):
-    with np.load(file) as found:
-        return found["picture"].astype(np.float64), float(found["cpu_s"])
+def by_mitsuba(study, case, seed, integrator, rays):
+    def make(file):
+        folder, command = exported(study, case, "mitsuba")
+        scene = folder / "scene.xml"
+        if integrator == "ptracer":
+            scene = aim(scene, json.loads((ROOT / words(case)[0]).read_text(encoding="utf-8"))["sun"]["position"])
+        tool = ROOT / "tools" / "papers" / "mitsuba_picture.py"
+        _, seconds = timed([mitsuba_python(), tool, scene, integrator, rays, seed, file], folder)
+        return also(command, folder, ["python", tool, scene.name, integrator, rays, seed, "OUT.npz"]), seconds
+
+    return kept_run(study, f"mitsuba-{case}-{integrator}{rays}-s{seed}", "Mitsuba", make)
+
+
+def also(export, folder, call):
+    """Both commands as a reader types them."""
+    text = f"cd {folder} && {shlex.join(map(str, call))}".replace(f"{ROOT}/", "")
+    return f"{shown(export)}; ({text})"
 
 
 def mitsuba_python():
@@ -110,28 +146,49 @@ def table_light(picture, layers):
 def peers(study):
     programs = {"POV-Ray": povray, "Mitsuba": mitsuba}
     missing = {name: absent(name) for name in programs}
-    own = {(scene, seed): ours(study, scene, seed) for scene in BOWLS for seed in SEEDS}
-    found = {(name, scene, seed): run(study, scene, seed) for name, run in programs.items() if not missing[name] for scene in BOWLS for seed in SEEDS}
-    over = {(name, scene): [table_light(found[name, scene, seed][0], own[scene, seed]) / table_light(own[scene, seed][""], own[scene, seed])
-                            for seed in SEEDS] for name, scene, _ in found}
-    measured, rows, shown = {}, [], []
-    for name in programs:
-        samples = [statistics.fmean(over[name, scene][k] for scene in BOWLS) for k in range(len(SEEDS))] if not missing[name] else []
-        measured[name.replace("-", "").lower()] = Measured(samples, note="mean of both bowls") if samples else unmeasured(missing[name])
-    for scene, what in BOWLS.items():
-        level = white(own[scene, 1][""])
-        shown.append([(f"{what}: photon map", enlarged(own[scene, 1][""]), level)] + [
-            (name, enlarged(found[name, scene, 1][0]), level) for name in programs if not missing[name]])
-        rows += [[what, name, spread(over[name, scene]), spread([found[name, scene, seed][1] for seed in SEEDS])]
-                 for name in programs if not missing[name]]
-    study.keep("peers", ["tools/reproduce.sh", "chen2011", "--only", "peers"], 0)
+    truth = {case: [light_traced(study, case, seed) for seed in SEEDS] for case in BOWLS}
+    maps = {case: [photon_map(study, case, seed) for seed in SEEDS] for case in BOWLS}
+    found = {(name, case): [run(study, case, seed) for seed in SEEDS] for name, run in programs.items() if not missing[name] for case in BOWLS}
+    base = {case: [table_light(each[""], each) for each in truth[case]] for case in BOWLS}
+    over = lambda case, pictures: [table_light(a, b) / c for a, b, c in zip(pictures, truth[case], base[case])]
+    measured, rows = {}, []
+    for case, (title, *_) in BOWLS.items():
+        rows.append([title, "photon map", spread(over(case, [each[""] for each in maps[case]])), ""])
+        for name in programs:
+            claim = f"{name.replace('-', '').lower()}_{case}"
+            if missing[name]:
+                measured[claim] = unmeasured(missing[name])
+                continue
+            measured[claim] = Measured(over(case, [picture for picture, _ in found[name, case]]), note=NOTES.get(claim, ""))
+            rows.append([title, name, spread(measured[claim].samples), spread([used for _, used in found[name, case]])])
     return Part(measured, [Table(
-        "peers", "The bowls by other programs", ["bowl", "program", "light in the bowl's shadow, over the photon map's", "CPU s"], rows,
-        "160 × 120 pixels, a dark room, crystal without dispersion. POV-Ray: some 30,000 photons aimed at the bowl, both ways at every surface, the nearest 20 to 100 gathered; "
-        f"Mitsuba: ptracer, {RAYS} light paths a pixel from a spot light in the point light's place, over a table a thousand times darker; ours: 300,000 photons. Times are for pictures of other noise each: results/bench/peers.md "
-        "compares at equal error.")] if rows else [], [Figure(
-            "peers", "The bowls by the photon map, POV-Ray and Mitsuba", "One scene, exported to each program; each row at one exposure. "
-            "The table of numbers is of what is seen without glass before it. Mitsuba's particles do not reach pixels that see the glass.", *strip(shown))])
+        "peers", "The bowls by other programs", ["bowl", "program", "light in the bowl's shadow, over light tracing's", "CPU s"], rows,
+        "240 × 180 pixels, a dark room, crystal without dispersion and bent by its facets' planes. POV-Ray: some 30,000 photons aimed at the bowl, "
+        f"both ways at every surface, the nearest 20 to 100 gathered; Mitsuba: ptracer, {RAYS} light paths a pixel from a spot light in the point "
+        "light's place, over a table a thousand times darker; ours: 3,000,000 light paths, and 300,000 photons. Times are for pictures of other "
+        "noise each: results/bench/peers.md compares at equal error.")], [picture_of(study, maps, found)])
+
+
+NOTES = {"mitsuba_bowl": "vertex normals: Mitsuba weighs what it bends by shading and geometric normals, ours keeps its flux (the exporter says so); the row "
+                         "of facets has the two alike"}
+
+
+def picture_of(study, maps, found):
+    shown_rows = []
+    for case in SHOWN:
+        mean = np.mean([each[""] for each in maps[case]], axis=0)
+        row = [(f"{BOWLS[case][0]}: photon map", mean)]
+        if ("POV-Ray", case) in found:
+            row.append(("POV-Ray", np.mean([picture for picture, _ in found["POV-Ray", case]], axis=0)))
+        if ("Mitsuba", case) in found:
+            light = np.mean([picture for picture, _ in found["Mitsuba", case]], axis=0)
+            eye, _ = by_mitsuba(study, case, 1, "path", EYE_RAYS)
+            row.append(("Mitsuba", np.where(luminance(light)[..., None] > 0, light, eye)))
+        shown_rows.append([(title, picture, white(mean)) for title, picture in row])
+    return Figure("peers", "The bowls by the photon map, POV-Ray and Mitsuba", "One scene, exported to each program; each row at one exposure, means of "
+                  f"{len(SEEDS)} runs. Mitsuba's light tracer does not reach pixels that see the glass, nor those beyond its spot light: there the "
+                  "picture is by its path tracer, which has no caustic. The table of numbers is of what is seen without glass before it.",
+                  *strip(shown_rows))
 
 
 SECTIONS = {"peers": peers}

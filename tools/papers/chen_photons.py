@@ -5,12 +5,15 @@ import numpy as np
 
 from papers.figures import luminance, strip
 from papers.part import Figure, Part, Table
-from papers.verdict import Measured, counted, ratio
+from papers.verdict import Measured, counted, interval, ratio
 from papers.words import short, spread
 from report import exr
 from report.records import natural
 
 BLOCK = 8  # pixels
+NEAR = 144  # the first row of pixels in which checks are larger than pixels
+SEEDS = (1, 2, 3, 4, 5, 6)
+FINE = 12  # n of the picture that edges are compared with
 
 
 def errors(layers, level):
@@ -21,37 +24,48 @@ def errors(layers, level):
 
 
 def patterns(some):
-    """The error that pictures of two seeds share, squared: a pattern stays, noise does not."""
-    return [float((a * b).mean()) for a, b in zip(some, [*some[1:], some[0]])]
+    """The error that pictures of two seeds share, squared, by disjoint pairs: a pattern stays, noise does not."""
+    return [float((a * b).mean()) for a, b in zip(some[::2], some[1::2])]
+
+
+def edges(layers, truth):
+    """Root of the mean squared error where single checks are larger than a pixel."""
+    return float(np.sqrt((luminance(layers[""] - truth[""])[NEAR:] ** 2).mean()))
+
+
+def checkers(study, n, jitter, seeds):
+    return [exr.read_layers(study.single("sampling", "render", [
+        "experiments/papers/scenes/chen_checker.json", "--set", f"/sensor/sampler/jitter={jitter}", "--method", "none", "--spp", str(n * n), "--seed",
+        str(seed), "--threads", "1"], f"n{n}-{jitter}-s{seed}.exr")[0]) for seed in seeds]
 
 
 def sampling(study):
-    found, shown = {}, {}
-    for n in (1, 2, 3, 4):
-        for jitter in ("false", "true"):
-            for seed in (1, 2, 3):
-                file, = study.single("sampling", "render", [
-                    "experiments/papers/scenes/chen_checker.json", "--set", f"/sensor/sampler/jitter={jitter}", "--method", "none", "--spp",
-                    str(n * n), "--seed", str(seed), "--threads", "1"], f"n{n}-{jitter}-s{seed}.exr")
-                layers = exr.read_layers(file)
-                found.setdefault((n, jitter), []).append(errors(layers, 0.5))
-                shown.setdefault((n, jitter), layers[""])
+    seeds = {"false": SEEDS[:1], "true": SEEDS}  # regular samples are the same with every seed
+    pictures = {(n, jitter): checkers(study, n, jitter, seeds[jitter]) for n in (1, 2, 3, 4) for jitter in seeds}
+    truth = checkers(study, FINE, "false", SEEDS[:1])[0]
+    found = {key: [errors(layers, 0.5) for layers in some] for key, some in pictures.items()}
+    found[2, "true"] = [errors(layers, 0.5) for layers in study.sweep("moire").pictures()]
     whole = {key: [float(np.sqrt((each**2).mean())) for each in some] for key, some in found.items()}
-    shared = {key: patterns(some) for key, some in found.items()}
+    shared = {key: patterns(some if key[1] == "true" else 2 * some) for key, some in found.items()}
+    at_edges = {key: [edges(layers, truth) for layers in some] for key, some in pictures.items()}
     per_cent = lambda values: spread([100 * each for each in values])
     rows = [[str(n), str(n * n), *[text for jitter in ("false", "true") for text in (
-        per_cent(whole[n, jitter]), spread([1e4 * each for each in shared[n, jitter]]))]] for n in (1, 2, 3, 4)]
-    pictures = strip([[(f"n² = {n * n}, regular", shown[n, "false"]), (f"n² = {n * n}, jittered", shown[n, "true"])] for n in (1, 2, 4)], 1.0)
-    once, often = (statistics.fmean(whole[n, "false"]) for n in (1, 4))
-    return Part({"moire": Measured([a - b for a, b in zip(shared[2, "false"], shared[2, "true"])],
-                                   note="squared error that two seeds share, at n = 2: regular "
-                                        f"{spread(shared[2, 'false'])}, jittered {spread(shared[2, 'true'])}"),
-                 "oversampling": counted(often / once, "", f"regular: {short(100 * once)} % at n = 1, {short(100 * often)} % at n = 4")}, [
-        Table("sampling", "n² samples a pixel", ["n", "samples", "error, regular [%]", "shared [10⁻⁴]", "error, jittered [%]", "shared [10⁻⁴]"], rows,
-              f"A checkerboard far finer than a pixel, which has to be even grey: deviation of means over {BLOCK} x {BLOCK} pixels, and the "
-              "part of its square that two seeds share: moiré is there again with every seed, noise is not.")], [
+        per_cent(whole[n, jitter]), spread([1e4 * each for each in shared[n, jitter]]), per_cent(at_edges[n, jitter]))]] for n in (1, 2, 3, 4)]
+    shown = strip([[(f"n² = {n * n}, {name}", pictures[n, jitter][0][""]) for jitter, name in (("false", "regular"), ("true", "jittered"))]
+                   for n in (1, 2, 4)], 1.0)
+    pairs = f"{len(shared[2, 'true'])} disjoint pairs of seeds"
+    return Part({"moire": counted(shared[2, "false"][0], note="squared error that all seeds share, n = 2: regular samples are the same with every seed"),
+                 "jittering": Measured([each / shared[2, "false"][0] for each in shared[2, "true"]], note=f"n = 2, {pairs}; below 0 where noise has it"),
+                 "oversampling": ratio(at_edges[4, "true"], at_edges[1, "true"], "rms error of a pixel", note="jittered, where checks are larger than "
+                                       f"pixels; regular: {short(at_edges[4, 'false'][0] / at_edges[1, 'false'][0])}")}, [
+        Table("sampling", "n² samples a pixel", [
+            "n", "samples", "error, regular [%]", "shared [10⁻⁴]", "at edges [%]", "error, jittered [%]", "shared [10⁻⁴]", "at edges [%]"], rows,
+              f"A checkerboard to the horizon. Where checks are far finer than a pixel they have to be even grey: deviation of means over {BLOCK} x "
+              f"{BLOCK} pixels, and the part of its square that two seeds share (disjoint pairs of {len(SEEDS)} seeds, {len(found[2, 'true'])} at "
+              "n = 2): moiré is there again with every seed, noise is not. At edges: rms error of a pixel in the lowest rows, where checks are "
+              f"larger than pixels, against {FINE**2} regular samples.")], [
         Figure("sampling", "Regular and jittered samples", "A fine checkerboard to the horizon. Regular samples make patterns of their own "
-               "(moiré) where jittered ones make noise.", *pictures)])
+               "(moiré) where jittered ones make noise.", *shown)])
 
 
 def interaction(study):
@@ -62,31 +76,50 @@ def interaction(study):
     column = lambda name, how: trials.column(name, interaction=how)
     rows = [[how, *[spread(column(name, how)) for name in ("photons_emitted", "photons_stored", "precompute_cpu_s")], f"{noise[how]:.3g}"]
             for how in mean]
-    return Part({"split_same": ratio(mean["split"], mean["roulette"], "mean caustic", note="pairs of seeds")}, [Table(
+    same = ratio(mean["split"], mean["roulette"], "mean caustic")
+    low, high = interval(same.samples, False)
+    same.note = (f"95 % interval {low:.4f} to {high:.4f}, which {'holds' if low <= 1 <= high else 'does not hold'} 1; the claim is judged by the "
+                 "tolerance")
+    return Part({"split_same": same}, [Table(
         "interaction", "Roulette and split", ["interaction", "light paths", "photons", "tracing [CPU s]", "noise of a pixel [W/(m² sr)]"], rows,
         f"The bowl, {len(mean['split'])} seeds. Roulette: a photon is reflected or refracted (Jensen); split: both, each weaker (POV-Ray).")])
 
 
 def search(study):
+    """The time of the searches: rendering less that without photons."""
     trials = study.sweep("tree")
+    bare = trials.column("render_cpu_s", method="none")
     counts = sorted(trials.values("photons"), key=natural)
-    seconds = {count: trials.column("render_cpu_s", photons=count) for count in counts}
-    rows = [[f"{int(count):,}", spread(seconds[count]), spread(ratio(seconds[count], seconds[counts[0]], "").samples)] for count in counts]
-    return Part({"logarithmic": ratio(seconds[counts[-1]], seconds[counts[0]], "CPU s")}, [Table(
-        "tree", "Searching among more photons", ["photons", "rendering [CPU s]", "over the first"], rows,
-        f"160 × 120 pixels, N = 50, {len(seconds[counts[0]])} repeats.")])
+    several = sorted(trials.values("nearest"), key=natural)
+    seconds = {(count, n): [a - b for a, b in zip(trials.column("render_cpu_s", photons=count, nearest=n), bare)] for count in counts for n in several}
+    over = lambda count, n: ratio(seconds[count, n], seconds[counts[0], n], "CPU s for searches")
+    rows = [[n, f"{int(count):,}", spread(seconds[count, n]), spread(over(count, n).samples)] for n in several for count in counts]
+    return Part({"logarithmic": over(counts[-1], several[-1]), "logarithmic_few": over(counts[-1], several[0])}, [Table(
+        "tree", "Searching among more photons", ["N", "photons", "searches [CPU s]", "over the first"], rows,
+        f"160 × 120 pixels, {trials.rows[0]['spp']} rays each, {len(bare)} repeats. Searches: rendering less {spread(bare, 'CPU s')} without photons. "
+        f"With N = {several[0]} the way down the tree is most of the work, with N = {several[-1]} the gathering.")])
 
 
 def filters(study):
     trials = study.sweep("filters")
-    error = {name: trials.column("mask_rmse", filter=name) for name in ("none", "cone", "gaussian")}
-    bare, mapped = (trials.column("rmse", **which) for which in ({"method": "none"}, {"filter": "none"}))
-    rows = [[name, spread(error[name]), spread(trials.column("rmse", filter=name))] for name in error]
-    return Part({"filter_cone": ratio(error["cone"], error["none"], "rmse in the caustic"),
-                 "filter_gaussian": ratio(error["gaussian"], error["none"], "rmse in the caustic"),
-                 "realistic": ratio(mapped, bare, "rmse against light tracing")}, [Table(
-        "filters", "Filtered estimates", ["filter", "rmse where the caustic is bright [W/(m² sr)]", "rmse everywhere"], rows,
-        "The bowl, N = 200 of 100,000 photons, against light tracing. The text names no filter: cone and Gaussian are Jensen's of 2001.")])
+    kinds = ("none", "cone", "gaussian")
+    several = sorted(trials.values("nearest"), key=natural)
+    main = "200"
+    error = {(name, n): trials.column("mask_rmse", filter=name, nearest=n) for name in kinds for n in several}
+    bare, mapped = (trials.column("rmse", **which) for which in ({"method": "none"}, {"filter": "none", "nearest": main}))
+    rows = [[n, name, spread(error[name, n]), spread(trials.column("rmse", filter=name, nearest=n))] for n in several for name in kinds]
+    filtered = lambda name, n: ratio(error[name, n], error["none", n], "rmse in the caustic")
+    by_n = {name: ", ".join(f"{spread(filtered(name, n).samples)} at N = {n}" for n in several) for name in kinds[1:]}
+    part = Part({f"filter_{name}": filtered(name, main) for name in kinds[1:]})
+    for name in kinds[1:]:
+        part.measured[f"filter_{name}"].note = by_n[name]
+    part.measured["realistic"] = ratio(mapped, bare, "rmse against light tracing")
+    part.facts["filters_over_n"] = f"rmse of filtered over unfiltered estimates: cone {by_n['cone']}; Gaussian {by_n['gaussian']}"
+    part.tables.append(Table(
+        "filters", "Filtered estimates", ["N", "filter", "rmse where the caustic is bright [W/(m² sr)]", "rmse everywhere"], rows,
+        "The bowl, 100,000 photons, against light tracing; the claims are judged at N = 200. The text names no filter: cone and Gaussian are Jensen's "
+        "of 2001."))
+    return part
 
 
 def maps(study):
@@ -96,17 +129,19 @@ def maps(study):
     adds = max(float(np.abs(layers[""] - sum(layers[name] for name in ("direct", "specular", "caustic", "indirect"))).max() / layers[""].max())
                for layers in [*two, *whole, *gathered])
     mean = lambda some: [float(layers["indirect"].mean()) for layers in some]
-    first = gathered[0]
+    first = {name: np.mean([layers[name] for layers in gathered], axis=0) for name in gathered[0]}
+    by_map = np.mean([layers["indirect"] for layers in whole], axis=0)
     level = float(np.percentile(luminance(first[""]), 97))
-    pictures = strip([[("direct", first["direct"]), ("specular", first["specular"]), ("caustic", first["caustic"])],
-                      [("multiple diffuse, gathered", first["indirect"]), ("the global map", whole[0]["indirect"]), ("all", first[""])]], level)
+    pictures = strip([[("direct", first["direct"]), ("specular: the lamp, seen and mirrored", first["specular"]), ("caustic", first["caustic"])],
+                      [("multiple diffuse, gathered", first["indirect"]), ("multiple diffuse, the global map", by_map), ("all", first[""])]], level)
     rows = [["the map, paths end at the second diffuse surface", spread(mean(two))], ["the map, paths end by roulette", spread(mean(whole))],
             ["final gathering, 8 rays", spread(mean(gathered))]]
     return Part({"four_parts": counted(adds, "of the brightest pixel"), "second_hit": ratio(mean(two), mean(whole), "mean indirect light")}, [Table(
         "maps", "Light between diffuse surfaces", ["by", "mean of the layer [W/(m² sr)]"], rows,
         f"{len(gathered)} seeds, 240 × 240 pixels.")], [Figure(
-            "maps", "Four parts of the light in a room", "Direct light, specular, caustic (its own map) and multiple diffuse reflections (the "
-            "global map), and their sum.", *pictures)])
+            "maps", "Four parts of the light in a room", "Direct light, specular (only the lamp itself has its own light here: what "
+            "mirrors and glass show of the room is in the other layers), caustic (its own map) and multiple diffuse reflections, and their sum, at one "
+            f"exposure; means of {len(gathered)} seeds.", *pictures)])
 
 
 def shadows(study):

@@ -1,13 +1,16 @@
 """Chen 2011: chromatic dispersion. The fringe of a prism against its closed form; colour of crystal glass."""
+import json
 import math
 
+import matplotlib.pyplot as plt
 import numpy as np
+from scipy.interpolate import griddata
 
-from papers.figures import luminance, strip, white
+from papers.figures import STYLE, luminance, png, srgb, strip, white
 from papers.jensen_ball import Floor
 from papers.part import Figure, Part, Table
 from papers.verdict import Measured, ratio
-from papers.words import spread
+from papers.words import short, spread
 
 # Sellmeier's law of SF10 (Schott): B, C [um^2]; the faces that light passes; the lamp; of experiments/scenes/prism.json.
 SF10 = ((1.61625977, 0.0127534559), (0.259229334, 0.0581983954), (1.07762317, 116.60768))
@@ -66,14 +69,40 @@ def fringe(study):
     width = 1000 * abs(theirs[0] - theirs[2])
     rows = [[name, f"{1000 * theirs[k]:.2f}", spread([1000 * each[k] for each in ours])] for k, name in enumerate(("red", "green", "blue"))]
     rows.append(["red to blue", f"{width:.2f}", spread(widths)])
-    shown = trials.picture(seed=1)[""]
-    picture = strip([[("", shown)]], 0.5 * float(np.percentile(luminance(shown), 99.9)))
+    mean = {layer: np.mean([layers[layer] for layers in trials.pictures()], axis=0) for layer in ("", "caustic")}
+    picture = drawn(mean, Floor(trials.picture(), scene).points, theirs), strip([[("", mean[""])]])[1]
     return Part({"fringe": Measured([each / width for each in widths], note=f"{spread(widths, 'mm')} from the middle of the red to that of the blue; "
                                     f"in closed form {width:.2f} mm")}, [Table(
         "prism", "The fringe of a prism of SF10", ["channel", "middle in closed form [mm]", "middle in the picture [mm]"], rows,
         "Where the light falls on the table, along x. Closed form: Snell's law at both faces for the lamp's axis, Sellmeier's law, weighed "
-        "by the CIE's observer.")], [Figure("prism", "Chromatic dispersion", "White light through a prism of SF10: a rainbow whose width is that of the "
-                                            "closed form.", *picture)])
+        "by the CIE's observer.")], [Figure("prism", "Chromatic dispersion", "White light through a prism of SF10. Above, the scene: the lamp's "
+                                            "light falls on the prism from above and is bent to the right. Below, the rainbow from straight above, and its "
+                                            "light along the table in red, green and blue; dashed, the middle of each channel in closed form.", *picture)])
+
+
+def drawn(mean, points, theirs):
+    """PNG of the scene, and of the rainbow along x with the places of the closed form."""
+    middle = 1000 * float(theirs[1])
+    x, y = 1000 * points[..., 0], 1000 * points[..., 1]
+    across = (np.abs(y) < 40) & (x > middle - 120) & (x < middle + 180)
+    edges = np.linspace(middle - 120, middle + 180, 64)
+    sums = [np.histogram(x[across], edges, weights=mean["caustic"][..., k][across])[0] for k in range(3)]
+    counts = np.maximum(np.histogram(x[across], edges)[0], 1)
+    above = griddata((x[across], y[across]), mean["caustic"][across], tuple(np.meshgrid(np.linspace(edges[0], edges[-1], 400), np.linspace(-20, 20, 64))))
+    level = float(np.nanpercentile(luminance(above), 99))
+    with plt.rc_context(STYLE):
+        figure, (scene, strip_of, curve) = plt.subplots(3, 1, figsize=(6.4, 6.2), dpi=150, layout="constrained", height_ratios=(3.1, 0.9, 2))
+        scene.imshow(srgb(mean[""][15:250, 20:560] / float(np.percentile(luminance(mean[""]), 99.7))), interpolation="bicubic")
+        scene.axis("off")
+        strip_of.imshow(srgb(np.nan_to_num(above) / level), extent=(edges[0], edges[-1], -20, 20), origin="lower", aspect="auto", interpolation="bilinear")
+        strip_of.set(xlim=(edges[0], edges[-1]), ylim=(-20, 20), ylabel="y [mm]")
+        strip_of.tick_params(labelbottom=False)
+        for values, place, colour, name in zip(sums, theirs, ("#c0392b", "#2e8b57", "#2c5fb3"), ("red", "green", "blue")):
+            curve.plot((edges[1:] + edges[:-1]) / 2, values / counts, color=colour, label=name)
+            curve.axvline(1000 * place, color=colour, linestyle="--", linewidth=1)
+        curve.set(xlim=(edges[0], edges[-1]), ylim=(0, None), xlabel="x on the table [mm]", ylabel="light [W/(m² sr)]")
+        curve.legend()
+        return png(figure)
 
 
 def floor_area(layers, scene):
@@ -88,21 +117,35 @@ def colour(study):
     trials = study.sweep("glass")
     names = {("dispersive" if "abbe" in row["index"] else f"n = {row['index']}"): row["index"] for row in trials.rows}
     pictures = {name: trials.pictures(index=index, method="photonmap") for name, index in names.items()}
-    hues = {name: [hue(layers) for layers in pictures[name]] for name in names}
-    pairs = lambda some: list(zip(some, [*some[1:], some[0]]))
-    shared = {name: [float((a * b).mean()) for a, b in pairs(hues[name])] for name in names}
+    shared = {name: shared_colour(pictures[name]) for name in names}
     straight = {name: trials.picture(index=index, method="none") for name, index in names.items()}
     moved = {name: [displaced(layers, straight[name]) for layers in pictures[name]] for name in names}
     rows = [[name, spread(shared[name]), spread(moved[name])] for name in sorted(names)]
-    shown = [(name, pictures[name][0][""]) for name in sorted(names)]
+    mean = {name: np.mean([layers[""] for layers in pictures[name]], axis=0) for name in names}
     return Part({"rainbows": Measured([a - b for a, b in zip(shared["dispersive"], shared["n = 1.7"])],
-                                      note="squared distance from grey over the squared light, by pairs of seeds, so that noise is not taken for colour"),
+                                      note="squared distance from grey over the squared light, multiplied over disjoint pairs of seeds, so that noise is "
+                                           "not taken for colour"),
                  "higher_index": ratio(moved["n = 1.7"], moved["n = 1.5"], "of the light")}, [Table(
         "glass", "The cut bowl by index and dispersion", ["glass", "colour that two seeds share", "light moved"], rows,
         "Light moved: half the mean difference from light that goes straight through the glass, over that light, on the table.")], [Figure(
             "glass", "The cut bowl of ordinary and of crystal glass",
-            "n = 1.5, n = 1.7, and n = 1.7 with Abbe's number 30: another index moves the light elsewhere; dispersion makes rainbows.",
-            *strip([shown], white(pictures["dispersive"][0][""])))])
+            f"n = 1.5, n = 1.7, and n = 1.7 with Abbe's number 30: another index moves the light elsewhere; dispersion makes rainbows. Means of "
+            f"{len(pictures['dispersive'])} seeds.",
+            *strip([[(name, mean[name]) for name in sorted(names)]], white(mean["dispersive"])))],
+        {"colour_by_abbe": by_abbe(study.sweep("glass_abbe"), shared["dispersive"])})
+
+
+def shared_colour(pictures):
+    """The squared colour that two seeds have in common, by disjoint pairs."""
+    hues = [hue(layers) for layers in pictures]
+    return [float((a * b).mean()) for a, b in zip(hues[::2], hues[1::2])]
+
+
+def by_abbe(trials, middle):
+    """The colour at other numbers of Abbe's over that at the one of the scene."""
+    median = sorted(middle)[len(middle) // 2]
+    of = lambda index: shared_colour(trials.pictures(index=index))[0] / median
+    return " and ".join(f"{short(of(index))} times at {short(json.loads(index)['V_d'])}" for index in trials.values("index"))
 
 
 def hue(layers):

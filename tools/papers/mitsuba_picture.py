@@ -1,16 +1,17 @@
-"""One picture by Mitsuba's ptracer, run by the Python that has Mitsuba: mitsuba_picture.py SCENE.xml RAYS SEED OUT.npz"""
+"""One picture by Mitsuba, run by the Python that has it: mitsuba_picture.py SCENE.xml INTEGRATOR RAYS SEED OUT.npz"""
 import resource
 import sys
 
 import numpy as np
 
 
-def main(path, rays, seed, out):
+def main(path, integrator, rays, seed, out):
     import mitsuba
 
     mitsuba.set_variant("scalar_rgb")
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
-    picture = np.array(mitsuba.render(mitsuba.load_file(path), seed=int(seed), spp=int(rays)), dtype=np.float64)
+    scene = mitsuba.load_file(path, integrator=integrator)
+    picture = np.array(mitsuba.render(scene, seed=int(seed), spp=int(rays)), dtype=np.float64)
     used = resource.getrusage(resource.RUSAGE_SELF)
     np.savez_compressed(out, picture=picture, cpu_s=used.ru_utime + used.ru_stime)
 
