@@ -9,6 +9,7 @@ import pathlib
 import re
 import resource
 import shutil
+import signal
 import subprocess
 
 import numpy as np
@@ -128,7 +129,7 @@ class Contestants:
         process.returncode = os.waitstatus_to_exitcode(status)
         seconds = used.ru_utime + used.ru_stime
         if process.returncode != 0:
-            if seconds > 0.95 * self.longest:
+            if process.returncode == -signal.SIGXCPU or seconds > 0.95 * self.longest:
                 raise TooLong
             last = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()[-1:]
             raise ChildProcessError(f"{pathlib.Path(command[0]).name}: exit code {process.returncode}: {' '.join(last)}")
