@@ -46,8 +46,7 @@ def arguments():
 
 def reproduce(name, chosen):
     from papers import kept
-    from papers.gallery import write_gallery
-    from papers.page import tally, write_page
+    from papers.page import tally, write_gallery, write_page
     from papers.part import Part
     from papers.study import Study
 

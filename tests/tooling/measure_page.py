@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures a report's page in a real browser: its size, when its first picture stands, what it asks for, whether it fits the window.
 
-Usage: tools/measure_page.py PAGE [-o results/bench/page.md] [--pictures DIR]
+Usage: tests/tooling/measure_page.py PAGE [-o results/bench/page.md] [--pictures DIR]
 
 The page is opened from the disk by headless Chromium (Debian's package), seven times at each window size; seconds are those on the
 wall from opening to the first picture (the strip) and to the viewer of single pictures. DIR gets what is seen at first.
@@ -14,8 +14,8 @@ import sys
 import time
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "tooling")]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
 
 import browser
 from report.program import processor
@@ -52,7 +52,7 @@ def row(file, width, height, pictures):
 
 def table(file, pictures):
     yield "# The report's page\n"
-    yield (f"By `tools/measure_page.py {file.name}`: {file.stat().st_size / 1e6:.1f} MB; {processor()}, {os.cpu_count()} processors, "
+    yield (f"By `tests/tooling/measure_page.py {file.name}`: {file.stat().st_size / 1e6:.1f} MB; {processor()}, {os.cpu_count()} processors, "
            f"load average {os.getloadavg()[0]:.1f}; {OPENINGS} openings each, median (least–greatest).\n")
     yield "| window | s to the first picture | s to the viewer | fits its width | complaints | requests beside the file |\n|---|---|---|---|---|---|"
     for width, height in WINDOWS:

@@ -5,7 +5,7 @@ Sources are compiled eight at a time (CAUSTICS_BATCHES), so that the unnamed nam
 and other parameters are then overloads: a call may go to the neighbour's, without a word. So each name is had once in a library;
 declared in a header it may be overloaded. Sources of one instruction set are compiled by themselves and may share names.
 
-Usage: check_batches.py [ROOT]     check the tree at ROOT (default: the folder above this one)
+Usage: check_batches.py [ROOT]     check the tree at ROOT (default: this one's)
        check_batches.py --self-test
 """
 import pathlib
@@ -66,7 +66,7 @@ def self_test():
 def main(arguments):
     if arguments == ["--self-test"]:
         return self_test()
-    root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).resolve().parents[1])
+    root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).resolve().parents[2])
     found = list(shared(root))
     print("\n".join(found) if found else "each function of a source's own has a name of its own in its library")
     return 1 if found else 0
