@@ -75,6 +75,11 @@ class Numbers(unittest.TestCase):
                 if method["method"] != "none":
                     self.assertEqual(method["param"]["max_bounces"], 1, file.name)
 
+    def test_sweeps_that_are_named_are_there(self):
+        for name, each in PAPERS.items():
+            for sweep in [*each.text["quick"], *each.text["untimed"]]:
+                self.assertTrue((paper.FOLDER / "sweeps" / f"{name}_{sweep}.json").is_file(), f"{name}: {sweep}")
+
     def test_ratios_come_from_the_numbers(self):
         claims = {claim["id"]: claim for claim in PAPERS["jensen1996"].text["claims"]}
         value = lambda name: PAPERS["jensen1996"].value(claims[name])

@@ -44,17 +44,21 @@ class Study:
             raise ChildProcessError(f"{shlex.join(map(str, words))}: exit code {done.returncode}")
 
     def sweep(self, name):
-        """The trials of experiments/papers/sweeps/PAPER_NAME.json; in a quick run those that PAPER.json filters."""
+        """The trials of experiments/papers/sweeps/PAPER_NAME.json; in a quick run those that PAPER.json filters.
+
+        Two at a time where nothing reads their times.
+        """
         if name in self.done:
             return self.done[name]
         folder = self.output / "trials" / name
         chosen = [] if self.full else self.paper.text["quick"].get(name, [])
         filters = [word for each in chosen for word in ("--filter", each)]
-        words = ["sweep", SWEEPS / f"{self.paper.name}_{name}.json", "-o", folder, *filters]
+        jobs = min(2, os.cpu_count()) if name in self.paper.text["untimed"] else 1
+        words = ["sweep", SWEEPS / f"{self.paper.name}_{name}.json", "-o", folder, *filters, *(["--jobs", str(jobs)] if jobs > 1 else [])]
         self.log(f"sweep {name}")
         self.run(words)
         trials = Trials(folder, chosen)
-        self.keep(name, words, sum(trials.column("elapsed_s")))
+        self.keep(name, words, sum(trials.column("elapsed_s")) / jobs)
         self.done[name] = trials
         return trials
 
