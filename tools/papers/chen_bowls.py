@@ -48,7 +48,7 @@ def columns(study):
         "bowls", "The bowls by photons and by beams",
         ["bowl and lamp", "by", "photons or beams", "captured [%]", "of it by photons [%]", "preprocess [CPU s]", "rendering [CPU s]",
          "caustic over photons"], table,
-        f"320 × 240 pixels, {trials.rows[0]['spp']} rays each; photons of {len(least)} seeds. Beams follow up to "
+        f"320 × 240 pixels, {trials.rows[0]['spp']} rays each, of beams under the disc {tree.rows[0]['spp']}; photons of {len(least)} seeds. Beams follow up to "
         f"{parameter(tree, 'max_bounces')} events, photons {parameter(trials, 'max_bounces', method='photonmap')}. Beams that are too weak to be "
         "followed, and those of polygons too coarse for what they meet, are completed by photons (rest: photons). Captured: share of the light on "
         "glass that beams and these photons carry to its last specular event. The beams' bowls are coarser meshes. Both bowls without dispersion; "
