@@ -43,11 +43,6 @@ private:
     float shift_v_;
 };
 
-bool is_flat_shape(const Shape& shape) {
-    return shape.primitive != Primitive::mesh &&
-           ask_exact(shape, [](const auto& kind) { return kind.is_flat; });
-}
-
 std::vector<Candidate> candidates_of(const Scene& scene, const AreaLight& light, int count,
                                      Rng& rng) {
     std::vector<Box> casters;
@@ -144,7 +139,7 @@ std::vector<AreaLightPoint> even_points(const Scene& scene, const AreaLight& lig
 
 std::vector<AreaLightPoint> area_light_points(const Scene& scene, const AreaLight& light, int count,
                                               Rng rng) {
-    if (is_flat_shape(scene.shapes()[light.shape])) return even_points(scene, light, count, rng);
+    if (exact_is_flat(scene.shapes()[light.shape])) return even_points(scene, light, count, rng);
     const int candidates = std::max(least_candidates, candidates_per_point * count);
     std::vector<Candidate> all = candidates_of(scene, light, candidates, rng);
     if (all.empty()) return even_points(scene, light, count, rng);

@@ -9,6 +9,11 @@ std::optional<ExactHit> intersect_exact(const Shape& shape, const Vec3d& o, cons
     return ask_exact(shape, [&](const auto& kind) { return kind.intersect(o, d, range); });
 }
 
+bool exact_is_flat(const Shape& shape) {
+    return shape.primitive != Primitive::mesh &&
+           ask_exact(shape, [](const auto& kind) { return kind.is_flat; });
+}
+
 Vec3d exact_normal(const Shape& shape, const Vec3d& local) {
     return ask_exact(shape, [&](const auto& kind) { return kind.normal(local); });
 }

@@ -11,6 +11,8 @@ namespace caustics {
 std::optional<ExactHit> intersect_exact(const Shape& shape, const Vec3d& o, const Vec3d& d,
                                         double t_min, double t_max);
 
+/// Whether it is an exact shape that lies in a plane; false for meshes.
+bool exact_is_flat(const Shape& shape);
 /// Unit normal of the front side in the local frame, without `flip_normals`.
 Vec3d exact_normal(const Shape& shape, const Vec3d& local);
 /// The point of the shape beside one near it.

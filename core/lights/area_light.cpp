@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/geometry/exact_shape.h"
 #include "core/geometry/surface_offset.h"
 #include "core/lights/light_text.h"
 #include "core/scene_file/strength.h"
@@ -42,11 +43,6 @@ BoundingSphere piece_bound(const Shape& shape, const Vec2& low, const Vec2& high
     return bound;
 }
 
-bool is_flat(const Shape& shape) {
-    return shape.primitive != Primitive::mesh &&
-           ask_exact(shape, [](const auto& kind) { return kind.is_flat; });
-}
-
 // Whether the light is so large that it is better aimed piece by piece.
 bool needs_pieces(const Surroundings& scene, const Shape& shape) {
     const BoundingSphere light = bounding_sphere(shape);
@@ -54,7 +50,7 @@ bool needs_pieces(const Surroundings& scene, const Shape& shape) {
         const BoundingSphere other = bounding_sphere(scene.shapes[caster]);
         return light.radius > 0.25F * ((other.centre - light.centre).norm() - other.radius);
     };
-    return is_flat(shape) && std::ranges::any_of(scene.casters, near);
+    return exact_is_flat(shape) && std::ranges::any_of(scene.casters, near);
 }
 
 // A point of a sphere, uniform across `direction`, on the side that shines along it.
@@ -107,7 +103,7 @@ std::vector<AimedSource> AreaLight::aim(const Surroundings& scene) const {
             source.facing_sphere = from;
             area /= 4;
         }
-        if (is_flat(on)) {
+        if (exact_is_flat(on)) {
             const Vec3 normal = sampler.sample(on, 0, 0).normal;
             source.max_cosine = max_cosine(normal, source.cones);
         }

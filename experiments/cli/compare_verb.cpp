@@ -114,12 +114,6 @@ std::string judged_layer(const CompareOptions& options, const Film& picture,
     return options.layer;
 }
 
-void require_png_strip(const std::string& strip) {
-    if (std::filesystem::path(strip).extension() != ".png")
-        throw InputError(fmt::format("--strip {}: strips are drawn as .png", strip));
-    require_writable_place(strip);
-}
-
 /// A picture of luminance alone cannot be told from one of another hue.
 void require_colours(const Film& film, const std::string& file) {
     if (film.has_layer("")) return;
@@ -193,7 +187,7 @@ std::string as_text(const Comparison& found, const CompareOptions& options, cons
 }
 
 int compare(const CompareOptions& options) {
-    if (!options.strip.empty()) require_png_strip(options.strip);
+    if (!options.strip.empty()) require_png("--strip", options.strip, "strips");
     const Film picture = read_exr(options.picture);
     const Film reference = read_exr(options.reference);
     const Comparison found = compared(options, picture, reference);

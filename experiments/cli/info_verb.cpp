@@ -25,6 +25,7 @@
 #include "experiments/cli/shape_lines.h"
 #include "experiments/cli/verbs.h"
 #include "experiments/picture/beam_picture.h"
+#include "experiments/picture/previews.h"
 #include "experiments/run/cli_options.h"
 #include "experiments/run/notes.h"
 #include "experiments/run/run_progress.h"
@@ -111,12 +112,6 @@ void write_drawing(const Scene& scene, const std::string& output,
     write_png(draw(run), output);
 }
 
-void require_png(const std::string& output, const char* what) {
-    if (std::filesystem::path(output).extension() != ".png")
-        throw InputError(fmt::format("-o {}: {} are drawn as .png", output, what));
-    require_writable_place(output);
-}
-
 void require_no_picture(const std::filesystem::path& file) {
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(file, unknown)) return;
@@ -137,7 +132,7 @@ void info_on_scene(const InfoOptions& options) {
     if (options.beams == options.output.empty() || (!options.beams && !options.params.empty()))
         throw InputError("--beams and -o belong together, for a scene; --param is for them");
     if (options.dot) throw InputError("--dot is for photons, which -o draws of a photon map");
-    if (options.beams) require_png(options.output, "beams");
+    if (options.beams) require_png("-o", options.output, "beams");
     SceneFile file = options.scene.load();
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     if (options.beams) {
@@ -168,7 +163,7 @@ void info_on_map(const InfoOptions& options) {
         throw InputError("--beams and --param are for scenes");
     if (options.dot && options.output.empty())
         throw InputError("--dot is for photons that are drawn, by -o");
-    if (!options.output.empty()) require_png(options.output, "photons");
+    if (!options.output.empty()) require_png("-o", options.output, "photons");
     photonmap::SavedPhotons saved = photonmap::load_photon_map(options.scene.file);
     const std::string text = describe_map(options.scene.file, saved);
     if (!options.map_scene.empty()) draw(options, std::move(saved));

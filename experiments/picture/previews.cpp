@@ -1,9 +1,12 @@
 #include "experiments/picture/previews.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "experiments/picture/metrics.h"
 
@@ -98,6 +101,12 @@ Picture strip(const Film& film, const Film& reference, const std::string& layer)
             all.rgb.insert(all.rgb.end(), row, row + row_bytes);
         }
     return all;
+}
+
+void require_png(const std::string& option, const std::string& file, const std::string& what) {
+    if (std::filesystem::path(file).extension() != ".png")
+        throw InputError(fmt::format("{} {}: {} are drawn as .png", option, file, what));
+    require_writable_place(file);
 }
 
 void write_png(const Picture& picture, const std::filesystem::path& file) {

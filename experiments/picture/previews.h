@@ -39,6 +39,8 @@ Picture signed_error(const Film& film, const Film& reference, const std::string&
 /// reference; full colour of the error stands for a quarter of white, 2^-exposure / 4.
 Picture strip(const Film& film, const Film& reference, const std::string& layer);
 
+/// Throws InputError where the file that an option names for `what` is no .png, or cannot be put there.
+void require_png(const std::string& option, const std::string& file, const std::string& what);
 void write_png(const Picture& picture, const std::filesystem::path& file);
 
 }  // namespace caustics::experiments
