@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 
-from papers.figures import luminance, strip, white
+from papers.figures import is_diffuse, largest_difference, luminance, mean_of, strip, white
 from papers.jensen_ball import Floor
 from papers.part import Figure, Part, Table
 from papers.verdict import Measured, counted, ratio, unmeasured
@@ -59,10 +59,6 @@ def columns(study):
         f"softens; beams take it as {parameter(tree, 'light_samples')} points, whose caustics lie beside each other. Each row at one exposure; ray "
         f"tracing and photons are means of {len(least)} seeds. Without dispersion, which figures overview and glass have.", *strip(rows)))
     return part
-
-
-def mean_of(pictures):
-    return np.mean([each[""] for each in pictures], axis=0)
 
 
 def parameter(trials, name, **which):
@@ -121,8 +117,7 @@ def lights(study):
     """How wide the shadow's edge is: the share of the table that sees a part of the lamp."""
     trials = study.sweep("lights")
     lamps = sorted(trials.values("lamp"), key=disc_size)
-
-    scene = json.loads((study.scenes.parents[1] / "scenes" / "bowl.json").read_text(encoding="utf-8"))
+    scene = study.scene("experiments/scenes/bowl.json")
 
     def half_lit(layers):
         share = seen_share(layers, scene)
@@ -142,7 +137,7 @@ def lights(study):
 
 def seen_share(layers, scene):
     """How much of the lamp each pixel of the table sees: its light over a point lamp's; NaN elsewhere."""
-    table = (layers["albedo"] < 0.7).all(axis=2) & (layers["albedo"] > 0).all(axis=2)
+    table = is_diffuse(layers)
     light = luminance(layers["direct"]) / np.maximum(luminance(layers["albedo"]), 1e-6)
     x, y, z = scene["sun"]["position"]
     points = Floor(layers, scene).points
@@ -163,8 +158,7 @@ def views(study):
     files += [study.single("views", "render", [*words, *view(origin), "--param", f"load={kept}"], f"view{number}.exr")[0]
               for number, origin in enumerate(VIEWS[1:], 2)]
     again, = study.single("views", "render", [*words, *view(VIEWS[2]), *photons], "again.exr")
-    read, traced = exr.read_layers(files[2]), exr.read_layers(again)
-    largest = max(float(np.abs(read[layer] - traced[layer]).max()) for layer in read)
+    largest = largest_difference(exr.read_layers(files[2]), exr.read_layers(again))
     return Part({"one_map": counted(largest, "W/(m² sr)", "largest difference in any layer")}, [], [Figure(
         "overview", "Crystal glass: three views by one photon map",
         "The cut bowl of n = 1.7 that disperses light, under a small lamp. The photons are traced once; the second and third view "

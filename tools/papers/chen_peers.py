@@ -9,12 +9,13 @@ import time
 
 import numpy as np
 
-from papers.figures import luminance, strip, white
+from papers.figures import is_diffuse, luminance, mean_of, strip, white
 from papers.part import Figure, Part, Table
 from papers.study import ROOT, Cost, shown
 from papers.verdict import Measured, unmeasured
 from papers.words import spread
 from peers.aimed_lamp import DARK, aimed
+from peers.contestants import REPEATS
 from report import exr
 
 SETTING = ("/room/radiance=0", "/sensor/film/width=240", "/sensor/film/height=180", "/sensor/sampler/sample_count=4")
@@ -24,7 +25,7 @@ BOWLS = {"bowl": ("glass, n = 1.5", "bowl", ()),
          "crystal": ("cut crystal, n = 1.7", "crystal_bowl", ("/bowl/bsdf/int_ior=1.7", "/bowl/face_normals=true"))}
 SHOWN = ("bowl", "crystal")
 SEEDS = (1, 2, 3)
-PHOTONS = {1: 30000, 2: 30390, 3: 29610}  # POV-Ray's: it has no seed
+PHOTONS = {seed: round(30000 * REPEATS[seed]) for seed in SEEDS}  # POV-Ray's: it has no seed
 RAYS, EYE_RAYS = 256, 64  # a pixel, of Mitsuba's light paths and of its path tracer; its sampler wants squares
 CUTOFF = 20  # degrees: the spot light in the point light's place lights all that is compared
 
@@ -110,7 +111,7 @@ def by_mitsuba(study, case, seed, integrator, rays):
         folder, command = exported(study, case, "mitsuba")
         scene = folder / "scene.xml"
         if integrator == "ptracer":
-            scene = aim(scene, json.loads((ROOT / words(case)[0]).read_text(encoding="utf-8"))["sun"]["position"])
+            scene = aim(scene, study.scene(words(case)[0])["sun"]["position"])
         tool = ROOT / "tools" / "papers" / "mitsuba_picture.py"
         _, seconds = timed([mitsuba_python(), tool, scene, integrator, rays, seed, file], folder)
         return also(command, folder, ["python", tool, scene.name, integrator, rays, seed, "OUT.npz"]), seconds
@@ -139,7 +140,7 @@ def absent(name):
 
 def table_light(picture, layers):
     """Mean over the pixels of the table that the lamp does not reach: the caustic in the bowl's shadow."""
-    table = (layers["albedo"] < 0.7).all(axis=2) & (layers["albedo"] > 0).all(axis=2)
+    table = is_diffuse(layers)
     return float(luminance(picture)[table & (luminance(layers["direct"]) == 0)].mean())
 
 
@@ -176,7 +177,7 @@ NOTES = {"mitsuba_bowl": "vertex normals: Mitsuba weighs what it bends by shadin
 def picture_of(study, maps, found):
     shown_rows = []
     for case in SHOWN:
-        mean = np.mean([each[""] for each in maps[case]], axis=0)
+        mean = mean_of(maps[case])
         row = [(f"{BOWLS[case][0]}: photon map", mean)]
         if ("POV-Ray", case) in found:
             row.append(("POV-Ray", np.mean([picture for picture, _ in found["POV-Ray", case]], axis=0)))

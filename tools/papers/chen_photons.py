@@ -3,9 +3,9 @@ import statistics
 
 import numpy as np
 
-from papers.figures import luminance, strip
+from papers.figures import luminance, mean_of, strip
 from papers.part import Figure, Part, Table
-from papers.verdict import Measured, counted, interval, ratio
+from papers.verdict import Measured, counted, in_common, interval, ratio
 from papers.words import short, spread
 from report import exr
 from report.records import natural
@@ -21,11 +21,6 @@ def errors(layers, level):
     light = luminance(layers[""])
     rows = light[64:112, :]  # below the horizon, where a pixel covers several checks
     return rows.reshape(rows.shape[0] // BLOCK, BLOCK, -1, BLOCK).mean(axis=(1, 3)) / level - 1
-
-
-def patterns(some):
-    """The error that pictures of two seeds share, squared, by disjoint pairs: a pattern stays, noise does not."""
-    return [float((a * b).mean()) for a, b in zip(some[::2], some[1::2])]
 
 
 def edges(layers, truth):
@@ -46,7 +41,7 @@ def sampling(study):
     found = {key: [errors(layers, 0.5) for layers in some] for key, some in pictures.items()}
     found[2, "true"] = [errors(layers, 0.5) for layers in study.sweep("moire").pictures()]
     whole = {key: [float(np.sqrt((each**2).mean())) for each in some] for key, some in found.items()}
-    shared = {key: patterns(some if key[1] == "true" else 2 * some) for key, some in found.items()}
+    shared = {key: in_common(some if key[1] == "true" else 2 * some) for key, some in found.items()}
     at_edges = {key: [edges(layers, truth) for layers in some] for key, some in pictures.items()}
     per_cent = lambda values: spread([100 * each for each in values])
     rows = [[str(n), str(n * n), *[text for jitter in ("false", "true") for text in (
@@ -129,8 +124,8 @@ def maps(study):
     adds = max(float(np.abs(layers[""] - sum(layers[name] for name in ("direct", "specular", "caustic", "indirect"))).max() / layers[""].max())
                for layers in [*two, *whole, *gathered])
     mean = lambda some: [float(layers["indirect"].mean()) for layers in some]
-    first = {name: np.mean([layers[name] for layers in gathered], axis=0) for name in gathered[0]}
-    by_map = np.mean([layers["indirect"] for layers in whole], axis=0)
+    first = {name: mean_of(gathered, name) for name in gathered[0]}
+    by_map = mean_of(whole, "indirect")
     level = float(np.percentile(luminance(first[""]), 97))
     pictures = strip([[("direct", first["direct"]), ("specular: the lamp, seen and mirrored", first["specular"]), ("caustic", first["caustic"])],
                       [("multiple diffuse, gathered", first["indirect"]), ("multiple diffuse, the global map", by_map), ("all", first[""])]], level)

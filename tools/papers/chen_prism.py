@@ -6,10 +6,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from scipy.interpolate import griddata
 
-from papers.figures import STYLE, luminance, png, srgb, strip, white
+from papers.figures import STYLE, is_diffuse, luminance, mean_of, png, srgb, strip, white
 from papers.jensen_ball import Floor
 from papers.part import Figure, Part, Table
-from papers.verdict import Measured, ratio
+from papers.verdict import Measured, in_common, ratio
 from papers.words import short, spread
 
 # Sellmeier's law of SF10 (Schott): B, C [um^2]; the faces that light passes; the lamp; of experiments/scenes/prism.json.
@@ -69,7 +69,7 @@ def fringe(study):
     width = 1000 * abs(theirs[0] - theirs[2])
     rows = [[name, f"{1000 * theirs[k]:.2f}", spread([1000 * each[k] for each in ours])] for k, name in enumerate(("red", "green", "blue"))]
     rows.append(["red to blue", f"{width:.2f}", spread(widths)])
-    mean = {layer: np.mean([layers[layer] for layers in trials.pictures()], axis=0) for layer in ("", "caustic")}
+    mean = {layer: mean_of(trials.pictures(), layer) for layer in ("", "caustic")}
     picture = drawn(mean, Floor(trials.picture(), scene).points, theirs), strip([[("", mean[""])]])[1]
     return Part({"fringe": Measured([each / width for each in widths], note=f"{spread(widths, 'mm')} from the middle of the red to that of the blue; "
                                     f"in closed form {width:.2f} mm")}, [Table(
@@ -121,7 +121,7 @@ def colour(study):
     straight = {name: trials.picture(index=index, method="none") for name, index in names.items()}
     moved = {name: [displaced(layers, straight[name]) for layers in pictures[name]] for name in names}
     rows = [[name, spread(shared[name]), spread(moved[name])] for name in sorted(names)]
-    mean = {name: np.mean([layers[""] for layers in pictures[name]], axis=0) for name in names}
+    mean = {name: mean_of(pictures[name]) for name in names}
     return Part({"rainbows": Measured([a - b for a, b in zip(shared["dispersive"], shared["n = 1.7"])],
                                       note="squared distance from grey over the squared light, multiplied over disjoint pairs of seeds, so that noise is "
                                            "not taken for colour"),
@@ -136,9 +136,8 @@ def colour(study):
 
 
 def shared_colour(pictures):
-    """The squared colour that two seeds have in common, by disjoint pairs."""
-    hues = [hue(layers) for layers in pictures]
-    return [float((a * b).mean()) for a, b in zip(hues[::2], hues[1::2])]
+    """The squared colour that two seeds have in common."""
+    return in_common([hue(layers) for layers in pictures])
 
 
 def by_abbe(trials, middle):
@@ -156,7 +155,7 @@ def hue(layers):
 
 
 def displaced(layers, straight):
-    table = (layers["albedo"] < 0.7).all(axis=2) & (layers["albedo"] > 0).all(axis=2)
+    table = is_diffuse(layers)
     ours, theirs = luminance(layers[""])[table], luminance(straight[""])[table]
     return float(np.abs(ours - theirs).sum() / theirs.sum() / 2)
 

@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from papers.chuang_counts import COUNTS, counters
+from papers.chuang_counts import COUNTS
 from papers.figures import luminance, plot
 from papers.part import Figure, Part, Table
 from papers.verdict import Measured, counted, ratio

@@ -22,6 +22,22 @@ def luminance(picture):
     return picture @ LUMINANCE
 
 
+def mean_of(pictures, layer=""):
+    """Of one layer of several."""
+    return np.mean([layers[layer] for layers in pictures], axis=0)
+
+
+def largest_difference(one, other):
+    """In any layer of two pictures."""
+    return max(float(np.abs(one[layer] - other[layer]).max()) for layer in one)
+
+
+def is_diffuse(layers):
+    """Which pixels see a diffuse surface and nothing else: glass has an albedo of 1, what lies behind everything 0."""
+    albedo = layers["albedo"]
+    return (albedo < 0.7).all(axis=2) & (albedo > 0).all(axis=2)
+
+
 def white(*pictures):
     """The radiance shown as white: the 99th percentile of luminance over lit pixels."""
     lit = np.concatenate([luminance(picture)[luminance(picture) > 0] for picture in pictures])
@@ -32,14 +48,6 @@ def srgb(linear):
     """IEC 61966-2-1."""
     v = np.clip(linear, 0, 1)
     return np.where(v <= 0.0031308, 12.92 * v, 1.055 * v ** (1 / 2.4) - 0.055)
-
-
-def signed(difference, scale):
-    """Red where above, blue where below, white where equal; linear values to be shown as they are."""
-    t = np.clip(difference.mean(axis=2) / scale, -1, 1)
-    fade = 1 - np.abs(t)
-    red, blue = np.where(t >= 0, 1 - 0.3 * t, fade), np.where(t < 0, 1 + 0.3 * t, fade)
-    return np.stack([red, fade, blue], axis=2)
 
 
 def strip(rows, level=None):

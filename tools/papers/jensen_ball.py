@@ -72,21 +72,21 @@ def bend(floor):
 
 def shape(study):
     trials = study.sweep("figure2_shape")
-    scene = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
+    scene = study.scene(SCENE)
     floors = {alpha: [Floor(layers, scene) for layers in trials.pictures(alpha=alpha)] for alpha in ("1", "0.1")}
     bends = {alpha: [bend(floor).index for floor in own] for alpha, own in floors.items()}
     size = lambda alpha: [abs(each) for each in bends[alpha]]
-    note, places = f"index {spread(bends['0.1'])} at alpha 0.1, {spread(bends['1'])} at alpha 1", elsewhere(study)
+    note, places = f"index {spread(bends['0.1'])} at alpha 0.1, {spread(bends['1'])} at alpha 1", elsewhere(study, scene)
     return Part({
         "ball_curved": Measured(size("0.1"), note=f"{note}; elsewhere, one seed each: {places['ball_20']} with the lamp 20 degrees high, "
                                 f"{places['ball_40']} with it 40 degrees high, {places['ball_behind']} from behind the lamp"),
         "ball_oval": Measured(size("1"), note=note),
         "ball_bends": Measured([a - b for a, b in zip(size("0.1"), size("1"))], note=note)},
-        figures=[overview(study, trials, floors), spots(trials, floors, note)])
+        figures=[overview(study, trials, floors, scene), spots(trials, floors, note)], facts=places)
 
 
-def overview(study, trials, floors):
-    whole, lamp = study.sweep("figure2_overview"), json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))["light"]["position"]
+def overview(study, trials, floors, scene):
+    whole, lamp = study.sweep("figure2_overview"), scene["light"]["position"]
     fov = [each.record(each.where()[0])["scene"]["resolved"]["sensor"]["fov"] for each in (whole, trials)]
     pictures = []
     for alpha in floors:
@@ -133,13 +133,8 @@ def above(floors):
     return plot(draw, 9, 3.4, 2)
 
 
-def geometries(study):
-    return Part(facts=elsewhere(study))
-
-
-def elsewhere(study):
+def elsewhere(study, base):
     """The index where lamp and eye stand elsewhere, as words."""
-    base = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
     usual, height = base["light"]["position"], base["ball"]["center"][2]
     look = base["sensor"]["to_world"][0]["look_at"]
     middle, far, first = look["target"][0], math.hypot(usual[0], usual[2]), math.atan2(usual[2], -usual[0])
@@ -169,4 +164,4 @@ def index_at(study, name, base, lamp, eye, spot):
     return ", ".join(found)
 
 
-SECTIONS = {"figure2-shape": shape, "figure2-geometry": geometries}
+SECTIONS = {"figure2-shape": shape}

@@ -1,6 +1,5 @@
 """Jensen 1996, figure 2: blur and noise of the caustic over the photons of the map and of an estimate."""
 import dataclasses
-import json
 import math
 import statistics
 
@@ -8,7 +7,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from papers.figures import luminance, strip
-from papers.jensen_ball import QUANTILE, THRESHOLD, Floor
+from papers.jensen_ball import QUANTILE, SCENE, THRESHOLD, Floor
 from papers.part import Figure, Part, Table
 from papers.verdict import Measured, ratio
 from papers.words import spread
@@ -28,7 +27,7 @@ class Errors:
 
 def blur(study):
     trials = study.sweep("figure2_blur")
-    scene = json.loads((study.scenes / "jensen_ball.json").read_text(encoding="utf-8"))
+    scene = study.scene(SCENE)
     maps = [(row["photons"], row["nearest"]) for row in trials.where(seed="1")]
     maps.sort(key=lambda each: tuple(map(natural, each)))
     floors = {each: [Floor(layers, scene) for layers in trials.pictures(photons=each[0], nearest=each[1])] for each in maps}

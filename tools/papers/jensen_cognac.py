@@ -4,7 +4,7 @@ import statistics
 
 import numpy as np
 
-from papers.figures import luminance, strip
+from papers.figures import is_diffuse, largest_difference, luminance, mean_of, strip
 from papers.jensen_table import rendering
 from papers.jensen_ring import preprocess
 from papers.part import Figure, Part, Table
@@ -13,6 +13,7 @@ from papers.words import spread
 from report import exr
 from report.records import natural
 
+SCENE = "experiments/scenes/cognac.json"
 SIDE = 12  # pixels of a window in which contrast is local
 VIEWS = ("of the figure", "from the left", "from the right", "from low down", "from behind", "from behind, left", "from behind, right",
          "from low down, left")
@@ -93,7 +94,7 @@ def twins(study):
 
 def twins_figure(trials, clear, sands, eyes, other):
     """Each picture the mean of the seeds."""
-    mean = lambda some, **wanted: np.mean([layers[""] for layers in some.pictures(**wanted)], axis=0)
+    mean = lambda some, **wanted: mean_of(some.pictures(**wanted))
     shown = lambda name, view: mean(trials, sand=sands[name], eye=eyes[view])
     glossy, lambertian = shown("alpha 0.6", other), shown("Lambert", other)
     pictures = strip([[("alpha = 0.6", shown("alpha 0.6", 0)), ("Lambert's law", shown("Lambert", 0)),
@@ -116,13 +117,13 @@ def shade(above, below):
 
 def shades_of(study, clear, cognac):
     """Red over blue in the caustic with clear cognac, half and double the absorption, and the scene's own."""
-    scene = json.loads((study.scenes.parent.parent / "scenes" / "cognac.json").read_text(encoding="utf-8"))
+    scene = study.scene(SCENE)
     found = []
     for times in (0.5, 2):
         absorption = json.dumps([times * each for each in scene["cognac"]["bsdf"]["absorption"]])
         changes = [word for mesh in ("inside", "cognac") for word in ("--set", f"/{mesh}/bsdf/absorption={absorption}")]
         file, = study.single("figure3_absorption", "render", [
-            "experiments/scenes/cognac.json", *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--threads", "1",
+            SCENE, *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--threads", "1",
             "--spp", "4", "--method", "photonmap", "--param", f"photons={study.paper.number('figure3_photons')}", "--param", "nearest=100"],
             f"times{times}.exr")
         found.append(redness(exr.read_layers(file)))
@@ -141,7 +142,7 @@ def eyes_of(study):
 
 def local_contrast(layers):
     """Mean over windows that see nothing but sand of the deviation of log luminance."""
-    sand = (layers["albedo"] < 0.7).all(axis=2) & (layers["albedo"] > 0).all(axis=2)
+    sand = is_diffuse(layers)
     light = np.log(np.maximum(luminance(layers[""]), 1e-9))
     found = []
     for y in range(0, light.shape[0] - SIDE + 1, SIDE):
@@ -174,8 +175,7 @@ def one_map(study):
     study.single("views", "render", [scene, *small, *method, *photons, "--param", f"save={kept}"], "first.exr")
     read, = study.single("views", "render", [scene, *small, *other, *method, "--param", f"load={kept}"], "read.exr")
     traced, = study.single("views", "render", [scene, *small, *other, *method, *photons], "traced.exr")
-    ours, theirs = exr.read_layers(read), exr.read_layers(traced)
-    largest = max(float(np.abs(ours[layer] - theirs[layer]).max()) for layer in ours)
+    largest = largest_difference(exr.read_layers(read), exr.read_layers(traced))
     return Part({"view_independent": counted(largest, "W/(m² sr)", "largest difference in any layer")})
 
 

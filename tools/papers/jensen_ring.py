@@ -5,7 +5,7 @@ import statistics
 from papers.figures import strip, white
 from papers.jensen_cardioid import ALPHAS, EYES
 from papers.part import Figure, Part, Table
-from papers.verdict import Measured, counted, ratio
+from papers.verdict import Measured, counted, pairs, ratio
 from papers.words import short, spread
 from report.records import natural
 
@@ -68,7 +68,7 @@ def n_of(trials):
 def noise(trials, alpha):
     """Variance of the caustic over its square, by disjoint pairs of seeds."""
     some = [layers["caustic"] for layers in trials.pictures(method="photonmap", alpha=alpha, max_samples=ADAPTIVE)]
-    return [float(((a - b) ** 2).mean() / 2 / (((a + b) / 2) ** 2).mean()) for a, b in zip(some[::2], some[1::2])]
+    return [float(((a - b) ** 2).mean() / 2 / (((a + b) / 2) ** 2).mean()) for a, b in pairs(some)]
 
 
 def growth(study, column):

@@ -3,7 +3,7 @@
 LEAST, MOST = 7, 34  # letters of a column, for its share of the line; a word that is longer makes it wider
 LETTERS = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "–": "--", "×": r"$\times$", "·": r"$\cdot$", "µ": r"$\mu$", "°": r"$^\circ$", "<": r"$<$", ">": r"$>$",
-           "≤": r"$\le$", "≥": r"$\ge$", "|": r"$|$", "é": r"\'e", "ü": r'\"u', "“": "``", "”": "''", "’": "'"}
+           "≤": r"$\le$", "†": r"$\dagger$", "≥": r"$\ge$", "|": r"$|$", "é": r"\'e", "ü": r'\"u', "“": "``", "”": "''", "’": "'"}
 RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
 

@@ -43,6 +43,11 @@ class Study:
         if done.returncode != 0:
             raise ChildProcessError(f"{shlex.join(map(str, words))}: exit code {done.returncode}")
 
+    @staticmethod
+    def scene(path):
+        """A scene file of the project, as it is written."""
+        return json.loads((ROOT / path).read_text(encoding="utf-8"))
+
     def sweep(self, name):
         """The trials of experiments/papers/sweeps/PAPER_NAME.json; in a quick run those that PAPER.json filters.
 

@@ -31,6 +31,16 @@ def ratio(top, bottom, unit, **more):
     return Measured([a / b for a, b in zip(top, bottom)], list(top), list(bottom), unit, **more)
 
 
+def pairs(some):
+    """Disjoint pairs of what seeds gave: independent samples of what two have in common or differ by."""
+    return zip(some[::2], some[1::2])
+
+
+def in_common(deviations):
+    """The mean square that pictures of two seeds have in common, one a disjoint pair: noise of their own cancels."""
+    return [float((a * b).mean()) for a, b in pairs(deviations)]
+
+
 def counted(value, unit="", note=""):
     return Measured([value], unit=unit, counted=True, note=note)
 
