@@ -27,7 +27,7 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from report.program import processor
+from report.program import processor, show
 
 SCENES = ROOT / "experiments/scenes"
 COLUMNS = 80
@@ -231,12 +231,7 @@ def main():
     chosen = parser.parse_args()
     if chosen.stops < 1:
         parser.error("--stops: at least 1")
-    text = []
-    for line in table(os.path.abspath(chosen.program), chosen.stops):
-        print(line, flush=True)
-        text.append(line + "\n")
-    if chosen.output:
-        chosen.output.write_text("".join(text), encoding="utf-8")
+    show(table(os.path.abspath(chosen.program), chosen.stops), chosen.output)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,9 @@ def shared(root):
                     for name in DECLARED.findall(line)}
         first = {}
         for file, text in read(".cpp").items():
-            for name in sorted(own_functions(text) - declared) if not ALONE.search(file.name) else ():
+            if ALONE.search(file.name):
+                continue
+            for name in sorted(own_functions(text) - declared):
                 other = first.setdefault(name, file)
                 if other != file:
                     yield f"{file.relative_to(root)}: {name}() is a function of {other.relative_to(root)}, too: give one of them another name"

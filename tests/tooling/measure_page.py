@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
 import browser
-from report.program import processor
+from report.program import processor, show
 
 WINDOWS = ((1920, 1080), (1280, 720))
 OPENINGS = 7
@@ -69,12 +69,7 @@ def main():
         sys.exit("measure_page: needs the Debian package chromium")
     if not chosen.page.is_file():
         parser.error(f"{chosen.page}: no such file")
-    text = []
-    for line in table(chosen.page.resolve(), chosen.pictures):
-        print(line, flush=True)
-        text.append(line + "\n")
-    if chosen.output:
-        chosen.output.write_text("".join(text), encoding="utf-8")
+    show(table(chosen.page.resolve(), chosen.pictures), chosen.output)
 
 
 if __name__ == "__main__":

@@ -171,28 +171,27 @@ class Report(unittest.TestCase):
             self.close_to(found[1], bias ** 2 - variance / 5 - 1e-6, 1e-2)
 
     def test_the_spectrum_adds_up_to_the_mean_square(self):
-        caustic, _, unreached = sweep.reference_planes()
         for i, cell in enumerate(self.run_script("scene().cells.map((cell) => [cell.method, cell.costs.map_bytes])")):
-            squares = []
-            for seed in range(1, 6):
-                error = (sweep.picture_of(cell[0], seed, int(cell[1] / 1000))[0] - caustic).mean(axis=0) * (unreached == 0)
-                squares.append(float((error.astype(float) ** 2).mean()))
+            squares = [float((error.astype(float) ** 2).mean()) for error in self.errors_of(*cell)]
             rings = self.run_script(f"errorSpectrum({i})")
             self.close_to(sum(ring["total"] for ring in rings), sum(squares) / 5, 1e-2)
             for ring in rings:
                 self.assertAlmostEqual(ring["bias2"], ring["total"] - ring["variance"], delta=1e-12)
-            for ring, power in zip(rings, self.powers(cell), strict=True):
+            for ring, power in zip(rings, self.powers(self.errors_of(*cell)), strict=True):
                 self.assertAlmostEqual(ring["total"], power, delta=2e-2 * power + 1e-3 * sum(squares) / 5)  # halves round
             self.close_to(sum(ring["variance"] for ring in rings), VARIANCE / (cell[1] / 1000) ** 2 * (192 - 3) / 192, 5e-2)
 
-    def powers(self, cell):
-        """The mean squared error over the seeds by ring of frequency, by NumPy's transform; rings without a frequency are left out."""
+    def errors_of(self, method, map_bytes):
+        """Picture less reference of each of a cell's seeds, means over channels; 0 where the reference does not reach."""
         caustic, _, unreached = sweep.reference_planes()
+        return [(sweep.picture_of(method, seed, int(map_bytes / 1000))[0] - caustic).mean(axis=0) * (unreached == 0) for seed in range(1, 6)]
+
+    def powers(self, errors):
+        """The mean squared error over the seeds by ring of frequency, by NumPy's transform; rings without a frequency are left out."""
         rings = numpy.zeros(24)
         across, down = numpy.meshgrid(*(numpy.fft.fftfreq(n) for n in (sweep.WIDTH, sweep.HEIGHT)))
         ring = numpy.minimum(23, (numpy.hypot(across, down) / math.sqrt(0.5) * 24 + 1e-9).astype(int))
-        for seed in range(1, 6):
-            error = (sweep.picture_of(cell[0], seed, int(cell[1] / 1000))[0] - caustic).mean(axis=0) * (unreached == 0)
+        for error in errors:
             numpy.add.at(rings, ring, abs(numpy.fft.fft2(error) / error.size) ** 2 / 5)
         return rings[numpy.bincount(ring.ravel(), minlength=24) > 0]
 
@@ -267,16 +266,15 @@ class Report(unittest.TestCase):
         self.assertGreater(zoom, 1.5)
         self.browser.drag((x, y), (x + 40, y + 20))
         self.settle()
-        views = self.run_script("viewer.panes.map((pane) => { const v = view(pane.canvas); return [v.x, v.y, v.zoom]; })")
-        self.assertEqual(views, [views[0]] * 3)
+        shown = lambda: self.run_script("viewer.panes.map((pane) => { const v = view(pane.canvas); return [v.x, v.y, v.zoom]; })")
+        self.assertEqual(shown(), [shown()[0]] * 3)
         kept = self.state("view")
         for mode in ("flip", "split"):
             self.press("m")
             for key in ("n", "n"):
                 self.press(key)
-                shown = self.run_script("viewer.panes.map((pane) => { const v = view(pane.canvas); return [v.x, v.y, v.zoom]; })")
                 self.assertEqual((self.state("mode"), self.state("view")), (mode, kept))
-                self.assertEqual(shown, [shown[0]] * len(shown))
+                self.assertEqual(shown(), [shown()[0]] * len(shown()))
         self.press("m", "0")
         self.assertEqual(self.state("view"), "")
 

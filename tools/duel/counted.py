@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from duel.factors import case
-from duel.ranges import Found, student
+from duel.ranges import Found
 from duel.verdicts import Case
 
 STEEP = -0.55  # of light tracing's error over paths

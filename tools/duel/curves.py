@@ -32,9 +32,9 @@ class Cell:
         self.noise = square(rows[0], "_noise")
         picks = draws(len(rows), rows[0].get("scene", ""))
         self.times = np.median(self.work[picks], axis=1)
-        own = self.squares[picks].mean(axis=1) - self.noise
-        self.high = np.sqrt(np.maximum(np.maximum(own, self.noise / 4), 1e-30))
-        self.low = np.where(own < self.noise / 4, 0.0, self.high)
+        squares = self.squares[picks].mean(axis=1)
+        self.high = error_of(squares, self.noise)
+        self.low = np.where(squares - self.noise < self.noise / 4, 0.0, self.high)
 
     def seconds(self):
         return float(self.times[0])
@@ -57,8 +57,9 @@ class Cell:
 
 
 def error_of(square, noise):
-    """The error without the truth's own; what lies within a quarter of the truth's variance cannot be separated from it."""
-    return math.sqrt(max(square - noise, noise / 4, 1e-30))
+    """The error without the truth's own, of one squared error or of many; what lies within a quarter of the truth's variance cannot be
+    separated from it."""
+    return np.sqrt(np.maximum(np.maximum(square - noise, noise / 4), 1e-30))
 
 
 def error_by_truth(error, noise, pixels):

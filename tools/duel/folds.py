@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from duel import contests, truth
-from duel.ranges import student
 from duel.scores import Scored, write_csv
+from report.intervals import student
 from report.records import read_rows
 
 NEAREST = (10, 30, 100, 300)

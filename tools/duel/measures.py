@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from duel import counted, factors
-from duel.factors import BEAMS, CONES, PHOTONS, SECOND, Results, case  # noqa: F401  (Results: for who reads records)
+from duel.factors import BEAMS, CONES, PHOTONS, SECOND, case
 from duel.ranges import Range, estimate, least, middle
 from duel.verdicts import Case
 from papers.words import short

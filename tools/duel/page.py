@@ -1,7 +1,7 @@
 """results/duel: the teacher's page, tables, verdicts and plots, all from records."""
 import json
 
-from duel import factors, measures, plots, prose, scores, tables, variables, verdicts
+from duel import factors, lists, measures, plots, prose, scores, tables, variables, verdicts
 from duel.curves import Field
 from duel.ranges import OUTSIDE
 from duel.race import LEFT_OUT, SEARCH, FINAL, cells_of
@@ -151,9 +151,15 @@ def not_measured(results):
     return Table("not_measured", "Not measured here", ["question", "says", "why"], rows)
 
 
+def tables_of(results):
+    """All tables of numbers, in their order."""
+    raced = [tables.light, tables.wanted, tables.crossings, tables.memory, lists.truths, lists.parts, lists.settings, lists.search_now, lists.left_out]
+    return [*(tables.winners(results, time) for time in tables.TIMES), tables.winners(results, 1, True), *(each(results) for each in raced)]
+
+
 def rendered(results):
     """{file name: text} of all pages."""
-    found, every = entries(results), tables.everything(results)
+    found, every = entries(results), tables_of(results)
     verdict, lacking = verdict_table(found), not_measured(results)
     kept = [verdict, anew_table(found), *every, lacking]
     words = (results.duel.folder / "page.md").read_text(encoding="utf-8")
@@ -164,15 +170,7 @@ def rendered(results):
     title = "The duel of photon map and beam tree"
     return {"README.md": words, "verdicts.json": json.dumps(found, indent=1, ensure_ascii=False) + "\n",
             "tables.md": f"# {title}: all tables\n\n{results.machine()}\n" + "".join(map(section, kept)),
-            "tables.csv": comma(list(map(plain, kept))), "tables.tex": latex(title, list(map(plain, kept)))}
-
-
-def latex(title, found):
-    """latex_tables has no dagger: here it goes through as a control character."""
-    carried, mark = tables.CARRIED, "\x01"
-    hidden = lambda text: str(text).replace(carried, mark)
-    found = [Table(table.name, table.title, table.heading, [list(map(hidden, row)) for row in table.rows], hidden(table.note)) for table in found]
-    return latex_tables(title, found).replace(mark, r"$\dagger$")
+            "tables.csv": comma(list(map(plain, kept))), "tables.tex": latex_tables(title, list(map(plain, kept)))}
 
 
 def write_all(duel, output, quick=False):

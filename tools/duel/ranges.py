@@ -12,6 +12,7 @@ import zlib
 import numpy as np
 
 from papers.words import short
+from report.intervals import student
 
 RESAMPLES = 2000
 OUTSIDE = 0.05  # an interval leaves out so much
@@ -24,12 +25,6 @@ def draws(seeds, stream=""):
     """RESAMPLES + 1 rows of seeds' numbers: all of them, then draws with replacement. The same on every run; each stream has its own."""
     random = np.random.default_rng([1996, zlib.crc32(stream.encode())])
     return np.vstack([np.arange(seeds), random.integers(0, seeds, (RESAMPLES, seeds))])
-
-
-def student(degrees, outside=OUTSIDE):
-    from scipy.special import stdtrit  # here, for it takes a second to load
-
-    return float(stdtrit(degrees, 1 - outside / 2))
 
 
 class Range:

@@ -7,7 +7,6 @@ from duel import factors
 from duel.curves import SLACK
 from duel.factors import BEAMS, CONES, PHOTONS
 from papers.part import Table
-from papers.words import short
 
 TIMES = (0.1, 0.3, 1, 3)  # CPU seconds
 ERRORS = (0.2, 0.05, 0.01, 0.001)
@@ -174,10 +173,3 @@ def memory(results):
         rows.append([scene.title, percent(goal[0]), *megabytes, factor(factors.factor_at_least_common(field, x=built))])
     return Table("memory", "Memory at the least error that both reach", ["scene", "error", "photon map, MB", "beam tree, MB", "ratio"], rows,
                  "Of the first measured setting that has the error; the ratio's interval spans what may lie between settings.")
-
-
-def everything(results):
-    from duel import lists  # here, for it takes METHODS and percent from this module
-
-    return [*(winners(results, time) for time in TIMES), winners(results, 1, True), light(results), wanted(results), crossings(results),
-            memory(results), lists.truths(results), lists.parts(results), lists.settings(results), lists.search_now(results), lists.left_out(results)]

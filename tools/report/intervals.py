@@ -13,11 +13,11 @@ class Answer:
     terms: tuple = ()
 
 
-def student(degrees):
-    """Student's t for a two-sided 95 % interval."""
+def student(degrees, outside=0.05):
+    """Student's t for a two-sided interval that leaves out so much; 95 % of it are within."""
     from scipy.special import stdtrit  # here, so that a broken table is named even without SciPy
 
-    return float(stdtrit(degrees, 0.975))
+    return float(stdtrit(degrees, 1 - outside / 2))
 
 
 def half_interval(values):

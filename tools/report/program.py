@@ -46,6 +46,16 @@ def exit_code(tool, run):
     return 0
 
 
+def show(lines, output=None):
+    """Prints a page's lines as they come; the whole page goes to `output`, where one is given."""
+    text = []
+    for line in lines:
+        print(line, flush=True)
+        text.append(line + "\n")
+    if output:
+        output.write_text("".join(text), encoding="utf-8")
+
+
 def processor():
     """The processor's name, or the machine's kind where the system does not give one."""
     lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
