@@ -77,7 +77,7 @@ class Numbers(unittest.TestCase):
 
     def test_sweeps_that_are_named_are_there(self):
         for name, each in PAPERS.items():
-            for sweep in [*each.text["quick"], *each.text["untimed"]]:
+            for sweep in [*each.text["quick"], *each.text["two_at_a_time"]]:
                 self.assertTrue((paper.FOLDER / "sweeps" / f"{name}_{sweep}.json").is_file(), f"{name}: {sweep}")
 
     def test_ratios_come_from_the_numbers(self):

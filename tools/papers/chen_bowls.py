@@ -52,7 +52,7 @@ def columns(study):
         f"{parameter(tree, 'max_bounces')} events, photons {parameter(trials, 'max_bounces', method='photonmap')}. Beams that are too weak to be "
         "followed, and those of polygons too coarse for what they meet, are completed by photons (rest: photons). Captured: share of the light on "
         "glass that beams and these photons carry to its last specular event. The beams' bowls are coarser meshes. Both bowls without dispersion; "
-        f"beams take the disc as {parameter(tree, 'light_samples')} points."))
+        f"beams take the disc as {parameter(tree, 'light_samples')} points. Beams are by two threads."))
     part.figures.append(Figure(
         "bowls", "A bowl of glass and one of cut crystal, by ray tracing, photons and beams, under two lamps", "Ray tracing only has a plain shadow, "
         "or weakened light that goes straight through, where the photon map and the beams have the caustic. Under the disc the photons' caustic "

@@ -124,7 +124,8 @@ def markdown(paper, entries, kept, tables):
 HOW = ("A claim holds where the interval of ours lies within the region of the last table, does not hold where it lies outside, and is undecided "
        "between. The interval is Student's t over seeds or repeats, on a scale of ratios, and leaves out 5 % at each end: a trend that holds has its "
        "order and sign at 95 %. Counted values are the same on every run. "
-       "Times are CPU times of one thread: median (least–greatest). Factor off: ours over the paper's.\n")
+       "Times are CPU times of one thread: median (least–greatest); sweeps on whose times no claim rests run two trials at a time. "
+       "Factor off: ours over the paper's.\n")
 
 
 COMMANDS = ["claim", "holds where ours is", "because of", "section", "minutes", "MB", "command"]

@@ -51,14 +51,14 @@ class Study:
     def sweep(self, name):
         """The trials of experiments/papers/sweeps/PAPER_NAME.json; in a quick run those that PAPER.json filters.
 
-        Two at a time where nothing reads their times.
+        Two at a time where no claim is about their times.
         """
         if name in self.done:
             return self.done[name]
         folder = self.output / "trials" / name
         chosen = [] if self.full else self.paper.text["quick"].get(name, [])
         filters = [word for each in chosen for word in ("--filter", each)]
-        jobs = min(2, os.cpu_count()) if name in self.paper.text["untimed"] else 1
+        jobs = min(2, os.cpu_count()) if name in self.paper.text["two_at_a_time"] else 1
         words = ["sweep", SWEEPS / f"{self.paper.name}_{name}.json", "-o", folder, *filters, *(["--jobs", str(jobs)] if jobs > 1 else [])]
         self.log(f"sweep {name}")
         self.run(words)
