@@ -190,7 +190,8 @@ def peers(study):
         "240 × 180 pixels, a dark room, crystal without dispersion and bent by its facets' planes. POV-Ray: some 30,000 photons aimed at the bowl, "
         f"both ways at every surface, the nearest 20 to 100 gathered; Mitsuba: ptracer, {RAYS} light paths a pixel from a spot light in the point "
         "light's place, over a table a thousand times darker; ours: 3,000,000 light paths, and 300,000 photons. The "
-        "shadow's edge is left out. Times are for pictures of other noise each: results/bench/peers.md compares at equal error.")], [picture_of(study, maps, found)])
+        "shadow's edge is left out. Times are for pictures of other noise each: results/bench/peers.md compares at equal error.")],
+        [picture_of(study, maps, found)])
 
 
 NOTES = {"mitsuba_bowl": "vertex normals: Mitsuba weighs what it bends by shading and geometric normals, ours keeps its flux (the exporter says so); the row "
