@@ -148,7 +148,7 @@ def seen_share(layers, scene):
 def views(study):
     """Three views of the crystal bowl by one map."""
     scene = "experiments/scenes/crystal_bowl.json"
-    words = [scene, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--spp", "64", "--threads", "1", "--method", "photonmap",
+    words = [scene, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--spp", "64", "--method", "photonmap",
              "--param", "nearest=100", "--param", "tree=packed"]
     photons = ["--param", "photons=300000", "--param", "max_bounces=64"]
     kept = study.output / "trials" / "views" / "crystal.photons"
@@ -188,7 +188,7 @@ def look(study, name, shapes):
     changes = ["/sensor/film/width=320", "/sensor/film/height=240", "/sensor/sampler/split_depth=4", f"/table/bsdf/reflectance={CHECKS}",
                *[f"/{shape}/{key}" for shape in shapes for key in ("face_normals=true", "resolution=96")]]
     file, = study.single("difference", "render", [study.scenes / f"chen_{name}.json", *[word for each in changes for word in ("--set", each)], "--method",
-                                                  "none", "--param", "shadows=transparent", "--spp", "36", "--threads", "1"], f"{name}.exr")
+                                                  "none", "--param", "shadows=transparent", "--spp", "36"], f"{name}.exr")
     return exr.read_layers(file)[""]
 
 

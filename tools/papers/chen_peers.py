@@ -39,7 +39,7 @@ def words(case):
 
 def ours(study, case, seed, method, *parameters):
     file, = study.single("peers", "render", [*words(case), "--method", method, *[word for each in parameters for word in ("--param", each)], "--seed",
-                                             str(seed), "--threads", "1"], f"{method}-{case}-s{seed}.exr")
+                                             str(seed)], f"{method}-{case}-s{seed}.exr")
     return exr.read_layers(file)
 
 

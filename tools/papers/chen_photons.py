@@ -31,7 +31,7 @@ def edges(layers, truth):
 def checkers(study, n, jitter, seeds):
     return [exr.read_layers(study.single("sampling", "render", [
         "experiments/papers/scenes/chen_checker.json", "--set", f"/sensor/sampler/jitter={jitter}", "--method", "none", "--spp", str(n * n), "--seed",
-        str(seed), "--threads", "1"], f"n{n}-{jitter}-s{seed}.exr")[0]) for seed in seeds]
+        str(seed)], f"n{n}-{jitter}-s{seed}.exr")[0]) for seed in seeds]
 
 
 def sampling(study):

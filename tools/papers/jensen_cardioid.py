@@ -58,7 +58,7 @@ def probed(study, points):
         for seed in range(1, 6 if study.full else 4):
             out, = study.single("figure1_probes", "probe", [
                 SCENE, "--set", f"/floor/bsdf/alpha={alpha}", "--method", "photonmap", "--param", "photons=2000000", "--param",
-                "nearest=60", "--param", "tree=packed", "--seed", str(seed), "--threads", "1", "--points", str(file)],
+                "nearest=60", "--param", "tree=packed", "--seed", str(seed), "--points", str(file)],
                 f"alpha{alpha}-s{seed}.csv")
             table = np.genfromtxt(out, delimiter=",", names=True)
             found[alpha, seed] = dict(zip(EYES, np.split(table["radiance_g"], len(EYES))))

@@ -123,7 +123,7 @@ def shades_of(study, clear, cognac):
         absorption = json.dumps([times * each for each in scene["cognac"]["bsdf"]["absorption"]])
         changes = [word for mesh in ("inside", "cognac") for word in ("--set", f"/{mesh}/bsdf/absorption={absorption}")]
         file, = study.single("figure3_absorption", "render", [
-            SCENE, *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240", "--threads", "1",
+            SCENE, *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240",
             "--spp", "4", "--method", "photonmap", "--param", f"photons={study.paper.number('figure3_photons')}", "--param", "nearest=100"],
             f"times{times}.exr")
         found.append(redness(exr.read_layers(file)))
@@ -166,7 +166,7 @@ def tracing(study):
 def one_map(study):
     """A map saved with one view and read with another gives the picture of a map traced for that view, bit for bit."""
     scene = "experiments/papers/scenes/jensen_ring.json"
-    small = ["--set", "/sensor/film/width=80", "--set", "/sensor/film/height=60", "--threads", "1"]
+    small = ["--set", "/sensor/film/width=80", "--set", "/sensor/film/height=60"]
     other = ["--set", "/sensor/to_world/0/look_at/origin=[0.3,-1.2,1.4]"]
     method = ["--method", "photonmap", "--param", "nearest=100"]
     photons = ["--param", f"photons={study.paper.number('figure1_photons')}"]
