@@ -16,7 +16,7 @@ from papers.part import Figure, Part, Table
 from papers.study import ROOT, Cost, shown
 from papers.verdict import Measured, unmeasured
 from papers.words import spread
-from peers.aimed_lamp import DARK, aimed
+from peers.aimed_lamp import DARK, aimed, independent
 from peers.contestants import REPEATS
 from report import exr
 
@@ -63,7 +63,8 @@ def exported(study, case, target):
 def aim(source, position):
     """Mitsuba's point lights send nearly all their particles past the scene."""
     file = source.with_name("aimed.xml")
-    file.write_text(aimed(source.read_text(encoding="utf-8"), source, position, (0, 0, 0), (0, 0, 1), CUTOFF, 0.999 * CUTOFF), encoding="utf-8")
+    text = aimed(source.read_text(encoding="utf-8"), source, position, (0, 0, 0), (0, 0, 1), CUTOFF, 0.999 * CUTOFF)
+    file.write_text(independent(text), encoding="utf-8")
     return file
 
 
@@ -176,7 +177,7 @@ def peers(study):
     measured, rows = {}, []
     for case, (title, *_) in BOWLS.items():
         ours_too = spread(over(case, [each[""] for each in maps[case]]))
-        notes = NOTES | {f"povray_{case}": f"the nearest photons hold too much light where it is uneven; our photon map's: {ours_too}"}
+        notes = {f"povray_{case}": f"the nearest photons hold too much light where it is uneven; our photon map's: {ours_too}"}
         rows.append([title, "photon map", ours_too, ""])
         for name in programs:
             claim = f"{name.replace('-', '').lower()}_{case}"
@@ -192,10 +193,6 @@ def peers(study):
         "light's place, over a table a thousand times darker; ours: 3,000,000 light paths, and 300,000 photons. The "
         "shadow's edge is left out. Times are for pictures of other noise each: results/bench/peers.md compares at equal error.")],
         [picture_of(study, maps, found)])
-
-
-NOTES = {"mitsuba_bowl": "vertex normals: Mitsuba weighs what it bends by shading and geometric normals, ours keeps its flux (the exporter says so); the row "
-                         "of facets has the two alike"}
 
 
 def picture_of(study, maps, found):

@@ -2,6 +2,7 @@
 import re
 
 DARK = 0.001  # times the floor's reflectance; pictures are divided by it
+INDEPENDENT = '<sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>'
 
 
 def aimed(text, name, origin, target, up, cutoff, beam_width):
@@ -14,6 +15,11 @@ def aimed(text, name, origin, target, up, cutoff, beam_width):
     if (lamps, floors) != (1, 1):
         raise ChildProcessError(f"{name}: the export to Mitsuba is not as this tool knows it")
     return text
+
+
+def independent(text):
+    """Without strata: those of Mitsuba, without jitter, give the light paths of all pixels the same numbers."""
+    return re.sub(r'<sampler type="stratified">.*?</sampler>', INDEPENDENT, text, flags=re.DOTALL)
 
 
 def darker(found):

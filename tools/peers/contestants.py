@@ -15,7 +15,7 @@ import subprocess
 import numpy as np
 
 from peers import contest
-from peers.aimed_lamp import DARK, aimed
+from peers.aimed_lamp import DARK, aimed, independent
 from report import exr
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -23,7 +23,6 @@ OUR_METHODS = ("photonmap", "beamtree", "lighttrace")
 FIXED = {"photonmap": {"emission": "stratified", "filter": "epanechnikov"}, "lighttrace": {"emission": "stratified"}}
 REPEATS = {1: 1.0, 2: 1.013, 3: 0.987}  # of POV-Ray's photons, which have no seed
 DEPTH = 18  # of Mitsuba's paths: our 16 events, floor and eye
-INDEPENDENT = '<sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>'
 JITTER = 0.4  # of POV-Ray's photons, in spacings
 
 
@@ -165,5 +164,4 @@ def aimed_lamp(text, scene):
     text = aimed(text, scene.name, position, np.array(position) + axis, up, angle, 0.9999 * angle)
     text = text.replace('name="rr_depth" value="$max_depth"', 'name="rr_depth" value="$roulette"')
     text = text.replace('<default name="spp"', '<default name="roulette" value="18"/>\n  <default name="spp"')
-    # Its stratified sampler without jitter gives each pixel's light paths the same numbers.
-    return re.sub(r'<sampler type="stratified">.*?</sampler>', INDEPENDENT, text, flags=re.DOTALL)
+    return independent(text)
