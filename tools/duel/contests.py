@@ -122,7 +122,7 @@ def sweep_files(scene, settings, seeds, rules, folder, phase):
 
 
 def sweep(scene, settings, seeds, rules):
-    """The reference has a seed of its own: with a trial's it would be made of the same light paths. It is one for all numbers of samples."""
+    """The reference has a seed of its own: with a trial's it would be made of the same light paths."""
     first = settings[0]
     fixed = dict(scene.all_set())
     if first.mesh is not None:
@@ -134,7 +134,7 @@ def sweep(scene, settings, seeds, rules):
             "seeds": list(seeds), "spp": first.spp, "threads": rules["threads"]}
     if not scene.quadrature():
         param = {"paths": scene.truth["paths"], "emission": "stratified", **scene.text.get("param", {})}
-        made["reference"] = {"method": "lighttrace", "param": param, "seed": rules["reference_seed"], "spp": rules["reference_spp"]}
+        made["reference"] = {"method": "lighttrace", "param": param, "seed": rules["reference_seed"]}
     return made
 
 
