@@ -1,22 +1,26 @@
 #!/usr/bin/python3
 """Reproduces the figures, table cells and claims of the three papers, and writes results/papers/PAPER/.
 
-Usage: tools/reproduce.sh [PAPER]... [--quick | --full] [--only SECTION]... [--pages] [--program PROGRAM]
+Usage: tools/reproduce.sh [PAPER]... [--quick | --full] [--only SECTION]... [--pages | --compare] [--program PROGRAM]
 
-PAPER: jensen1996, chuang1995, chen2011; without one, all three. A quick run (the default) takes at most 45 minutes for all on two
+PAPER: jensen1996, chuang1995, chen2011; without one, all three. A quick run (the default) takes some 45 minutes for all on two
 quiet cores; --full has more seeds and finer steps. It goes on where it was stopped: what has been rendered is in
 results/papers/PAPER/trials. experiments/papers/PAPER.json has the paper's numbers and claims, the sweeps beside it what is
 run. --only runs single sections (the last table of a page names them) and keeps the other rows; --pages runs nothing and writes the
-pages anew from verdicts.json and tables.json. Exit codes: 0 done (whether claims hold or not), 1 a run failed, 2 bad input or usage, 130 interrupted.
+pages anew from verdicts.json and tables.json; --compare holds records/*.csv to those of the last commit. Exit codes: 0 done (whether claims hold or not), 1 a run failed, 2 bad input or usage, 130 interrupted.
 """
 import argparse
+import csv
 import importlib
+import io
 import pathlib
+import subprocess
 import sys
 import time
 
 sys.dont_write_bytecode = True  # the source folder may be read-only
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+COMPARED = ("picture_hash", "beam_point_hits", "photons_stored")
 sys.path.insert(0, str(ROOT / "tools"))
 
 from report import paper as papers_text
@@ -28,10 +32,11 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("papers", metavar="PAPER", nargs="*", help=f"{', '.join(papers_text.NAMES)} (default: all)")
     sizes = parser.add_mutually_exclusive_group()
-    sizes.add_argument("--quick", action="store_true", help="at most 45 minutes for all (the default)")
+    sizes.add_argument("--quick", action="store_true", help="some 45 minutes for all (the default)")
     sizes.add_argument("--full", action="store_true", help="more seeds, finer steps")
     parser.add_argument("--only", action="append", default=[], metavar="SECTION", help="this section (repeatable); the rest is kept")
     parser.add_argument("--pages", action="store_true", help="no runs: the pages from what is there")
+    parser.add_argument("--compare", action="store_true", help="no runs: the kept records beside those of the last commit, by trial")
     parser.add_argument("--program", type=pathlib.Path, default=BENCH, help="causticbench (default: build/release/bin)")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "papers", metavar="DIR")
     parser.add_argument("--note", default="", help="said of the machine on each page, such as who else used it")
@@ -88,7 +93,26 @@ def check_sections(chosen, names):
             raise RecordsError(f"{chosen.output / name}: no earlier run (run tools/reproduce.sh {name} first, without --only and --pages)")
 
 
+def compare(names, output):
+    """Counts trials whose picture, beam-point hits or photons are not those of the last commit."""
+    for file in sorted(path for name in names for path in (output / name / "records").glob("*.csv")):
+        shown = subprocess.run(["git", "-C", ROOT, "show", f"HEAD:{file.relative_to(ROOT)}"], capture_output=True, text=True)
+        if shown.returncode != 0:
+            raise RecordsError(f"{file}: the last commit has no such file")
+        before, now = by_trial(shown.stdout), by_trial(file.read_text(encoding="utf-8"))
+        both = before.keys() & now.keys()
+        differ = sorted(trial for trial in both if before[trial] != now[trial])
+        print(f"{file.relative_to(output)}: {len(both)} trials in both, {len(differ)} differ, {len(before.keys() ^ now.keys())} in one only", *differ)
+
+
+def by_trial(text):
+    rows = csv.DictReader(io.StringIO(text))
+    return {row["trial"]: [row.get(name, "") for name in COMPARED] for row in rows if "trial" in row and "picture_hash" in row}
+
+
 def run(chosen):
+    if chosen.compare:
+        return compare(chosen.papers or papers_text.NAMES, chosen.output.resolve())
     if not chosen.program.exists() and not chosen.pages:
         raise RecordsError(f"{chosen.program}: not there (tools/build.sh release causticbench, or --program)")
     names = chosen.papers or papers_text.NAMES

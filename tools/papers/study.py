@@ -115,9 +115,10 @@ class Study:
         if not partial:
             shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(exist_ok=True)
-        tables = {f"{name}.csv": trials.folder / "records.csv" for name, trials in self.done.items()}
-        for name, file in (tables | self.answers).items():
+        for name, file in self.answers.items():
             shutil.copyfile(file, folder / name)
+        for name, trials in self.done.items():
+            trials.write(folder / f"{name}.csv")
 
 
 def inputs(words):
@@ -150,6 +151,15 @@ class Trials:
         if unfinished:
             raise RecordsError(f"{folder}: trial {unfinished[0]} is not done (its log.txt says why)")
         self.rows = sorted(rows, key=lambda row: (int(row["seed"]), int(row["repeat"])))
+
+    def write(self, path):
+        """The rows that were chosen, in the order in which they are kept: what a longer run left in the folder is no part of this one."""
+        chosen = {row["trial"] for row in self.rows}
+        with open(self.folder / "records.csv", newline="", encoding="utf-8") as file, open(path, "w", newline="", encoding="utf-8") as kept:
+            reader = csv.DictReader(file)
+            writer = csv.DictWriter(kept, reader.fieldnames, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(row for row in reader if row["trial"] in chosen)
 
     def where(self, **wanted):
         """Rows that hold these values, by seed and repeat; with_NAME is a parameter of the method that shares its name with a column."""
