@@ -7,7 +7,8 @@ PAPER: jensen1996, chuang1995, chen2011; without one, all three. A quick run (th
 quiet cores; --full has more seeds and finer steps. It goes on where it was stopped: what has been rendered is in
 results/papers/PAPER/trials. experiments/papers/PAPER.json has the paper's numbers and claims, the sweeps beside it what is
 run. --only runs single sections (the last table of a page names them) and keeps the other rows; --pages runs nothing and writes the
-pages anew from verdicts.json and tables.json; --compare holds records/*.csv to those of the last commit. Exit codes: 0 done (whether claims hold or not), 1 a run failed, 2 bad input or usage, 130 interrupted.
+pages anew from verdicts.json and tables.json; --compare holds records/*.csv to those of the last commit.
+Exit codes: 0 done (whether claims hold or not), 1 a run failed, 2 bad input or usage, 130 interrupted.
 """
 import argparse
 import csv
@@ -43,6 +44,8 @@ def arguments():
     chosen = parser.parse_args()
     if chosen.only and chosen.pages:
         parser.error("--only and --pages: one of the two")
+    if chosen.compare and (chosen.only or chosen.pages or chosen.full or not chosen.output.resolve().is_relative_to(ROOT)):
+        parser.error("--compare: alone, and of records in this project")
     unknown = [name for name in chosen.papers if name not in papers_text.NAMES]
     if unknown:
         parser.error(f"{unknown[0]}: no such paper (known: {', '.join(papers_text.NAMES)})")

@@ -146,20 +146,20 @@ class Trials:
             key, value = each.split("=", 1)
             chosen.setdefault(key, []).append(value)
         with open(folder / "records.csv", newline="", encoding="utf-8") as file:
-            rows = [row for row in csv.DictReader(file) if all(row[key] in values for key, values in chosen.items())]
-        unfinished = [row["trial"] for row in rows if row["status"] != "done"]
+            reader = csv.DictReader(file)
+            self.kept = [row for row in reader if all(row[key] in values for key, values in chosen.items())]
+            self.heading = reader.fieldnames
+        unfinished = [row["trial"] for row in self.kept if row["status"] != "done"]
         if unfinished:
             raise RecordsError(f"{folder}: trial {unfinished[0]} is not done (its log.txt says why)")
-        self.rows = sorted(rows, key=lambda row: (int(row["seed"]), int(row["repeat"])))
+        self.rows = sorted(self.kept, key=lambda row: (int(row["seed"]), int(row["repeat"])))
 
     def write(self, path):
-        """The rows that were chosen, in the order in which they are kept: what a longer run left in the folder is no part of this one."""
-        chosen = {row["trial"] for row in self.rows}
-        with open(self.folder / "records.csv", newline="", encoding="utf-8") as file, open(path, "w", newline="", encoding="utf-8") as kept:
-            reader = csv.DictReader(file)
-            writer = csv.DictWriter(kept, reader.fieldnames, lineterminator="\n")
+        """The rows that were chosen, in the table's order: what a longer run left in the folder is no part of this one."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, self.heading, lineterminator="\n")
             writer.writeheader()
-            writer.writerows(row for row in reader if row["trial"] in chosen)
+            writer.writerows(self.kept)
 
     def where(self, **wanted):
         """Rows that hold these values, by seed and repeat; with_NAME is a parameter of the method that shares its name with a column."""
