@@ -144,10 +144,9 @@ std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, Polygo
         CasterMesh caster;
         caster.shape = index;
         caster.tessellated = shape.primitive != Primitive::mesh;
-        const TriangleMesh mesh =
-            caster.tessellated ? tessellate_shape(shape, resolution) : shape.mesh;
-        caster.flat = mesh.normals.empty();
-        caster.mesh = caster.flat ? with_face_normals(mesh) : mesh;
+        caster.mesh = caster.tessellated ? tessellate_shape(shape, resolution) : shape.mesh;
+        caster.flat = caster.mesh.normals.empty();
+        if (caster.flat) caster.mesh = with_face_normals(caster.mesh);
         caster.left_out.resize(caster.mesh.triangles.size());
         leave_out_degenerate(caster);
         casters.push_back(std::move(caster));
