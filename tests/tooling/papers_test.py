@@ -317,6 +317,21 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("no earlier run", done.stderr)
 
+    def test_records_are_compared_alone(self):
+        for more in (("--pages",), ("--only", "counts"), ("--full",), ("-o", "/nowhere")):
+            done = self.run_tool("--compare", *more)
+            self.assertEqual(done.returncode, 2, more)
+            self.assertIn("--compare: alone", done.stderr, more)
+
+    def test_trials_are_compared_by_picture_and_counts(self):
+        import reproduce
+
+        heading = "trial,picture_hash,photons_stored,total_s"
+        before = reproduce.by_trial(f"{heading}\na,1,5,0.1\nb,2,5,0.1\n")
+        now = reproduce.by_trial(f"{heading}\na,1,5,9\nb,3,5,0.1\n")
+        self.assertEqual([trial for trial in before if before[trial] != now[trial]], ["b"])
+        self.assertEqual(reproduce.by_trial("seed,error\n1,0.5\n"), {}, "a table that is not of trials")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -158,33 +158,36 @@ def all_bowls(study, run, seeds):
     return {case: [run(study, case, seed) for seed in seeds] for case in BOWLS}
 
 
+PROGRAMS = {"POV-Ray": (povray, SEEDS), "Mitsuba": (mitsuba, FREE_OF_BIAS)}
+
+
 def by_programs(study, names):
     """{(program, case): [(picture, CPU seconds)]}; side by side, since each has one thread."""
-    runs = {"POV-Ray": (povray, SEEDS), "Mitsuba": (mitsuba, FREE_OF_BIAS)}
-    with ThreadPoolExecutor(len(runs)) as pool:
-        begun = {name: pool.submit(all_bowls, study, *runs[name]) for name in names}
+    with ThreadPoolExecutor(len(PROGRAMS)) as pool:
+        begun = {name: pool.submit(all_bowls, study, *PROGRAMS[name]) for name in names}
         return {(name, case): pictures for name, run in begun.items() for case, pictures in run.result().items()}
 
 
 def peers(study):
-    programs = ("POV-Ray", "Mitsuba")
-    missing = {name: absent(name) for name in programs}
+    missing = {name: absent(name) for name in PROGRAMS}
     truth = all_bowls(study, light_traced, FREE_OF_BIAS)
     maps = all_bowls(study, photon_map, SEEDS)
-    found = by_programs(study, [name for name in programs if not missing[name]])
+    found = by_programs(study, [name for name in PROGRAMS if not missing[name]])
     base = {case: [table_light(each[""], each) for each in truth[case]] for case in BOWLS}
-    over = lambda case, pictures: [table_light(a, b) / c for a, b, c in zip(pictures, truth[case], base[case])]
+    at = {seed: i for i, seed in enumerate(FREE_OF_BIAS)}
+    over = lambda case, pictures, seeds: [table_light(picture, truth[case][at[seed]]) / base[case][at[seed]]
+                                          for picture, seed in zip(pictures, seeds, strict=True)]
     measured, rows = {}, []
     for case, (title, *_) in BOWLS.items():
-        ours_too = spread(over(case, [each[""] for each in maps[case]]))
+        ours_too = spread(over(case, [each[""] for each in maps[case]], SEEDS))
         notes = {f"povray_{case}": f"the nearest photons hold too much light where it is uneven; our photon map's: {ours_too}"}
         rows.append([title, "photon map", ours_too, ""])
-        for name in programs:
+        for name, (_, seeds) in PROGRAMS.items():
             claim = f"{name.replace('-', '').lower()}_{case}"
             if missing[name]:
                 measured[claim] = unmeasured(missing[name])
                 continue
-            measured[claim] = Measured(over(case, [picture for picture, _ in found[name, case]]), note=notes.get(claim, ""))
+            measured[claim] = Measured(over(case, [picture for picture, _ in found[name, case]], seeds), note=notes.get(claim, ""))
             rows.append([title, name, spread(measured[claim].samples), spread([used for _, used in found[name, case]])])
     return Part(measured, [Table(
         "peers", "The bowls by other programs", ["bowl", "program", "light in the bowl's shadow, over light tracing's", "CPU s"], rows,
