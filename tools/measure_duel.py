@@ -4,8 +4,8 @@
 Usage: tools/duel.sh [--quick] [--only SCENE]... [--page]
 
 On every scene each method's settings are searched on seeds of their own; what the search chooses runs again on the reported
-seeds. It goes on where it was stopped. --quick takes two scenes, at most 15 minutes on two quiet cores; all took 83 minutes beside other
-work, with one seed in most searches (three, as now, add some 35 CPU minutes).
+seeds. It goes on where it was stopped. --quick takes two scenes, at most 15 minutes on two quiet cores; all took 82 minutes beside other
+work, two trials at a time (`--jobs 2`).
 --page makes the pages from the records that are there. Exit codes: 0 done, 1 a run failed, 2 bad input or usage, 130 interrupted.
 """
 import argparse

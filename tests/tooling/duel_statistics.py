@@ -127,8 +127,8 @@ class Curves(unittest.TestCase):
 
     def test_a_search_breaks_the_ties_that_the_truth_makes_by_the_plain_error(self):
         cells = [cell("a", seconds, [square], 0.01) for seconds, square in ((1, 0.0121), (2, 0.011), (3, 0.0115))]
-        self.assertEqual([each.seconds() for each in curves.chosen(cells, 9)], [1])
-        self.assertEqual([each.seconds() for each in curves.chosen(cells, 9, curves.Cell.raw)], [1, 2])
+        self.assertEqual({each.error() for each in cells}, {0.05})
+        self.assertEqual([each.seconds() for each in curves.chosen(cells, 9)], [1, 2])
 
 
 class Bounds(unittest.TestCase):

@@ -19,7 +19,7 @@ EXACT, GIVEN = "exact", "given"
 
 @dataclasses.dataclass(frozen=True)
 class Setting:
-    """`label` is the method as tables name it: the paper's cones run apart from the beam tree's own bound."""
+    """`label` is the method as tables name it: the paper's cones, and beams that photons complete, run apart from the beam tree's own bound."""
     label: str
     method: str
     asks: str
@@ -80,7 +80,9 @@ class Duel:
 def allowed(row, scene):
     if row.get("grid", scene.grid) != scene.grid or min(row["spp"]) > scene.text.get("most_spp", math.inf):
         return False
-    needs = {None: True, "square pixels": scene.text.get("square", False), "exact casters": scene.mesh == EXACT}
+    square = scene.text.get("square", False)
+    needs = {None: True, "square pixels": square, "no square pixels": not square, "exact casters": scene.mesh == EXACT,
+             "several events": scene.text.get("several_events", False)}
     return needs[row.get("needs")]
 
 
@@ -134,7 +136,7 @@ def sweep(scene, settings, seeds, rules):
             "seeds": list(seeds), "spp": first.spp, "threads": rules["threads"]}
     if not scene.quadrature():
         param = {"paths": scene.truth["paths"], "emission": "stratified", **scene.text.get("param", {})}
-        made["reference"] = {"method": "lighttrace", "param": param, "seed": rules["reference_seed"]}
+        made["reference"] = {"method": "lighttrace", "param": param, "seed": rules["reference_seed"], "spp": rules["reference_spp"]}
     return made
 
 

@@ -77,18 +77,17 @@ def front(points):
     return curve
 
 
-def chosen(cells, most, tie=None):
+def chosen(cells, most):
     """The settings that go on from a search: the front, thinned where a step gains under 10 %, its ends kept; at most `most`.
-    Of equal errors (bounds by the truth) tie(cell) is the lesser one."""
-    tie = tie or (lambda cell: cell.error())
-    order = sorted(cells, key=lambda cell: (cell.seconds(), cell.error(), tie(cell)))
+    Among errors that the truth hides, which are equal, the one with the truth's own in it decides."""
+    order = sorted(cells, key=lambda cell: (cell.seconds(), cell.error(), cell.raw()))
     kept = []
     for cell in order:
-        if not kept or cell.error() < STEP * kept[-1].error() or cell.error() == kept[-1].error() and tie(cell) < tie(kept[-1]):
+        if not kept or cell.error() < STEP * kept[-1].error() or cell.error() == kept[-1].error() and cell.raw() < kept[-1].raw():
             kept.append(cell)
     while len(kept) > most:
         gain = lambda i, error: math.log(error(kept[i - 1]) / error(kept[i + 1]))
-        gains = [(gain(i, lambda cell: cell.error()), gain(i, tie)) for i in range(1, len(kept) - 1)]
+        gains = [(gain(i, lambda cell: cell.error()), gain(i, Cell.raw)) for i in range(1, len(kept) - 1)]
         del kept[1 + gains.index(min(gains))]
     return kept
 

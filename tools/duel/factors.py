@@ -10,7 +10,7 @@ import numpy as np
 from duel.ranges import estimate
 from duel.verdicts import Case
 
-PHOTONS, BEAMS, CONES = "photonmap", "beamtree", "beamtree, cones"
+PHOTONS, BEAMS, CONES, COMPLETED = "photonmap", "beamtree", "beamtree, cones", "beamtree, completed"
 SECOND = 1.0
 
 

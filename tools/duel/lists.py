@@ -62,19 +62,6 @@ def settings(results):
     return Table("settings", "Settings that the search chose", ["scene", "method", "asked", "chosen", "settings, fastest first"], rows)
 
 
-def search_now(results):
-    """What the search would choose by its rule of now: of errors that are bounds by the truth, the plain one decides."""
-    rows = []
-    for scene, _ in shown(results):
-        key = lambda cells: {(cell.label, cell.setting.text()) for cell in cells}
-        cells = results.searched.get(scene.name, [])
-        before, now = (key(race.fronts(cells, results.duel, tie)) for tie in (None, Cell.raw))
-        rows += [[scene.title, label, text] for label, text in sorted(now - before)]
-    return Table("search_now", "Settings that the search missed", ["scene", "method", "setting"], rows,
-                 "When the search was run, settings whose errors the truth hides were equal, and only the fastest ran again for the "
-                 "report. Now the error with the truth's own in it decides among them, for the next run.")
-
-
 def left_out(results):
     """Settings that gave no picture, with the reason."""
     groups = {}

@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from duel import counted, factors
-from duel.factors import BEAMS, CONES, PHOTONS, SECOND, case
+from duel.factors import BEAMS, COMPLETED, CONES, PHOTONS, SECOND, case
 from duel.ranges import Range, estimate, least, middle
 from duel.verdicts import Case
 from papers.words import short
@@ -28,7 +28,7 @@ def rivals(results):
 
 def rivalry(field):
     """The lesser error of photon map and beam tree over the least of all others, after SECOND."""
-    errors = {label: field.at_time(label, SECOND) for label in field.labels if label not in ("none", CONES)}
+    errors = {label: field.at_time(label, SECOND) for label in field.labels if label not in ("none", CONES, COMPLETED)}
     errors = {label: error for label, error in errors.items() if error.is_reached()}
     own, others = ([error for label, error in errors.items() if (label in (PHOTONS, BEAMS)) == ours] for ours in (True, False))
     if not own or not others:
@@ -47,6 +47,11 @@ def polyhedral(results):
 def shells(results):
     return [each for name in ("bowl2", "bowl4", "bowl8") if name in results.fields
             for each in case(name, factors.factor_at_least_common(results.fields[name]))]
+
+
+def completed(results):
+    return [each for name in ("ball", "crystal", "bowl2", "bowl4", "bowl8", "casters") if name in results.fields
+            for each in case(name, factors.factor_at_least_common(results.fields[name], COMPLETED))]
 
 
 def at_a_second_over(results, name, *scenes):

@@ -77,7 +77,7 @@ def json_if(path):
 
 
 def entries(results):
-    """One a hypothesis: its words, its cases and its verdict; what it was before, where it is judged anew, and why."""
+    """One a hypothesis: its words, its cases and its verdict; what it was in the run before, where that differs, and why."""
     judged = [(hypothesis, measures.cases_of(hypothesis, results)) for hypothesis in results.duel.hypotheses]
     of = sum(len(cases) for _, cases in judged)
     before = {entry["id"]: entry for entry in results.before or []}
@@ -105,7 +105,7 @@ def measured_words(entry):
 
 def verdict_words(entry):
     words = [f"**{entry['verdict']}**"] + (["exploratory"] if "exploratory" in entry else [])
-    return ", ".join(words) + (f"; judged anew, before: {entry['before']['verdict']}" if "before" in entry else "")
+    return ", ".join(words) + (f"; before: {entry['before']['verdict']}" if "before" in entry else "")
 
 
 def verdict_table(found):
@@ -131,7 +131,7 @@ def anew_table(found):
     before = lambda entry: f"{entry['before']['verdict']} ({entry['before']['measured']})"
     rows = [[entry["question"], before(entry), f"**{entry['verdict']}** ({measured_words(entry)})", entry["before"]["why"]]
             for entry in found if "before" in entry]
-    return Table("anew", "Judged anew", ["question", "before", "now", "why"], rows)
+    return Table("anew", "Since the run before", ["question", "before", "now", "why"], rows)
 
 
 def plain(table):
@@ -153,7 +153,7 @@ def not_measured(results):
 
 def tables_of(results):
     """All tables of numbers, in their order."""
-    raced = [tables.light, tables.wanted, tables.crossings, tables.memory, lists.truths, lists.parts, lists.settings, lists.search_now, lists.left_out]
+    raced = [tables.light, tables.wanted, tables.crossings, tables.memory, lists.truths, lists.parts, lists.settings, lists.left_out]
     return [*(tables.winners(results, time) for time in tables.TIMES), tables.winners(results, 1, True), *(each(results) for each in raced)]
 
 

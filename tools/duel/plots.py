@@ -14,7 +14,7 @@ from report.record_plots import STYLE, few_ticks, svg
 
 LIMIT, BOUND = "least error that the truth can show", "a bound: may be less"
 GREY = "0.45"
-LINES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (2, 1)), (0, (1, 1)))  # no two methods share one
+LINES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (2, 1)), (0, (1, 1)), (0, (8, 2)))  # no two methods share one
 LOOKS = {label: {"color": COLOURS[i], "marker": MARKERS[i], "linestyle": LINES[i]} for i, label in enumerate(METHODS)}
 TIME, ERROR = "CPU seconds, build + query", "error [1]"
 

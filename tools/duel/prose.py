@@ -30,7 +30,7 @@ def number(results, found, kind, words):
             return found[name]["verdict"] if kind == "verdict" or "before" not in found[name] else found[name]["before"]["verdict"]
         return next((each["measured"] for each in found[name]["cases"] if each["case"] == case), ABSENT)
     if kind == "fold":
-        method, nearest, column = words.split(" ")
+        method, nearest, column = words.rsplit(" ", 2)
         row = next((row for row in results.spreads if row["method"] == method and row["nearest"] == int(nearest)), None)
         return short(row[column]) if row else ABSENT
     scene, _, rest = words.partition(" ")

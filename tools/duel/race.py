@@ -134,10 +134,10 @@ def cells_of(settings, rows, plain=False):
     return [curves.Cell(setting, groups[setting.label, setting.text()], plain) for setting in settings if (setting.label, setting.text()) in groups]
 
 
-def fronts(cells, duel, tie=curves.Cell.raw):
-    """What each method's search chooses, method by method; `tie` decides between errors that the truth hides."""
+def fronts(cells, duel):
+    """What each method's search chooses, method by method."""
     labels = dict.fromkeys(cell.label for cell in cells)
-    return [cell for label in labels for cell in curves.chosen([each for each in cells if each.label == label], duel.kept(label), tie)]
+    return [cell for label in labels for cell in curves.chosen([each for each in cells if each.label == label], duel.kept(label))]
 
 
 def scatter_of(cell):

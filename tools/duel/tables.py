@@ -5,12 +5,12 @@ import numpy as np
 
 from duel import factors
 from duel.curves import SLACK
-from duel.factors import BEAMS, CONES, PHOTONS
+from duel.factors import BEAMS, COMPLETED, CONES, PHOTONS
 from papers.part import Table
 
 TIMES = (0.1, 0.3, 1, 3)  # CPU seconds
 ERRORS = (0.2, 0.05, 0.01, 0.001)
-METHODS = (PHOTONS, BEAMS, CONES, "causticpolygons", "illuminationmap", "lighttrace")
+METHODS = (PHOTONS, BEAMS, CONES, COMPLETED, "causticpolygons", "illuminationmap", "lighttrace")
 CARRIED, HIDDEN = "†", "hidden by the truth's own error"
 MARKS = ("<: a bound, the truth's own error hides what is less. ≤: of the last setting that is done; none between it and the next was tried. "
          "†: the slowest setting was done before, so its error is carried on; more work was not tried. A factor is of measured settings; its "
