@@ -17,6 +17,8 @@ from report.report_files import report, write
 
 OWN_PLOT = re.compile(r"((rmse|relmse|mean_ratio)_vs_(photons|time|alpha|mesh_resolution)-.*|mean_ratio)\.svg")
 
+STEEPEST = 10  # slope of a guide
+
 
 def main():
     parser = argparse.ArgumentParser(
@@ -36,6 +38,8 @@ def main():
     arguments = parser.parse_args()
     if not 1 <= arguments.width <= 40:
         parser.error(f"--width: {arguments.width:g} is not from 1 to 40 inches")
+    if arguments.slope is not None and not -STEEPEST <= arguments.slope <= STEEPEST:
+        parser.error(f"--slope: {arguments.slope:g} is not from {-STEEPEST} to {STEEPEST}")
     if not arguments.output and (arguments.metric or arguments.x or arguments.filter or arguments.interval or arguments.format != "svg"):
         parser.error("--metric, --x, --filter, --interval and --format need -o: DIR/report is of all records")
     output = arguments.output or os.path.join(arguments.directory, "report")

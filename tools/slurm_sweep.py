@@ -8,8 +8,10 @@ Shard i goes to DIR/shards/i, and all shards share DIR/references, which a first
 arrays that the cluster's MaxArraySize allows, one after the other, of which at most K tasks run at a time. Each
 trial gets the C processors of its task (SLURM_CPUS_PER_TASK). A task that is requeued or submitted again goes on where
 it stopped. Options of sbatch and of the sweep are handed on: --sbatch=--partition=long --sweep=--timeout=600.
+Exit codes: 0 done, 1 Slurm refuses, 2 bad input or usage; that of the program where it refuses the sweep.
 """
 import argparse
+import os
 import pathlib
 import re
 import shlex
@@ -34,25 +36,67 @@ exec "$program" "${{common[@]}}" -o {shards}/"$shard" --shard "$shard/{count}"
 """
 
 
+# Of the sweep, with what says the same here: a script has its own, and what only tells runs no trial.
+NOT_HANDED_ON = {
+    "-o": "-o DIR", "--output": "-o DIR", "--shard": "--shards N", "--threads": "--cpus-per-task C",
+    "--references": "the first job renders them", "--list": "causticbench sweep", "--dry-run": "causticbench sweep",
+    "-h": "causticbench sweep", "--help": "causticbench sweep", "--": "the script adds options of its own",
+}
+
+
 class SlurmError(Exception):
-    """One line for the user."""
+    """One line for the user, and the exit code."""
+
+    def __init__(self, reason, code=2):
+        super().__init__(reason)
+        self.code = code
 
 
 def run(command):
+    """What one of Slurm's commands prints."""
     try:
         done = subprocess.run(command, capture_output=True, text=True)
     except OSError as error:
-        raise SlurmError(f"{command[0]}: {error.strerror} (is Slurm installed?)") from error
+        raise SlurmError(f"{command[0]}: {error.strerror} (is Slurm installed?)", 1) from error
     if done.returncode != 0:
-        raise SlurmError(f"{shlex.join(command)}: {done.stderr.strip() or done.stdout.strip()}")
+        raise SlurmError(f"{shlex.join(command)}: {done.stderr.strip() or done.stdout.strip()}", 1)
     return done.stdout
+
+
+def try_sweep(options):
+    """A mistake in the sweep is reported here, not by a thousand tasks."""
+    command = [str(options.program), "sweep", *options.sweep_files, "-o", options.output, "--list", *options.sweep]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True)
+    except OSError as error:
+        raise SlurmError(f"--program {options.program}: {error.strerror} (tools/build.sh release causticbench)") from error
+    if done.returncode != 0:
+        code = done.returncode if done.returncode > 0 else 1  # below 0: killed by a signal
+        raise SlurmError(f"{shlex.join(command)}: {done.stderr.strip() or done.stdout.strip() or f'exit code {done.returncode}'}", code)
+
+
+def require_own(words):
+    """Refuses options of the sweep that the script has itself, or that run nothing."""
+    for word in words:
+        name = word.partition("=")[0] if word.startswith("--") else word[:2]
+        if name in NOT_HANDED_ON:
+            raise SlurmError(f"--sweep={word}: {name} is not handed on ({NOT_HANDED_ON[name]})")
+
+
+def require_folder(path):
+    """The folder of the results, or the first above it that is there, must be one."""
+    above = os.path.abspath(path)
+    while not os.path.lexists(above):
+        above = os.path.dirname(above)
+    if not os.path.isdir(above):
+        raise SlurmError(f"-o {path}: no folder for results ({above} is none)")
 
 
 def largest_index():
     """The largest index that a task of an array may have."""
     found = re.search(r"^MaxArraySize\s*=\s*(\d+)", run(["scontrol", "show", "config"]), re.MULTILINE)
     if not found:
-        raise SlurmError("scontrol show config does not tell MaxArraySize")
+        raise SlurmError("scontrol show config does not tell MaxArraySize", 1)
     return int(found.group(1)) - 1
 
 
@@ -122,13 +166,17 @@ def parse(arguments):
     parser.add_argument("--sbatch", action="append", default=[])
     parser.add_argument("--sweep", action="append", default=[])
     parser.add_argument("--only-write", action="store_true")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    for name in ("sbatch", "sweep"):  # some versions of argparse make [] of the word --
+        setattr(options, name, [word if isinstance(word, str) else "--" for word in getattr(options, name)])
+    return options
 
 
 def main(arguments):
     options = parse(arguments)
-    # A mistake in the sweep is reported here, not by a thousand tasks.
-    run([str(options.program), "sweep", *options.sweep_files, "-o", options.output, "--list", *options.sweep])
+    require_own(options.sweep)
+    require_folder(options.output)
+    try_sweep(options)
     script = write(options)
     print(f"script  {script}")
     if not options.only_write:
@@ -143,4 +191,7 @@ if __name__ == "__main__":
         main(sys.argv[1:])
     except SlurmError as error:
         print(f"slurm_sweep: {error}", file=sys.stderr)
+        sys.exit(error.code)
+    except OSError as error:
+        print(f"slurm_sweep: {error.filename}: {error.strerror}", file=sys.stderr)
         sys.exit(1)

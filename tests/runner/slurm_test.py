@@ -166,7 +166,7 @@ class SlurmSweep(lab.Lab):
         before = self.sweep
         try:
             type(self).sweep = lab.write_sweep(self.scratch / "slow.json", seeds=range(1, 31))
-            job = self.submit(folder, 2, "--cpus-per-task", "2", "--sweep=--references=keep")[1]
+            job = self.submit(folder, 2, "--cpus-per-task", "2", "--sweep=--timeout=600")[1]
             trials = folder / "shards/1/trials"
             wait_until(lambda: trials.is_dir() and len(list(trials.glob("[!.]*"))) > 2, "some trials", 120)
             kept = lab.record_times(folder / "shards/1")

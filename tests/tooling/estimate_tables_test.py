@@ -35,7 +35,8 @@ COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "i
 def row(photons, nearest, alpha="", filter="", estimator="", adaptive="", relmse=None, mesh=""):
     """A trial whose sqrt(relmse) tells which one it is."""
     error = relmse or 1e-6 * photons + 1e-3 * (nearest or 7) + float(alpha or 0)
-    return dict(zip(COLUMNS, [f"{photons}-{nearest}-{alpha}-{filter}", "done", "ring", "photonmap", "1", "1", "1", "plain", "",
+    trial = "-".join(map(str, (photons, nearest, alpha, filter, estimator, adaptive, mesh)))
+    return dict(zip(COLUMNS, [trial, "done", "ring", "photonmap", "1", "1", "1", "plain", "",
                               str(nearest or ""), str(alpha), mesh, "1", "1", "0.1", repr(error ** 2), "1", "0.01", "1", "v",
                               str(photons), filter, estimator, adaptive]))
 

@@ -30,7 +30,8 @@ def record(**values):
     row.setdefault("photons_stored", row["photons"])
     row.setdefault("rmse", 0.1 * row["seed"] * 1000 / (row["photons_stored"] or 1000))
     row.setdefault("relmse", 0.5)
-    row.setdefault("trial", "-".join(str(row[name]) for name in ("scene", "photons", "nearest", "alpha", "seed")))
+    named = ("scene", "method", "photons", "photons_stored", "nearest", "alpha", "mesh_resolution", "seed", "repeat")
+    row.setdefault("trial", "-".join(str(row[name]) for name in named))
     return row
 
 
@@ -48,6 +49,9 @@ class Columns(unittest.TestCase):
         self.assertIn("code_version", names)
         after = names[names.index("code_version") + 1:]
         self.assertEqual([name for name in after if name not in records.NOT_SWEPT], [])
+        numbers = re.findall(r'^    \{"(\w+)", "[^"]*", Kind::(?:number|count)', text, re.MULTILINE)
+        self.assertGreater(len(numbers), 60)
+        self.assertEqual([name for name in numbers if name not in records.NUMBERS], [], "which no tool checks")
 
 
 class Plots(unittest.TestCase):
@@ -264,6 +268,11 @@ class Plots(unittest.TestCase):
             self.assertEqual((result.returncode, len(result.stderr.splitlines())), (2, 1), result.stderr)
             self.assertIn(reason, result.stderr)
         self.assertIn("need -o", self.run_tool("--metric", "rmse").stderr)
+        for text in ("nan", "inf", "-inf", "1e308", "steep"):
+            result = self.run_tool("-o", str(self.directory / "out"), f"--slope={text}")
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("--slope: ", result.stderr)
+            self.assertNotIn("Traceback", result.stderr)
 
     def test_values_that_vary_only_together_make_no_series(self):
         self.table([record(alpha=a, mesh_resolution=m, seed=s) for a, m in ((0.1, 32), (1, 64)) for s in (1, 2)])
@@ -409,7 +418,9 @@ class Plots(unittest.TestCase):
 
     def test_the_same_trial_twice(self):
         self.table([record(), record(photons=2000), record()])
-        self.refuses("lines 2 and 4")
+        self.refuses("lines 2 and 4 are both of the trial pool-photonmap-1000-")
+        self.table([record(), record(photons=2000), record(trial="another")])
+        self.refuses("lines 2 and 4 have the same scene, method, parameters, seed and repeat")
 
     def test_usage(self):
         result = subprocess.run([sys.executable, str(TOOL)], capture_output=True, text=True, check=False)

@@ -104,7 +104,7 @@ def write_trial(folder, scene, method, step, seed):
     write_exr(folder / "trials" / trial / "image.exr", planes_of(picture, rest), texts=[("causticbench.command", command)])
     caustic, _, unreached = reference_planes()
     error = (picture.astype(float) - caustic)[:, unreached == 0]
-    mean = float(caustic[:, unreached == 0].mean())
+    mean = float(caustic[:, unreached == 0].mean(dtype=float))
     values = {"trial": trial, "status": "done", "scene": scene, "method": method, "seed": seed, "repeat": 1, "threads": 1,
               "isa": "plain", "total_s": 0.5 * step, "rmse": repr(float(numpy.sqrt((error ** 2).mean()))),
               "relmse": repr(float((error ** 2).mean())), "bias": repr(float(error.mean() / mean)), "mean_ratio": "1.0123456789012345",

@@ -29,7 +29,7 @@ except ImportError as error:
 
 import report_sweep as sweep
 from report import exr, record_tables, records
-from report_page import pictures, scenes, tables
+from report_page import page, pictures, scenes, tables
 
 TOOL = ROOT / "tools" / "make_report.py"
 
@@ -77,6 +77,18 @@ class Exr(unittest.TestCase):
                 self.path.write_bytes(data)
                 with self.assertRaisesRegex(exr.PictureError, what):
                     exr.read(self.path)
+
+    def test_what_never_ends_is_no_picture(self):
+        os.mkfifo(self.path)
+        device = self.path.with_name("device.exr")
+        device.symlink_to("/dev/zero")
+        for path in (self.path, device, self.path.parent):
+            with self.assertRaisesRegex(exr.PictureError, "^no regular file$"):
+                exr.read(path)
+        link = self.path.with_name("link.exr")
+        sweep.write_exr(self.path.with_name("b.exr"), {"R": numpy.ones((4, 4))})
+        link.symlink_to("b.exr")
+        self.assertEqual(list(exr.read(link)[0]), ["R"])
 
     def test_every_cut_of_a_file_is_an_error_of_one_kind(self):
         sweep.write_exr(self.path, {"R": numpy.ones((4, 4))})
@@ -312,6 +324,33 @@ class Page(unittest.TestCase):
         self.assertIn("in none of the folders of references", scene["reference"]["hole"])
         self.assertIn("pictures", scene["cells"][0])
 
+    def test_a_pipe_in_the_place_of_a_picture_is_a_hole(self):
+        path = self.sweep / "trials" / self.rows[0]["trial"] / "image.exr"
+        path.unlink()
+        os.mkfifo(path)
+        self.page()
+        self.assertIn(f"the picture of {self.rows[0]['trial']}: no regular file", self.notes)
+
+    def test_a_reference_that_errors_are_not_against_is_a_hole(self):
+        reference = self.page()["scenes"][0]["reference"]
+        self.assertEqual((self.notes, "hole" in reference), ("", False))
+        mean = float(self.rows[0]["reference_mean"])
+        for judged, changed, count in ((mean * (1 + 1e-12), 1, 0), (mean * (1 + 1e-6), 1, 1), (2 * mean, len(self.rows), len(self.rows))):
+            for row in self.rows[:changed]:
+                row["reference_mean"] = repr(judged)
+            sweep.write_table(self.sweep, self.rows)
+            reference = self.page()["scenes"][0]["reference"]
+            words = f"the errors of {count} of {len(self.rows)} trials are against another picture, of mean {judged:.7g}"
+            self.assertEqual(words in self.notes and words in reference.get("hole", ""), count > 0)
+            self.assertEqual("run the sweep again, which takes errors anew" in self.notes, count > 0)
+            self.assertEqual("layers" in reference, count == 0)
+
+    def test_kept_sweeps_have_the_references_that_their_errors_are_against(self):
+        for name in ("quickstart-2026-11", "photons-2026-11"):
+            for scene in scenes.scenes_of([scenes.Sweep(ROOT / "results" / name)]):
+                path = ROOT / "experiments" / "references" / f"{scene.reference.partition(':')[2]}.exr"
+                self.assertIsNone(page.judged_by_another(scene, page.mean_of(pictures.read(path)[0])), path)
+
     def test_what_does_not_fit_is_left_out_loudly(self):
         data = self.page(self.sweep, "--megabytes", "0.004")
         self.assertGreater(data["left_out"], 0)
@@ -466,6 +505,23 @@ class Page(unittest.TestCase):
         self.rows[3]["rmse"] = "1e300"
         sweep.write_table(self.sweep, self.rows)
         self.refuses("line 5", 'column rmse is "1e300", expected a number whose square is finite')
+        self.rows[3]["rmse"] = "0.1"
+        for column, text, expected in (("peak_rss_bytes", "x", "a finite number"), ("map_bytes", "1e400", "a finite number"),
+                                       ("load_average", "idle", "a finite number"), ("photons", "abc", "a finite number"),
+                                       ("photons", "nan", "a finite number"), ("photons", "inf", "a finite number"),
+                                       ("photons", "-5", "a number > 0"), ("photons", "0", "a number > 0"),
+                                       ("render_cpu_s", "-1", "a number ≥ 0"), ("map_bytes", "-1", "a number ≥ 0")):
+            rows = [dict(row) for row in self.rows]
+            rows[3][column] = text
+            sweep.write_table(self.sweep, rows)
+            self.refuses("records.csv: line 5", f'column {column} is "{text}", expected {expected}')
+
+    def test_trials_have_names_of_their_own(self):
+        for name, words in ((self.rows[1]["trial"], f"lines 3 and 5 are both of the trial {self.rows[1]['trial']}"),
+                            ("", "line 5 (trial without a name): column trial is empty")):
+            self.rows[3]["trial"] = name
+            sweep.write_table(self.sweep, self.rows)
+            self.refuses(words)
 
     def test_names_that_lead_elsewhere_are_refused(self):
         for name in ("trial", "reference"):

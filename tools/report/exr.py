@@ -3,6 +3,8 @@ deflated), and writes pictures of half floats.
 
 What else the format knows (tiles, several parts, other compressions, subsampling) is refused by name.
 """
+import os
+import stat
 import struct
 import zlib
 
@@ -28,6 +30,8 @@ def read(path):
     """({channel: height x width array, as stored}, {attribute: text}); channels by their names in the file: R, caustic.R,
     stderr.Y. Raises PictureError."""
     try:
+        if not stat.S_ISREG(os.stat(path).st_mode):  # a pipe may never answer, a device never end
+            raise PictureError("no regular file")
         with open(path, "rb") as file:
             data = file.read()
     except OSError as error:

@@ -32,14 +32,21 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
 RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "other_cores", "jobs", "timeout_s",
        "memory_limit_bytes", "message", "why_empty")  # of one run of a trial
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN
-NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads") + MEASURES
+# Photons and light paths asked for: above 0 wherever they apply.
+ASKED_COUNTS = ("photons", "emitted", "paths")
+NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads", "spp", "polygons", "beams", "cone_point_tests",
+           "beam_point_tests", "beam_point_hits", "map_bytes", "rss_start_bytes", "peak_rss_bytes", "elapsed_s", "load_average",
+           "other_cores", "jobs", "timeout_s", "memory_limit_bytes") + MEASURES + ASKED_COUNTS
 LABELS = ("isa", "code_version")  # never numbers, whatever they look like
 # CPU seconds of a trial's parts, each empty where a method has no such part: what all tools add up.
 BUILD = ("precompute_cpu_s", "balance_cpu_s")
 INDIRECT = ("indirect_cpu_s",)
 QUERY = ("render_cpu_s",)
 CPU_PARTS = BUILD + INDIRECT + QUERY
-NOT_NEGATIVE = ("photons_stored", "total_s", "rmse", "relmse", "reference_stderr")
+# Colours of one wavelength have channels below 0, and so may means of pictures; a share that is what others leave of 1 may be below
+# 0 by rounding. All other numbers count or measure something.
+SIGNED = ("alpha", "bias", "mean_ratio", "mask_mean_ratio", "indirect_mean_ratio", "leak_energy", "reference_mean",
+          "reference_indirect_mean", "flux_share_captured")
 
 # What each metric is, as captions and axes say it: x the picture, r the reference, over all reached pixels and channels
 # of the caustic layer; radiance is in linear sRGB.
@@ -153,6 +160,7 @@ def read(path):
             done.append((line, row))
         else:
             left_out[row["status"]] = left_out.get(row["status"], 0) + 1
+    check_trials(path, done)
     if not done:
         counts = ", ".join(f"{count} {status}" for status, count in left_out.items())
         raise RecordsError(f"{path}: no row has the status done ({counts})")
@@ -238,20 +246,34 @@ def check(path, line, row):
         raise RecordsError(f'{place}: unknown status "{row["status"]}" (known: {", ".join(STATUSES)})')
     if row["status"] != "done":
         return
-    for name in ("scene", "method", "seed"):
+    for name in ("trial", "scene", "method", "seed"):
         if not row[name]:
             raise RecordsError(f"{place}: column {name} is empty")
     for name in NUMBERS:
-        text = row.get(name)
-        if not text:
-            continue
-        number = as_number(text)
-        if number is None or not math.isfinite(number):
-            raise RecordsError(f'{place}: column {name} is "{text}", expected a finite number or nothing')
-        if not math.isfinite(number * number):
-            raise RecordsError(f'{place}: column {name} is "{text}", expected a number whose square is finite')
-        if number < 0 and name in NOT_NEGATIVE:
-            raise RecordsError(f'{place}: column {name} is "{text}", expected a number ≥ 0')
+        if row.get(name):
+            expected = what_is_expected(name, as_number(row[name]))
+            if expected:
+                raise RecordsError(f'{place}: column {name} is "{row[name]}", expected {expected}')
+
+
+def what_is_expected(name, number):
+    """Of a column, where the number (None: no number) is not that; else None."""
+    if number is None or not math.isfinite(number):
+        return "a finite number or nothing"
+    if not math.isfinite(number * number):
+        return "a number whose square is finite"
+    if number <= 0 and name in ASKED_COUNTS:
+        return "a number > 0"
+    return "a number ≥ 0" if number < 0 and name not in SIGNED else None
+
+
+def check_trials(path, rows):
+    """A trial is one row: a repeat has a name of its own."""
+    first = {}
+    for line, row in rows:
+        if row["trial"] in first:
+            raise RecordsError(f'{path}: lines {first[row["trial"]]} and {line} are both of the trial {row["trial"]}')
+        first[row["trial"]] = line
 
 
 def group(path, rows, parameters):

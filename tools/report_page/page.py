@@ -1,5 +1,6 @@
 """The page: what it shows as JSON, its pictures, and the one file of HTML, CSS and JavaScript around them."""
 import json
+import math
 import os
 import pathlib
 import shlex
@@ -13,6 +14,7 @@ from report_page.scenes import COSTS, ERRORS, best_of, rank, seeds_text
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 REFERENCES = (ROOT / "experiments" / "references", ROOT / "references")  # of the source, of an installation
+ROUNDING = 1e-9  # of a reference's mean, as the program allows when it takes errors anew
 SCRIPTS = ("page", "pixels", "colours", "formulas", "statistics", "plots", "viewer", "strip", "probe", "curves", "table", "main")
 WORDS = {
     "rmse": FORMULAS["rmse"], "relmse": FORMULAS["relmse"], "mean_ratio": FORMULAS["mean_ratio"],
@@ -123,6 +125,8 @@ class SceneData:
             layers, texts = pictures.read(path)
         except exr.PictureError as error:
             return {**about, "hole": self.hole(f"the reference {key}.exr: {error}")}
+        if other := judged_by_another(self.scene, mean_of(layers)):
+            return {**about, "hole": self.hole(f"the reference {key}.exr: {other}")}
         self.size, self.rest = layers["caustic"].shape[1:], self.album.keep(layers.pop("rest"))
         settings = [texts.get(f"causticbench.{name}", "") for name in ("method", "parameters", "spp", "seed")]
         about["settings"] = "{} {} --spp {} --seed {}".format(*settings)
@@ -201,6 +205,25 @@ class SceneData:
                          for sweep in {id(cell.sweep): cell.sweep for cell in cells}.values()
                          for row in sweep.left_out if row["scene"] == self.scene.name],
         }
+
+
+def mean_of(layers):
+    """Of a reference's caustic, over the pixels that it reaches and all channels: the records' reference_mean."""
+    caustic = layers["caustic"]
+    if "unreached" in layers:
+        caustic = caustic[:, layers["unreached"][0] == 0]
+    return float(caustic.mean(dtype=float)) if caustic.size else 0
+
+
+def judged_by_another(scene, mean):
+    """Whose errors are against another picture than the reference of that mean, as a reason for no maps against it; else None."""
+    rows = [row for cell in scene.cells for row in cell.rows]
+    others = [row for row in rows if row.get("reference_mean")
+              and not math.isclose(float(row["reference_mean"]), mean, rel_tol=ROUNDING)]
+    if not others:
+        return None
+    return (f"the errors of {len(others)} of {len(rows)} trials are against another picture, of mean "
+            f"{float(others[0]['reference_mean']):.7g} where this one has {mean:.7g} (run the sweep again, which takes errors anew)")
 
 
 def row_of(cell, seed):
