@@ -126,6 +126,9 @@ private:
             // A '?' in a file's name would be taken for a query.
             if (input_->open("picture." + format, found, config)) return;
             why = input_->geterror();
+            const std::string name = "\"picture." + format + "\"";
+            if (const std::size_t at = why.find(name); at != std::string::npos)
+                why.replace(at, name.size(), "it");
         }
         // A format that is read by name alone, or another one than the name says.
         if (file.string().find('?') == std::string::npos)

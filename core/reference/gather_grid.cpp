@@ -38,9 +38,11 @@ bool GatherGrid::contains(std::uint32_t index, const Deposit& deposit) const {
     const Vec3 offset = deposit.position - p.position;
     const float height = p.geometric_normal.dot(offset);
     const float radius = radii_[index];
+    const float thickness =
+        deposit.shape == p.shape ? radius : std::max(radius / 100, 4 * p.offset);
     return deposit.wi.dot(p.geometric_normal) > 0 &&
            deposit.geometric_normal.dot(p.geometric_normal) > same_surface_cosine &&
-           std::abs(height) <= radius &&
+           std::abs(height) <= thickness &&
            (offset - height * p.geometric_normal).squaredNorm() <= radius * radius;
 }
 

@@ -10,7 +10,8 @@
 namespace caustics {
 
 /// Finds the discs that contain a point: each disc lies in the tangent plane of a receiver point,
-/// as thick as its radius on both sides so that curved receivers count.
+/// as thick as its radius on both sides so that curved receivers count. Of other shapes only what goes on in its plane
+/// counts, to a hundredth of the radius: a floor in pieces, but no shelf above it.
 class GatherGrid {
 public:
     GatherGrid(std::span<const ReceiverPoint> points, std::span<const float> radii);

@@ -114,6 +114,8 @@ bool JsonNode::is_number() const { return document_->value(pointer_).is_number()
 bool JsonNode::is_string() const { return document_->value(pointer_).is_string(); }
 bool JsonNode::is_bool() const { return document_->value(pointer_).is_boolean(); }
 
+std::string JsonNode::words() const { return shown(document_->value(pointer_)); }
+
 double JsonNode::as_number() const {
     const json& value = document_->value(pointer_);
     if (!value.is_number()) fail("expected a number, got " + shown(value));

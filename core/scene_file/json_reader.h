@@ -66,6 +66,8 @@ public:
     std::filesystem::path file() const;
     /// The document's file and all that it includes.
     std::vector<std::filesystem::path> files() const;
+    /// The value as messages show it: cut where it is long.
+    std::string words() const;
     /// Canonical text: sorted keys, shortest round-trip numbers.
     std::string canonical() const;
 

@@ -23,7 +23,8 @@ Spectrum read_three(const JsonNode& node, double most) {
         value = Spectrum::Constant(static_cast<float>(node.as_number_in(0, most)));
     } else {
         if (!node.is_array() || node.as_array().size() != 3)
-            node.fail("must be a number, [r, g, b] or {\"type\": \"rgb\", \"value\": ...}");
+            node.fail("must be a number, [r, g, b] or {\"type\": \"rgb\", \"value\": ...}, got " +
+                      node.words());
         const std::vector<JsonNode> parts = node.as_array();
         for (Eigen::Index c = 0; c < 3; ++c)
             value[c] = static_cast<float>(parts[static_cast<std::size_t>(c)].as_number_in(0, most));

@@ -43,19 +43,33 @@ std::string runner_at_work_on(const std::filesystem::path& folder) {
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
+    namespace fs = std::filesystem;
+    const auto is_there = [](const fs::path& path) {
+        std::error_code none;
+        return fs::exists(fs::symlink_status(path, none));
+    };
+    const fs::path name = lock_file(folder);
+    const bool was_there = is_there(folder);
+    const bool was_locked_before = is_there(name);
+    // What is made here goes again where the lock cannot be written.
+    const auto fail_to_write = [&](int error) {
+        std::error_code none;
+        if (!was_locked_before) fs::remove(name, none);
+        if (!was_there) fs::remove(folder, none);
+        const fs::path& place = was_locked_before ? name : folder;
+        throw InputError(fmt::format("{}: cannot be written ({})", place.string(), reason(error)));
+    };
     try {
         make_folders(folder);
     } catch (const std::filesystem::filesystem_error& error) {
         throw InputError(
             fmt::format("{}: cannot be made ({})", folder.string(), error.code().message()));
     }
-    const std::filesystem::path name = lock_file(folder);
     // Its content is replaced: a link in a folder from elsewhere must not lead to another file.
     file_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file_ < 0 && errno == ELOOP)
         throw InputError(fmt::format("{}: is a symbolic link, not a lock", name.string()));
-    if (file_ < 0)
-        throw InputError(fmt::format("{}: cannot be written ({})", folder.string(), reason(errno)));
+    if (file_ < 0) fail_to_write(errno);
 
     const struct flock lock = whole_file_lock();
     if (fcntl(file_, F_SETLK, &lock) != 0) {
@@ -75,8 +89,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     if (ftruncate(file_, 0) != 0 || pwrite(file_, owner.data(), owner.size(), 0) < 0) {
         const int refusal = errno;
         close(file_);
-        throw InputError(
-            fmt::format("{}: cannot be written ({})", folder.string(), reason(refusal)));
+        fail_to_write(refusal);
     }
 }
 

@@ -17,6 +17,14 @@ namespace caustics::experiments {
 
 namespace {
 
+Film readable_picture(const std::filesystem::path& file) {
+    try {
+        return read_exr(file);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{} (remake it with --references rebuild)", error.what()));
+    }
+}
+
 /// Keeps a layer's standard error, its root mean square over the channels.
 void keep_error(const Film& rendered, const std::string& errors, Film& film) {
     if (!rendered.has_layer(errors)) return;
@@ -131,7 +139,8 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
 std::shared_ptr<const Reference> ReferenceCache::get(const ReferenceRequest& request) {
     if (last_ && last_->key == request.key) return last_;
     const std::filesystem::path file = file_of(request);
-    auto reference = std::make_shared<Reference>(Reference{request.key, read_exr(file), {}, {}});
+    auto reference =
+        std::make_shared<Reference>(Reference{request.key, readable_picture(file), {}, {}});
     const auto key = reference->film.metadata.find("reference_key");
     if (key != reference->film.metadata.end() && key->second != request.key)
         throw InputError(

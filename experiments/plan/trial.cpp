@@ -133,6 +133,7 @@ void record_errors(json& record, const Film& film, const Reference& reference) {
     const PixelMask bright = bright_pixels(reference.film, "caustic", reached);
     for (const char* earlier : {"mean", "stderr", "indirect_mean", "indirect_stderr", "why_empty"})
         record["reference"].erase(earlier);
+    for (const char* earlier : {"indirect_metrics", "flip"}) record.erase(earlier);
     record["metrics"] = to_json(measure(film, reference.film, "caustic", reached));
     record["mask_metrics"] = to_json(measure(film, reference.film, "caustic", bright));
     record["mask_fraction"] = fraction(bright);

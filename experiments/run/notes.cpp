@@ -301,6 +301,34 @@ void note_colours(const Scene& scene, const Method& method, std::vector<std::str
         100 * share));
 }
 
+/// The first dispersive glass that the camera sees, looked for on a grid of the film.
+const Shape* dispersive_glass_seen(const Scene& scene) {
+    constexpr int columns = 64;
+    constexpr int rows = 48;
+    const Camera& camera = scene.camera();
+    for (int i = 0; i < columns * rows; ++i) {
+        const double x = (i % columns + 0.5) / columns * camera.width;
+        const double y = (i / columns + 0.5) / rows * camera.height;
+        const auto hit = scene.intersect(Ray{camera.position(), camera.direction(x, y)});
+        if (hit && is_dispersive(scene.shape_at(*hit).bsdf)) return &scene.shape_at(*hit);
+    }
+    return nullptr;
+}
+
+/// Photons and texels hold colours, not wavelengths: they cannot be asked for the one that glass before the eye
+/// picked.
+void note_colours_through_glass(const Scene& scene, const Method& method,
+                                std::vector<std::string>& all) {
+    const json parameters = describe(method);
+    if (!parameters.contains("photons") && !parameters.contains("emitted")) return;
+    if (!has_dispersive_caster(scene)) return;
+    if (const Shape* const glass = dispersive_glass_seen(scene))
+        all.push_back(fmt::format(
+            "caustics that are seen through {}, which disperses, have wrong colours where light is "
+            "spread into colours: {} keeps no wavelengths (beamtree asks for them)",
+            glass->name, method.name));
+}
+
 std::string lost_light(const Method& method, const BuildReport& report, double lost) {
     const double pruned = resolved(report, "flux_share_pruned").value_or(0);
     const double over_budget = resolved(report, "flux_share_over_budget").value_or(0);
@@ -391,6 +419,7 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     note_misdirected(scene, report, all);
     note_photons(report, all);
     note_colours(scene, method, all);
+    note_colours_through_glass(scene, method, all);
     const std::optional<double> captured = resolved(report, "flux_share_captured");
     if (const auto far = far_caster(scene, captured ? far_for_beams : far_for_photons))
         all.push_back(*far);

@@ -39,10 +39,12 @@ StaleErrors stale_errors(const SweepPlan& plan, const SweepStatus& status,
     return stale;
 }
 
-bool take_errors_anew(const Trial& trial, const TrialStore& store, const Reference& reference) {
-    if (!std::filesystem::exists(store.image_of(trial.id))) return false;
+ErrorsAnew take_errors_anew(const Trial& trial, const TrialStore& store,
+                            const Reference& reference) {
+    if (!std::filesystem::exists(store.image_of(trial.id))) return ErrorsAnew::picture_is_gone;
     std::optional<nlohmann::json> record = store.record(trial.id);
-    if (!record) return false;
+    if (!record) return ErrorsAnew::picture_is_gone;
+    const bool had_flip = record->contains("flip");
     record_errors(*record, read_exr(store.image_of(trial.id)), reference);
     const std::filesystem::path folder = store.begin(trial.id);
     for (const char* name : {"image.exr", "log.txt"}) {
@@ -51,7 +53,7 @@ bool take_errors_anew(const Trial& trial, const TrialStore& store, const Referen
         write_atomic_file(folder / name, read_whole_file(file));
     }
     store.commit(trial.id, *record);
-    return true;
+    return had_flip ? ErrorsAnew::taken_but_flip : ErrorsAnew::taken;
 }
 
 }  // namespace caustics::experiments

@@ -20,8 +20,15 @@ struct StaleErrors {
 StaleErrors stale_errors(const SweepPlan& plan, const SweepStatus& status,
                          ReferenceCache& references);
 
-/// Takes the errors of a trial's kept picture anew. False where that picture is not there any more. Throws InputError
-/// when the store cannot be written.
-bool take_errors_anew(const Trial& trial, const TrialStore& store, const Reference& reference);
+/// What came of taking a trial's errors anew.
+enum class ErrorsAnew {
+    picture_is_gone,  ///< nothing
+    taken,
+    taken_but_flip,  ///< which tools/flip_column.py has to fill again
+};
+
+/// Takes the errors of a trial's kept picture anew. Throws InputError when the store cannot be written.
+ErrorsAnew take_errors_anew(const Trial& trial, const TrialStore& store,
+                            const Reference& reference);
 
 }  // namespace caustics::experiments

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -92,7 +93,8 @@ public:
             (options_.folder / "records.csv").string(),
             others_ == 0 ? "" : fmt::format(" (without {} trials of other sweeps)", others_),
             figures.string(), summary.text(plan_.trials.size(), ran_, watch_.total().wall)));
-        return status_.count("failed") + status_.count("timeout") + left_ == 0 ? 0 : 1;
+        const std::size_t failed = status_.count("failed") + status_.count("timeout");
+        return failed + left_ + failed_references_ == 0 ? 0 : 1;
     }
 
 private:
@@ -142,30 +144,37 @@ private:
             return trial->reference && trial->reference->key == request.key;
         });
         left_ += left;
-        progress_->note(fmt::format("{} trials of this reference are left to do", left));
+        progress_->note(left > 0 ? fmt::format("{} trials of this reference are left to do", left)
+                                 : "no trial waits for it; what was there of it stays");
     }
 
     void take_stale_errors_anew() {
         ReferenceCache references = references_;  // trials start without what this one reads
-        std::size_t anew = 0;
+        std::map<ErrorsAnew, std::size_t> counts;
         const StaleErrors stale = stale_errors(plan_, status_, references);
         for (const std::string& why : stale.unreadable)
             progress_->note(fmt::format("warning: {}: the errors of its trials are kept", why));
         for (const Trial* trial : stale.trials) {
             throw_if_interrupted();
-            if (take_errors_anew(*trial, store_, *references.get(*trial->reference)))
-                ++anew;
-            else
+            const ErrorsAnew came_of_it =
+                take_errors_anew(*trial, store_, *references.get(*trial->reference));
+            ++counts[came_of_it];
+            if (came_of_it == ErrorsAnew::picture_is_gone)
                 progress_->note(fmt::format(
                     "warning: {}: was judged by another picture of its reference, and its own is "
                     "not there any more (--force runs it again)",
                     trial->id));
         }
-        if (anew > 0)
+        const std::size_t without_flip = counts[ErrorsAnew::taken_but_flip];
+        if (const std::size_t anew = counts[ErrorsAnew::taken] + without_flip; anew > 0)
             progress_->note(fmt::format(
                 "note: {} trials were judged by other pictures of their references: their errors "
                 "are taken anew",
                 anew));
+        if (without_flip > 0)
+            progress_->note(fmt::format(
+                "note: {} of them have no flip any more: tools/flip_column.py fills it again",
+                without_flip));
     }
 
     void render_reference(const ReferenceRequest& request) {

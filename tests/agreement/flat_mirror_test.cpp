@@ -163,6 +163,19 @@ TEST(FlatMirror, LightTraceOfAPointLight) {
     expect_dark_outside(*reference, scene);
 }
 
+// The whole disc lies in the shade of the shelf, which is nearer to it than its radius.
+TEST(FlatMirror, LightTraceCountsNoLightOfAShelfAboveThePoint) {
+    SceneDesc desc = mirror_scene(support::mirror());
+    desc.shapes.push_back(support::rectangle("shelf", {0.3, -0.3, 0.03}, {0.3, 0, 0}, {0, 0.3, 0},
+                                             support::diffuse(0.5F)));
+    desc.lights = {support::point_light(light_position, static_cast<float>(mirror_intensity))};
+    const Scene scene(std::move(desc));
+    const auto reference = build(scene, LightTraceParams{.paths = 100'000}, RunOptions{});
+    const std::vector<ReceiverPoint> points = {
+        support::probe(scene, floor_shape, {0.3, -0.3, 0}, Vec3d::UnitZ(), 0, 0.05F)};
+    EXPECT_TRUE(is_black(support::irradiance(*reference, points)[0].value));
+}
+
 TEST(FlatMirror, LightTraceOfASquareLight) {
     const Scene scene = with_square_light();
     expect_within_stderr(*build(scene, LightTraceParams{.paths = 1'500'000}, RunOptions{}), scene,

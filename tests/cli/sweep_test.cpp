@@ -235,6 +235,18 @@ TEST_F(Sweeps, LeaveTrialsToDoWhoseReferenceFindsNoRoom) {
     EXPECT_EQ(records().size(), 4U);
 }
 
+TEST_F(Sweeps, FailWhereNoReferenceCanBeRebuilt) {
+    const std::string file = write_sweep(R"([{"method": "none"}])");
+    ASSERT_EQ(sweep(file).exit_code, 0);
+    const std::vector<Row> before = rows();
+    const ProgramResult full = support::shell("ulimit -f 4; $P sweep '" + file + "' -o '" + out_ +
+                                              "' --references rebuild");
+    EXPECT_EQ(full.exit_code, 1) << full.err;
+    EXPECT_NE(full.err.find("what was there of it stays"), std::string::npos) << full.err;
+    EXPECT_EQ(sweep(file).exit_code, 0);
+    EXPECT_EQ(rows(), before);
+}
+
 TEST_F(Sweeps, TakeErrorsAnewWhereTheReferenceIsAnotherPicture) {
     const std::string file = write_sweep(R"([{"method": "photonmap", "param": {"photons": 500}}])");
     ASSERT_EQ(sweep(file).exit_code, 0);
@@ -244,12 +256,17 @@ TEST_F(Sweeps, TakeErrorsAnewWhereTheReferenceIsAnotherPicture) {
         for (float& value : film.plane("caustic.R")) value *= 2;
         write_exr(film, entry.path());
     }
+    const fs::path record = fs::path(out_) / "trials" / before[0].at("trial") / "record.json";
+    nlohmann::json with_flip = nlohmann::json::parse(read_whole_file(record));
+    with_flip["flip"] = 0.5;
+    write_atomic_file(record, with_flip.dump());
     const ProgramResult again = sweep(file);
     EXPECT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_NE(again.err.find("note: 4 trials were judged by other pictures of their references: "
-                             "their errors are taken anew"),
-              std::string::npos)
-        << again.err;
+    for (const char* note : {"note: 4 trials were judged by other pictures of their references: "
+                             "their errors are taken anew",
+                             "note: 1 of them have no flip any more"})
+        EXPECT_NE(again.err.find(note), std::string::npos) << again.err;
+    EXPECT_FALSE(nlohmann::json::parse(read_whole_file(record)).contains("flip"));
     const std::vector<Row> after = rows();
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t i = 0; i < after.size(); ++i) {

@@ -25,8 +25,9 @@ bool in_disc(const ReceiverPoint& p, float radius, const Deposit& d) {
     const Vec3 offset = d.position - p.position;
     const float height = p.geometric_normal.dot(offset);
     const float across2 = (offset - height * p.geometric_normal).squaredNorm();
+    const float thickness = d.shape == p.shape ? radius : radius / 100;
     return d.wi.dot(p.geometric_normal) > 0 && d.geometric_normal.dot(p.geometric_normal) > 0.5F &&
-           std::abs(height) <= radius && across2 <= radius * radius;
+           std::abs(height) <= thickness && across2 <= radius * radius;
 }
 
 void expect_same_as_scan(const Vec3& centre, float smallest, float largest) {
@@ -36,6 +37,7 @@ void expect_same_as_scan(const Vec3& centre, float smallest, float largest) {
     for (ReceiverPoint& p : points) {
         p.position = centre + random_vector(rng, 1);
         p.geometric_normal = random_direction(rng);
+        p.shape = rng.next() < 0.8F ? 1 : 2;
         radii.push_back(smallest * std::pow(largest / smallest, rng.next()));
     }
     const GatherGrid grid(points, radii);
@@ -47,6 +49,7 @@ void expect_same_as_scan(const Vec3& centre, float smallest, float largest) {
         d.position = i % 2 == 0 ? Vec3(centre + random_vector(rng, 1.3F))
                                 : Vec3(points[near].position + random_vector(rng, radii[near]));
         d.wi = random_direction(rng);
+        d.shape = 1;
         d.geometric_normal = i % 4 == 1 ? points[near].geometric_normal : random_direction(rng);
         std::vector<std::uint32_t> found, scanned;
         grid.for_each_containing(d, [&](std::uint32_t at) { found.push_back(at); });

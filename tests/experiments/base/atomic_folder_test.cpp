@@ -1,6 +1,7 @@
 #include "experiments/base/atomic_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
+#include "experiments/base/folder_lock.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics::experiments {
@@ -80,6 +82,36 @@ TEST_F(WholeFolders, KeepTheirLockUntilNothingElseIsLeft) {
         whole.commit();
     }
     EXPECT_EQ(files_in(target_), Names{"new"});
+}
+
+TEST_F(WholeFolders, LeaveNothingWhereTheirLockFindsNoRoom) {
+    const pid_t writer = fork();
+    if (writer == 0) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit nothing = {0, 0};
+        setrlimit(RLIMIT_FSIZE, &nothing);
+        try {
+            const AtomicFolder whole(target_);
+        } catch (const InputError&) {
+            _exit(2);
+        }
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(writer, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 2);
+    EXPECT_EQ(files_in(folder_.path()), Names{});
+}
+
+TEST_F(WholeFolders, NameALockThatIsNoFile) {
+    fs::create_directories(target_ / ".lock");
+    try {
+        const FolderLock lock(target_);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("/.lock: cannot be written"), std::string::npos)
+            << error.what();
+    }
 }
 
 TEST_F(WholeFolders, TakeBackWhatCannotBePutInPlace) {

@@ -65,6 +65,23 @@ TEST(Notes, TellThatFlatPolygonsStandForACurvedReceiver) {
     EXPECT_FALSE(any_holds(notes_of(desc, "beamtree", {}), {"flat polygons"}));
 }
 
+TEST(Notes, TellThatPhotonsKeepNoWavelengthsForGlassBeforeTheEye) {
+    const std::vector<std::string> words = {"seen through mirror, which disperses"};
+    SceneDesc desc = flat_mirror();
+    Dielectric dielectric;
+    dielectric.int_ior = Ior::abbe(1.6, 30);
+    desc.shapes[0].bsdf = {dielectric, false};
+    desc.camera.to_world = Transform(Eigen::Translation3d(0, 0, -2));
+    EXPECT_FALSE(any_holds(notes_of(desc, "photonmap", {"photons=100"}), words))
+        << "the floor hides it";
+    desc.camera.to_world = Transform(Eigen::Translation3d(0, 0, 0.1));
+    EXPECT_TRUE(any_holds(notes_of(desc, "photonmap", {"photons=100"}), words));
+    EXPECT_TRUE(any_holds(notes_of(desc, "illuminationmap", {"emitted=100"}), words));
+    EXPECT_FALSE(any_holds(notes_of(desc, "beamtree", {}), words));
+    desc.shapes[0].bsdf = support::glass(1.6F);
+    EXPECT_FALSE(any_holds(notes_of(desc, "photonmap", {"photons=100"}), words));
+}
+
 TEST(Notes, TellThatPartsOfTheWavelengthsDrawSteps) {
     const auto notes_of_glass = [](bool disperses, const std::string& method,
                                    const std::vector<std::string>& parameters) {
