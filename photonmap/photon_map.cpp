@@ -186,7 +186,7 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
 
     options.phase("balance");
     std::unique_ptr<const PhotonTree> tree =
-        build_tree(params.tree, std::move(photons.store), options.isa);
+        build_tree(params.tree, std::move(photons.store), options.isa, options.threads);
     report.bytes = tree->bytes();
     photons.counts.add_to(report.counters);
     tree->add_to(report.counters);

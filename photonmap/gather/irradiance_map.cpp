@@ -75,6 +75,6 @@ IrradianceMap::IrradianceMap(PhotonStore places, const DensityMap& density,
                              const RunOptions& options)
     : irradiance_(irradiance_at(places.photons(), density, options)),
       nearest_{1, density.limits().max_radius},
-      tree_(build_tree(TreeKind::packed, std::move(places), options.isa)) {}
+      tree_(build_tree(TreeKind::packed, std::move(places), options.isa, options.threads)) {}
 
 }  // namespace caustics::photonmap

@@ -15,8 +15,9 @@ ShadowMap::ShadowMap(const Scene& scene, std::uint64_t paths, const RunOptions& 
         PhotonStore photons = trace_shadows(scene, light, paths, options);
         const double radius =
             default_max_radius(photons.photons(), scene.bounds(), static_cast<int>(nearest));
-        lights_.push_back({{nearest, static_cast<float>(radius)},
-                           build_tree(TreeKind::packed, std::move(photons), options.isa)});
+        lights_.push_back(
+            {{nearest, static_cast<float>(radius)},
+             build_tree(TreeKind::packed, std::move(photons), options.isa, options.threads)});
     }
 }
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 
 namespace caustics::photonmap {
 
@@ -62,15 +65,37 @@ Cone cone_of(const Seen& seen, const DirectionOf& direction_of) {
     return cone;
 }
 
+/// What some of the photons show.
+struct Seen {
+    std::bitset<codes> directions;
+    std::bitset<(facing_mask >> facing_shift) + 1> facings;
+    std::optional<std::size_t> not_finite;  ///< the first
+};
+
+Seen seen_in(std::span<const Photon> photons, const Chunk& chunk) {
+    Seen seen;
+    for (std::size_t i = chunk.first; i < chunk.end && !seen.not_finite; ++i) {
+        if (!is_finite(photons[i])) seen.not_finite = i;
+        seen.directions.set(photons[i].theta * 256U + photons[i].phi);
+        seen.facings.set((photons[i].flags & facing_mask) >> facing_shift);
+    }
+    return seen;
+}
+
 }  // namespace
 
-ArrivalDirections::ArrivalDirections(std::span<const Photon> photons) : empty_(photons.empty()) {
+ArrivalDirections::ArrivalDirections(std::span<const Photon> photons, int threads)
+    : empty_(photons.empty()) {
+    constexpr std::size_t together = 262'144;
+    std::vector<Seen> parts(chunk_count(photons.size(), together));
+    parallel_chunks(threads, photons.size(), together,
+                    [&](const Chunk& chunk) { parts[chunk.index] = seen_in(photons, chunk); });
     std::bitset<codes> seen;
     std::bitset<(facing_mask >> facing_shift) + 1> facings;
-    for (std::size_t i = 0; i < photons.size(); ++i) {
-        if (!is_finite(photons[i])) fail_of_photon(i, photons[i]);
-        seen.set(photons[i].theta * 256U + photons[i].phi);
-        facings.set((photons[i].flags & facing_mask) >> facing_shift);
+    for (const Seen& part : parts) {
+        if (part.not_finite) fail_of_photon(*part.not_finite, photons[*part.not_finite]);
+        seen |= part.directions;
+        facings |= part.facings;
     }
     const Cone from = cone_of(seen, direction_of_code);
     axis_ = from.axis;

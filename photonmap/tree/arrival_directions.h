@@ -13,7 +13,7 @@ namespace caustics::photonmap {
 class ArrivalDirections {
 public:
     /// Throws InputError naming the first photon whose position is not finite.
-    explicit ArrivalDirections(std::span<const Photon> photons);
+    explicit ArrivalDirections(std::span<const Photon> photons, int threads = 1);
 
     /// Whether certainly all photons count at a point of that normal (unit): none came from behind
     /// it, or landed on another surface (is_same_surface).

@@ -4,6 +4,7 @@
 
 #include "photonmap/tree/kd_search.h"
 #include "photonmap/tree/select_photons.h"
+#include "photonmap/tree/split_ranges.h"
 
 namespace caustics::photonmap {
 
@@ -11,16 +12,21 @@ namespace {
 
 constexpr std::uint16_t placed_flag = 0x8000U;
 
+/// Splits the photons at their root: returns its left subtree, and leaves the right one.
+std::span<Photon> take_left(std::span<Photon>& photons, const TreeKernels& kernels) {
+    const unsigned axis = widest_axis(photons, kernels);
+    const std::size_t middle = left_size(photons.size());
+    select_photon(photons, middle, axis);
+    set_axis(photons[middle], axis);
+    const std::span<Photon> left = photons.first(middle);
+    photons = photons.subspan(middle + 1);
+    return left;
+}
+
 /// Orders the photons as an in-order walk of their tree meets them.
 void order_subtree(std::span<Photon> photons, const TreeKernels& kernels, OrderScratch& scratch) {
-    while (photons.size() > small_range) {
-        const unsigned axis = widest_axis(photons, kernels);
-        const std::size_t middle = left_size(photons.size());
-        select_photon(photons, middle, axis);
-        set_axis(photons[middle], axis);
-        order_subtree(photons.first(middle), kernels, scratch);
-        photons = photons.subspan(middle + 1);
-    }
+    while (photons.size() > small_range)
+        order_subtree(take_left(photons, kernels), kernels, scratch);
     kernels.order_small(bytes_of(photons), photons.size(), scratch);
 }
 
@@ -87,17 +93,23 @@ struct Heap {
 
 }  // namespace
 
-void balance(std::span<Photon> photons, Isa isa) {
+void balance(std::span<Photon> photons, Isa isa, int threads) {
     if (photons.empty()) return;
-    const auto scratch = std::make_unique<OrderScratch>();
-    order_subtree(photons, tree_kernels(isa), *scratch);
+    const TreeKernels& kernels = tree_kernels(isa);
+    split_on_threads(
+        photons, photons.size(), threads,
+        [&](std::span<Photon>& part) { return take_left(part, kernels); },
+        [&](std::span<Photon> part) {
+            const auto scratch = std::make_unique<OrderScratch>();
+            order_subtree(part, kernels, *scratch);
+        });
     move_to_heap(photons);
 }
 
-BalancedKdTree::BalancedKdTree(PhotonStore photons, Isa isa)
-    : KdTreeBase(tree_kernels(isa), ArrivalDirections(photons.photons())),
+BalancedKdTree::BalancedKdTree(PhotonStore photons, Isa isa, int threads)
+    : KdTreeBase(tree_kernels(isa), ArrivalDirections(photons.photons(), threads)),
       photons_(std::move(photons)) {
-    balance(photons_.photons(), isa);
+    balance(photons_.photons(), isa, threads);
 }
 
 void BalancedKdTree::find(const NearestQuery& query, GatherScratch& scratch) const {

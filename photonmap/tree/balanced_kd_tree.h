@@ -9,13 +9,13 @@ namespace caustics::photonmap {
 /// memory: a heap (left_balanced.h), node i = photon i - 1 of the array, whose root is the median along the
 /// largest interval of the photons' tight bounding box, and so on. The two lowest bits of a
 /// photon's flags hold its splitting axis. Positions must be finite. The same tree on every instruction
-/// set.
-void balance(std::span<Photon> photons, Isa isa = widest_isa());
+/// set and any number of threads.
+void balance(std::span<Photon> photons, Isa isa = widest_isa(), int threads = 1);
 
 /// The paper's tree: the photons alone, no child pointers.
 class BalancedKdTree final : public KdTreeBase {
 public:
-    BalancedKdTree(PhotonStore photons, Isa isa);
+    BalancedKdTree(PhotonStore photons, Isa isa, int threads);
 
     std::size_t size() const override { return photons_.size(); }
     std::uint64_t bytes() const override { return photons_.bytes(); }

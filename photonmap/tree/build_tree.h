@@ -5,8 +5,9 @@
 
 namespace caustics::photonmap {
 
-/// Orders the photons, in their memory where the kind allows it, with less than 1 MB besides. Throws
-/// InputError naming the first photon whose position is not finite.
-std::unique_ptr<const PhotonTree> build_tree(TreeKind kind, PhotonStore photons, Isa isa);
+/// Orders the photons on up to `threads` threads (an unbalanced tree on one), in their memory where the kind allows it, with
+/// less than 1 MB a thread besides. Throws InputError naming the first photon whose position is not finite.
+std::unique_ptr<const PhotonTree> build_tree(TreeKind kind, PhotonStore photons, Isa isa,
+                                             int threads = 1);
 
 }  // namespace caustics::photonmap

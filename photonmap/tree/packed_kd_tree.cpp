@@ -4,52 +4,61 @@
 
 #include "photonmap/kernels/left_balanced.h"
 #include "photonmap/tree/select_photons.h"
+#include "photonmap/tree/split_ranges.h"
 
 namespace caustics::photonmap {
 
 namespace {
 
+/// Splits the range at a plane: returns its left side, and leaves the right one.
+BucketRange take_left(BucketRange& range, const TreeKernels& kernels) {
+    const std::span<Photon> photons(reinterpret_cast<Photon*>(range.photons), range.count);
+    const unsigned axis = widest_axis(photons, kernels);
+    const std::uint64_t on_left = left_leaves(range.leaves);
+    const std::size_t middle = on_left * bucket_photons;
+    select_photon(photons, middle, axis);
+    // Now, because the photon moves on when its side is split.
+    range.planes[range.node] =
+        (std::bit_cast<std::uint32_t>(photons[middle].position[axis]) & ~3U) | axis;
+    BucketRange left = range;
+    left.count = middle;
+    left.node = 2 * range.node;
+    left.leaves = on_left;
+    range.photons += middle * sizeof(Photon);
+    range.count -= middle;
+    range.node = 2 * range.node + 1;
+    range.leaves -= on_left;
+    return left;
+}
+
 /// Splits the range down to what the kernels order.
 void fill_buckets(BucketRange range, const TreeKernels& kernels, OrderScratch& scratch) {
-    while (range.count > small_range) {
-        const std::span<Photon> photons(reinterpret_cast<Photon*>(range.photons), range.count);
-        const unsigned axis = widest_axis(photons, kernels);
-        const std::uint64_t on_left = left_leaves(range.leaves);
-        const std::size_t middle = on_left * bucket_photons;
-        select_photon(photons, middle, axis);
-        // Now, because the photon moves on when its side is split.
-        range.planes[range.node] =
-            (std::bit_cast<std::uint32_t>(photons[middle].position[axis]) & ~3U) | axis;
-        BucketRange left = range;
-        left.count = middle;
-        left.node = 2 * range.node;
-        left.leaves = on_left;
-        fill_buckets(left, kernels, scratch);
-        range.photons += middle * sizeof(Photon);
-        range.count -= middle;
-        range.node = 2 * range.node + 1;
-        range.leaves -= on_left;
-    }
+    while (range.count > small_range) fill_buckets(take_left(range, kernels), kernels, scratch);
     kernels.fill_buckets(range, scratch);
 }
 
 }  // namespace
 
-PackedKdTree::PackedKdTree(PhotonStore photons, Isa isa)
-    : KdTreeBase(tree_kernels(isa), ArrivalDirections(photons.photons())),
+PackedKdTree::PackedKdTree(PhotonStore photons, Isa isa, int threads)
+    : KdTreeBase(tree_kernels(isa), ArrivalDirections(photons.photons(), threads)),
       photons_(std::move(photons)),
       planes_(std::make_unique<std::uint32_t[]>(std::max<std::size_t>(1, bucket_count()))) {
-    order();
+    order(threads);
 }
 
-void PackedKdTree::order() {
+void PackedKdTree::order(int threads) {
     const std::size_t buckets = bucket_count();
     if (buckets == 0) return;
     static_assert(PhotonStore::block_photons % bucket_photons == 0,
                   "buckets fill the store's blocks");
     unsigned char* const memory = bytes_of(photons_.photons());
-    const auto scratch = std::make_unique<OrderScratch>();
-    fill_buckets({memory, photons_.size(), 1, buckets, planes_.get()}, kernels_, *scratch);
+    split_on_threads(
+        BucketRange{memory, photons_.size(), 1, buckets, planes_.get()}, photons_.size(), threads,
+        [&](BucketRange& range) { return take_left(range, kernels_); },
+        [&](const BucketRange& range) {
+            const auto scratch = std::make_unique<OrderScratch>();
+            fill_buckets(range, kernels_, *scratch);
+        });
     view_ = {memory, planes_.get(), buckets};
 }
 

@@ -14,7 +14,7 @@ namespace caustics::photonmap {
 /// full, is filled up with positions at infinity.
 class PackedKdTree final : public KdTreeBase {
 public:
-    PackedKdTree(PhotonStore photons, Isa isa);
+    PackedKdTree(PhotonStore photons, Isa isa, int threads);
 
     /// A batch is split into groups as long as these are wide against the distance of the N-th
     /// photon; a group's photons are collected by one walk.
@@ -33,7 +33,7 @@ private:
     std::size_t bucket_count() const {
         return (photons_.size() + bucket_photons - 1) / bucket_photons;
     }
-    void order();
+    void order(int threads);
 
     PhotonStore photons_;
     std::unique_ptr<std::uint32_t[]> planes_;

@@ -93,6 +93,21 @@ TEST(BalancedKdTree, IsTheSameOnEveryInstructionSet) {
     }
 }
 
+TEST(BalancedKdTree, IsTheSameOnAnyNumberOfThreads) {
+    for (const std::size_t count : {40'000U, 200'001U}) {
+        for (const auto& set : photon_sets(count, 14)) {
+            std::vector<Photon> one = set.photons;
+            balance(one);
+            for (const int threads : {2, 3, 8}) {
+                std::vector<Photon> photons = set.photons;
+                balance(photons, widest_isa(), threads);
+                ASSERT_EQ(std::memcmp(photons.data(), one.data(), count * sizeof(Photon)), 0)
+                    << set.name << " " << threads;
+            }
+        }
+    }
+}
+
 TEST(BalancedKdTree, IsATreeWhereRangesAreTooLargeForScratch) {
     for (auto& set : photon_sets(40'000, 13)) {
         SCOPED_TRACE(set.name);

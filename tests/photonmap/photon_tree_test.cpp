@@ -314,6 +314,22 @@ TEST(PhotonTree, PackedAnswersATileInGroupsWhereItIsNarrow) {
     EXPECT_EQ(scratch.grouped_queries, 0U);
 }
 
+TEST(PhotonTree, AnswersAlikeHoweverManyThreadsMadeIt) {
+    const std::vector<Photon> photons = folds(300'001);
+    const GatherLimits limits{.nearest = 60, .max_radius = 0.05F};
+    const std::vector<ReceiverPoint> points = tile({0.5F, 0.5F, 0}, 1e-2F);
+    for (const TreeKind kind : {TreeKind::packed, TreeKind::balanced}) {
+        GatherScratch scratch;
+        const auto one =
+            answers(*build_tree(kind, store_of(photons), widest_isa()), points, limits, scratch);
+        for (const int threads : {2, 3, 8})
+            EXPECT_EQ(answers(*build_tree(kind, store_of(photons), widest_isa(), threads), points,
+                              limits, scratch),
+                      one)
+                << threads;
+    }
+}
+
 TEST(PhotonTree, HoldsAsManyBytesAsItSays) {
     const std::vector<Photon> photons = folds(100'000);
     const auto per_photon = [&](TreeKind kind) {
