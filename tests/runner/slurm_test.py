@@ -5,7 +5,6 @@ an unsharded run. Skipped where Slurm is not installed (Debian: slurmctld slurmd
 Usage: slurm_test.py [PROGRAM]
 """
 import os
-import pathlib
 import shutil
 import socket
 import subprocess

@@ -18,7 +18,7 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from duel import contests, curves, folds, measures, race, scores, truth
+from duel import contests, folds, measures, race, scores, truth
 from duel_statistics import Bounds, Curves, Intervals, Truths, Verdicts, cell  # noqa: F401  (they run here)
 from papers.verdict import UNMEASURED
 
