@@ -56,6 +56,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
         std::error_code none;
         if (!was_locked_before) fs::remove(name, none);
         if (!was_there) fs::remove(folder, none);
+        if (file_ >= 0) close(file_);
         const fs::path& place = was_locked_before ? name : folder;
         throw InputError(fmt::format("{}: cannot be written ({})", place.string(), reason(error)));
     };
@@ -87,9 +88,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     const std::string owner = fmt::format("process {} on {}", getpid(), host_name());
     // Says who it is; the lock itself does not depend on it.
     if (ftruncate(file_, 0) != 0 || pwrite(file_, owner.data(), owner.size(), 0) < 0) {
-        const int refusal = errno;
-        close(file_);
-        fail_to_write(refusal);
+        fail_to_write(errno);
     }
 }
 
