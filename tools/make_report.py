@@ -13,7 +13,7 @@ import sys
 sys.dont_write_bytecode = True  # the source folder may be read-only
 
 from report.records import RecordsError
-from report.report_files import Progress, end_on_interrupt, report, require_place, write
+from report.report_files import Progress, end_on_interrupt, no_folder, report, require_place, write
 
 end_on_interrupt("report")  # what follows may take a while to load
 
@@ -41,11 +41,7 @@ def positive(text):
 
 
 def require_folder(path):
-    """The folder, or the first above it that is there, must be one."""
-    above = os.path.abspath(path)
-    while not os.path.lexists(above):
-        above = os.path.dirname(above)
-    if not os.path.isdir(above):
+    if above := no_folder(path):
         raise RecordsError(f"{path}: no folder for tables ({above} is none)")
 
 

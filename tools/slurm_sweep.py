@@ -11,12 +11,15 @@ it stopped. Options of sbatch and of the sweep are handed on: --sbatch=--partiti
 Exit codes: 0 done, 1 Slurm refuses, 2 bad input or usage; that of the program where it refuses the sweep.
 """
 import argparse
-import os
 import pathlib
 import re
 import shlex
 import subprocess
 import sys
+
+sys.dont_write_bytecode = True  # the source folder may be read-only
+
+from report.report_files import no_folder
 
 SCRIPT = """#!/bin/bash
 #SBATCH --job-name={name}
@@ -84,11 +87,7 @@ def require_own(words):
 
 
 def require_folder(path):
-    """The folder of the results, or the first above it that is there, must be one."""
-    above = os.path.abspath(path)
-    while not os.path.lexists(above):
-        above = os.path.dirname(above)
-    if not os.path.isdir(above):
+    if above := no_folder(path):
         raise SlurmError(f"-o {path}: no folder for results ({above} is none)")
 
 

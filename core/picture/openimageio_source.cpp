@@ -124,11 +124,11 @@ private:
             memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
             input_->set_ioproxy(memory_.get());
             // A '?' in a file's name would be taken for a query.
-            if (input_->open("picture." + format, found, config)) return;
+            const std::string name = "picture." + format;
+            if (input_->open(name, found, config)) return;
             why = input_->geterror();
-            const std::string name = "\"picture." + format + "\"";
-            if (const std::size_t at = why.find(name); at != std::string::npos)
-                why.replace(at, name.size(), "it");
+            if (const std::size_t at = why.find('"' + name + '"'); at != std::string::npos)
+                why.replace(at, name.size() + 2, "it");
         }
         // A format that is read by name alone, or another one than the name says.
         if (file.string().find('?') == std::string::npos)

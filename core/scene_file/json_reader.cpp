@@ -152,12 +152,12 @@ std::int64_t JsonNode::as_integer_in(std::int64_t low, std::int64_t high) const 
 }
 
 bool JsonNode::as_bool() const {
-    if (!is_bool()) fail("expected true or false, got " + shown(document_->value(pointer_)));
+    if (!is_bool()) fail("expected true or false, got " + words());
     return document_->value(pointer_).get<bool>();
 }
 
 std::string JsonNode::as_string() const {
-    if (!is_string()) fail("expected a string, got " + shown(document_->value(pointer_)));
+    if (!is_string()) fail("expected a string, got " + words());
     return document_->value(pointer_).get<std::string>();
 }
 

@@ -87,9 +87,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     }
     const std::string owner = fmt::format("process {} on {}", getpid(), host_name());
     // Says who it is; the lock itself does not depend on it.
-    if (ftruncate(file_, 0) != 0 || pwrite(file_, owner.data(), owner.size(), 0) < 0) {
+    if (ftruncate(file_, 0) != 0 || pwrite(file_, owner.data(), owner.size(), 0) < 0)
         fail_to_write(errno);
-    }
 }
 
 FolderLock::~FolderLock() { close(file_); }

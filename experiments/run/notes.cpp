@@ -319,8 +319,7 @@ const Shape* dispersive_glass_seen(const Scene& scene) {
 /// picked.
 void note_colours_through_glass(const Scene& scene, const Method& method,
                                 std::vector<std::string>& all) {
-    const json parameters = describe(method);
-    if (!parameters.contains("photons") && !parameters.contains("emitted")) return;
+    if (!has_parameter(method, "photons") && !has_parameter(method, "emitted")) return;
     if (!has_dispersive_caster(scene)) return;
     if (const Shape* const glass = dispersive_glass_seen(scene))
         all.push_back(fmt::format(

@@ -50,8 +50,8 @@ struct Cone {
     double cosine = -1;  ///< of half its opening angle
 };
 
-template <typename Seen, typename DirectionOf>
-Cone cone_of(const Seen& seen, const DirectionOf& direction_of) {
+template <typename Codes, typename DirectionOf>
+Cone cone_of(const Codes& seen, const DirectionOf& direction_of) {
     Vec3d sum = Vec3d::Zero();
     for (std::size_t code = 0; code < seen.size(); ++code)
         if (seen[code]) sum += direction_of(code);
@@ -90,20 +90,19 @@ ArrivalDirections::ArrivalDirections(std::span<const Photon> photons, int thread
     std::vector<Seen> parts(chunk_count(photons.size(), together));
     parallel_chunks(threads, photons.size(), together,
                     [&](const Chunk& chunk) { parts[chunk.index] = seen_in(photons, chunk); });
-    std::bitset<codes> seen;
-    std::bitset<(facing_mask >> facing_shift) + 1> facings;
+    Seen all;
     for (const Seen& part : parts) {
         if (part.not_finite) fail_of_photon(*part.not_finite, photons[*part.not_finite]);
-        seen |= part.directions;
-        facings |= part.facings;
+        all.directions |= part.directions;
+        all.facings |= part.facings;
     }
-    const Cone from = cone_of(seen, direction_of_code);
+    const Cone from = cone_of(all.directions, direction_of_code);
     axis_ = from.axis;
     if (from.cosine > 0) sine_ = static_cast<float>(std::sqrt(1 - from.cosine * from.cosine));
-    facings.reset(0);  // what is not known counts everywhere
-    if (facings.none()) return;
-    const Cone on =
-        cone_of(facings, [](std::size_t code) { return facing_direction(code << facing_shift); });
+    all.facings.reset(0);  // what is not known counts everywhere
+    if (all.facings.none()) return;
+    const Cone on = cone_of(
+        all.facings, [](std::size_t code) { return facing_direction(code << facing_shift); });
     facing_ = on.axis;
     const double room = std::acos(static_cast<double>(same_surface_cosine)) -
                         std::acos(std::clamp(on.cosine, -1.0, 1.0));

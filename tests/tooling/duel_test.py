@@ -24,7 +24,8 @@ from papers.verdict import UNMEASURED
 
 DUEL = contests.Duel()
 RESULTS = ROOT / "results" / "duel"
-# The beam tree's trials on the crystal that were given up: setting and seed.
+
+
 class Scores(unittest.TestCase):
     def test_seeds_come_from_the_pilots_scatter(self):
         self.assertEqual(race.wanted_seeds(0.01, 0.1, 5, 9), 5)

@@ -1,7 +1,7 @@
 """The duel's tables of what its numbers rest on: truths, bias and variance, settings tried and chosen, what was left out."""
 import math
 
-from duel import factors, race
+from duel import factors
 from duel.curves import Cell
 from duel.tables import HIDDEN, METHODS, percent, shown
 from papers.part import Table

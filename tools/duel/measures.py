@@ -44,14 +44,16 @@ def polyhedral(results):
     return [] if goal is None else case("crystal", factors.factor_of_times(field, goal))
 
 
+def each_at_least_common(results, names, beams=BEAMS):
+    return [each for name in names if name in results.fields for each in case(name, factors.factor_at_least_common(results.fields[name], beams))]
+
+
 def shells(results):
-    return [each for name in ("bowl2", "bowl4", "bowl8") if name in results.fields
-            for each in case(name, factors.factor_at_least_common(results.fields[name]))]
+    return each_at_least_common(results, ("bowl2", "bowl4", "bowl8"))
 
 
 def completed(results):
-    return [each for name in ("ball", "crystal", "bowl2", "bowl4", "bowl8", "casters") if name in results.fields
-            for each in case(name, factors.factor_at_least_common(results.fields[name], COMPLETED))]
+    return each_at_least_common(results, ("ball", "crystal", "bowl2", "bowl4", "bowl8", "casters"), COMPLETED)
 
 
 def at_a_second_over(results, name, *scenes):

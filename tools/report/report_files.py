@@ -42,6 +42,14 @@ def require_place(path):
         raise records.RecordsError(f"{path}: its folder is not there")
 
 
+def no_folder(path):
+    """The path, or the first above it that is there, where that is no folder; else None: a folder can be made."""
+    above = os.path.abspath(path)
+    while not os.path.lexists(above):
+        above = os.path.dirname(above)
+    return None if os.path.isdir(above) else above
+
+
 def end_on_interrupt(tool):
     """From now on Ctrl-C ends the program with exit code 130 and one line, wherever it is."""
     def end(*_):
