@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
 #include "core/mesh/mesh_io.h"
+#include "core/mesh/vertex_normals.h"
 #include "tests/fuzz/reading.h"
 
 namespace caustics::fuzz {
@@ -23,15 +25,29 @@ inline void require_sound(const TriangleMesh& mesh) {
         require(std::abs(normal.norm() - 1) < 1e-3F, "a normal that is not unit");
 }
 
-/// Reads a mesh file with and without smooth normals.
-inline bool read_mesh(const std::filesystem::path& file, TriangleMesh& mesh) {
-    const bool read = taken(Naming::file, [&] { mesh = load_mesh(file, {}); });
-    if (!read) return false;
-    require_sound(mesh);
-    const TriangleMesh flat = load_mesh(file, {.face_normals = true, .flip_normals = true});
-    require_sound(flat);
+/// Reads a mesh from memory, and one of sixteen from its file as well, with and without smooth normals.
+template <class Read>
+bool read_mesh(const std::string& name, const std::string& bytes, const Read& read_bytes,
+               TriangleMesh& mesh) {
+    static const std::string file = named(name).string();
+    const bool read = taken(Naming::file, [&] {
+        mesh = read_bytes(bytes, file);
+        complete_normals(mesh);
+    });
+    if (read) require_sound(mesh);
+    if (!one_in(16, bytes)) return read;
+    put(name, bytes);
+    TriangleMesh flat;
+    const bool again = taken(Naming::file, [&] {
+        flat = load_mesh(file, {.face_normals = true, .flip_normals = true});
+        require_sound(flat);
+        const TriangleMesh smooth = load_mesh(file, {});
+        require_sound(smooth);
+        require(smooth.triangles == mesh.triangles, "other triangles from its file");
+    });
+    require(again == read, "taken from its file alone, or from memory alone");
     require(flat.triangles.size() == mesh.triangles.size(), "other triangles when flat");
-    return true;
+    return read;
 }
 
 }  // namespace caustics::fuzz

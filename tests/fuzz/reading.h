@@ -12,11 +12,16 @@ namespace caustics::fuzz {
 /// The folder of this process that inputs are written to; removed at the end.
 const std::filesystem::path& scratch();
 
-/// Writes a file in the scratch folder, whose folders are made.
+/// The name of a file in the scratch folder, whether it is there or not.
+std::filesystem::path named(const std::filesystem::path& name);
+/// Writes that file; folders on the way are made.
 std::filesystem::path put(const std::filesystem::path& name, std::string_view bytes);
 inline std::string_view view(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
+
+/// Whether an input is one of so many, by its hash: of these alone, what costs much is asked as well.
+bool one_in(unsigned share, std::string_view bytes);
 
 /// Ends the process with the reason: what the fuzzer keeps as a crash.
 [[noreturn]] void fail(const std::string& reason);

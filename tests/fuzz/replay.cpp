@@ -1,5 +1,12 @@
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +20,9 @@
 // A target of libFuzzer without libFuzzer, which compilers other than clang++ have not:
 //
 //   replay_NAME FOLDER...                        each file of the folders
-//   replay_NAME --mutate SECONDS SEED FOLDER...  changes of them, blindly; the input at work is in ./input
+//   replay_NAME --mutate SECONDS SEED FOLDER...  changes of them, blindly
+//
+// An input that ends the process, or takes 10 s of its processors' time, is left in ./input.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" __attribute__((weak)) int LLVMFuzzerInitialize(int* argc, char*** argv);
@@ -79,14 +88,43 @@ void replay(const std::vector<fs::path>& files) {
     std::printf("%zu inputs\n", files.size());
 }
 
+std::string input_file;
+/// The input at work.
+const char* at_work = nullptr;
+std::size_t size_at_work = 0;
+
+extern "C" void keep_input(int number) {
+    const int out = open(input_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (out >= 0 && write(out, at_work, size_at_work) >= 0) close(out);
+    std::signal(number, SIG_DFL);
+    raise(number);
+}
+
+/// Keeps the input whatever ends the process, an endless recursion as well.
+void keep_what_ends_this() {
+    static std::array<char, 1 << 16> stack;
+    const stack_t other{stack.data(), 0, stack.size()};
+    sigaltstack(&other, nullptr);
+    input_file = fs::absolute("input").string();
+    struct sigaction action = {};
+    action.sa_handler = keep_input;
+    action.sa_flags = SA_ONSTACK;
+    for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPROF, SIGTERM})
+        sigaction(number, &action, nullptr);
+}
+
 void mutate(const std::vector<fs::path>& files, double seconds) {
     constexpr std::size_t most = 20'000;
+    constexpr itimerval longest = {{0, 0}, {10, 0}};
     using Clock = std::chrono::steady_clock;
     const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-    const fs::path kept = fs::absolute("input");
+    std::vector<std::string> inputs;
+    for (const fs::path& file : files) inputs.push_back(content(file));
+    keep_what_ends_this();
     std::size_t executions = 0;
+    std::string bytes;
     for (; Clock::now() < end; ++executions) {
-        std::string bytes = content(files[below(files.size())]);
+        bytes = inputs[below(inputs.size())];
         std::size_t size = std::min(bytes.size(), most);
         bytes.resize(most);
         auto* const data = reinterpret_cast<std::uint8_t*>(bytes.data());
@@ -95,10 +133,15 @@ void mutate(const std::vector<fs::path>& files, double seconds) {
                        ? LLVMFuzzerCustomMutator(data, size, most, static_cast<unsigned>(chance()))
                        : LLVMFuzzerMutate(data, size, most);
         bytes.resize(size);
-        std::ofstream(kept, std::ios::binary) << bytes;
+        at_work = bytes.data();
+        size_at_work = size;
+        setitimer(ITIMER_PROF, &longest, nullptr);
         read(bytes);
     }
-    std::printf("%zu executions\n", executions);
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    std::printf("%zu executions, %ld s of processor time, %ld MB at most\n", executions,
+                used.ru_utime.tv_sec + used.ru_stime.tv_sec, used.ru_maxrss / 1024);
 }
 
 }  // namespace
