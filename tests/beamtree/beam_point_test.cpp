@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -272,6 +273,129 @@ TEST(BeamPoint, TakesFourCornersWhereSomeLieOnThePlane) {
         ASSERT_EQ(test_beam(set, beam, TestPlane({1, 0.5F, 0}, Vec3::UnitZ()), hits), 1) << height;
         EXPECT_NEAR(hits[0].area, 4.375, 1e-6) << height;
         EXPECT_NEAR(hits[0].flux_share, 1, 1e-6) << height;
+    }
+}
+
+// Parallel light brings each point of a triangle straight down: where the light left, and how dense it is, are the same for
+// what is left of a triangle that the plane cuts, whichever way.
+TEST(BeamPoint, TellsWhereParallelLightLeftATriangleThatIsCut) {
+    const Vec3 down(0, -0.6F, -0.8F);
+    Rng rng(5, Stage::test, 0);
+    const auto number = [&rng] { return 2 * rng.next() - 1; };
+    std::array<int, 4> hits_by_corners_above = {};
+    for (int i = 0; i < 5000; ++i) {
+        std::array<VertexRay, 3> rays;
+        std::size_t above = 0;
+        for (VertexRay& ray : rays) {
+            ray = {{number(), number(), number()}, down};
+            above += ray.position.z() > 0;
+        }
+        const BeamSet set = three_rays(rays);
+        const auto foot = [&](const Vec3& p) { return Vec3(p + p.z() / 0.8F * down); };
+        const float u = rng.next(), v = rng.next() * (1 - u);
+        const Vec3 from =
+            (1 - u - v) * rays[0].position + u * rays[1].position + v * rays[2].position;
+        std::array<BeamHit, 2> hits;
+        const int count = test_beam(set, set.beams[0], TestPlane(foot(from), Vec3::UnitZ()), hits);
+        if (std::abs(from.z()) < 1e-3F) continue;
+        EXPECT_EQ(count, from.z() > 0 ? 1 : 0);
+        if (count == 0) continue;
+        Vec3 left = Vec3::Zero();
+        for (std::size_t k = 0; k < 3; ++k)
+            left += hits[0].weights[static_cast<Eigen::Index>(k)] * rays[k].position;
+        const Vec3 side = foot(rays[1].position) - foot(rays[0].position);
+        const Vec3 other = foot(rays[2].position) - foot(rays[0].position);
+        const auto whole = static_cast<double>(side.cross(other).norm()) / 2;
+        if (whole < 0.05) continue;
+        ++hits_by_corners_above[above];
+        EXPECT_LT((left - from).norm(), 1e-3F) << i;
+        EXPECT_NEAR(hits[0].flux_share / hits[0].area * whole, 1, 1e-4) << i;
+    }
+    for (const std::size_t above : {1U, 2U, 3U}) EXPECT_GT(hits_by_corners_above[above], 300);
+}
+
+/// Three rays from places at any height, most of them down.
+std::array<VertexRay, 3> wild_rays(Rng& rng) {
+    std::array<VertexRay, 3> rays;
+    for (VertexRay& ray : rays) {
+        const Vec3 way(2 * rng.next() - 1, 2 * rng.next() - 1, 0.3F - 1.3F * rng.next());
+        ray = {{2 * rng.next() - 1, 2 * rng.next() - 1, 1.2F * rng.next() - 0.2F},
+               way.normalized()};
+    }
+    return rays;
+}
+
+TEST(BeamPoint, WeightsAreThoseOfAMean) {
+    Rng rng(6, Stage::test, 0);
+    int hits_of_all = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const BeamSet set = three_rays(wild_rays(rng));
+        const Vec3 point(3 * rng.next() - 1.5F, 3 * rng.next() - 1.5F, 0);
+        std::array<BeamHit, 2> hits;
+        if (test_beam(set, set.beams[0], TestPlane(point, Vec3::UnitZ()), hits) == 0) continue;
+        ++hits_of_all;
+        EXPECT_GE(hits[0].weights.minCoeff(), 0) << i;
+        EXPECT_NEAR(hits[0].weights.sum(), 1, 1e-5) << i;
+    }
+    EXPECT_GT(hits_of_all, 5000);
+}
+
+// Whichever corner of three has the light that comes down most steeply, or least. (Where the plane across the light cuts the
+// triangle the corners of what is left are taken by turns.)
+TEST(BeamPoint, DoesNotDependOnWhichCornerIsFirst) {
+    Rng rng(7, Stage::test, 0);
+    int hits_of_all = 0;
+    int uneven = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        std::array<VertexRay, 3> rays;
+        std::vector<float> steepness;
+        for (VertexRay& ray : rays) {
+            const Vec3 way(rng.next(), rng.next() - 0.5F, -0.3F - rng.next());
+            ray = {{2 * rng.next() - 1, 2 * rng.next() - 1, 0.2F * rng.next()}, way.normalized()};
+            steepness.push_back(-ray.direction.z());
+        }
+        const TestPlane plane({2 * rng.next() - 0.5F, 2 * rng.next() - 1, -0.3F}, Vec3::UnitZ());
+        std::array<double, 3> density = {};
+        for (std::size_t first = 0; first < 3; ++first) {
+            const BeamSet set = three_rays(rays);
+            std::array<BeamHit, 2> hits;
+            if (test_beam(set, set.beams[0], plane, hits) == 1)
+                density[first] = hits[0].flux_share / hits[0].area;
+            std::rotate(rays.begin(), rays.begin() + 1, rays.end());
+        }
+        EXPECT_NEAR(density[1], density[0], 0.1 * density[0]) << i;
+        EXPECT_NEAR(density[2], density[0], 0.1 * density[0]) << i;
+        hits_of_all += density[0] > 0;
+        const auto [least, most] = std::ranges::minmax(steepness);
+        uneven +=
+            density[0] > 0 && static_cast<double>(most) > most_uneven * static_cast<double>(least);
+    }
+    EXPECT_GT(hits_of_all, 1000);
+    EXPECT_GT(uneven, 100);
+}
+
+// The plane cuts one triangle of the two: each has its own light then.
+TEST(BeamPoint, TakesTrianglesOfFourCornersApartWhereThePlaneCutsOne) {
+    const std::array<Vec3, 4> corners = {Vec3(0, 0, 1), Vec3(2, 0, 1), Vec3(2, 1, 1),
+                                         Vec3(0, 1, -1)};
+    for (const bool cut_first : {false, true}) {
+        BeamSet set;
+        for (std::size_t i = 0; i < 4; ++i)
+            set.rays.push_back({corners[(i + (cut_first ? 2 : 0)) % 4], -Vec3::UnitZ()});
+        Beam beam;
+        beam.corners = {0, 1, 2, 3};
+        beam.first_share = 0.5F;
+        set.beams = {beam};
+        std::array<BeamHit, 2> hits;
+        const std::uint8_t whole = cut_first ? 1 : 0;
+        ASSERT_EQ(test_beam(set, beam, TestPlane({1.5F, 0.2F, 0}, Vec3::UnitZ()), hits), 1);
+        EXPECT_EQ(hits[0].triangle, whole);
+        EXPECT_NEAR(hits[0].area, 1, 1e-6);
+        EXPECT_NEAR(hits[0].flux_share, 0.5, 1e-6);
+        ASSERT_EQ(test_beam(set, beam, TestPlane({0.5F, 0.35F, 0}, Vec3::UnitZ()), hits), 1);
+        EXPECT_EQ(hits[0].triangle, 1 - whole);
+        EXPECT_NEAR(hits[0].area, 0.75, 1e-6);
+        EXPECT_NEAR(hits[0].flux_share, 0.375, 1e-6);
     }
 }
 

@@ -174,5 +174,62 @@ TEST(Hierarchy, HoldsBeamsOutsideOfThePatchesAndManyOfOneTriangle) {
     }
 }
 
+const BeamSet& refracted(const BeamScene& scene) {
+    return *std::ranges::find_if(scene.sets, [](const BeamSet& set) { return set.refracted; });
+}
+
+// Nodes of narrow caps are told by a single cone, others by two: which is which says a scan over the nodes' rays.
+TEST(ConeTree, OfTheHybridBoundHasSingleConesBelowTheThreshold) {
+    const BeamScene pool("pool", pool_desc(8));
+    const BeamSet& set = refracted(pool);
+    const Hierarchy hierarchy = binned_hierarchy(set, receiver_planes(set)[0].beams, 1);
+    const auto bytes = [&](Bound bound, double threshold) {
+        const ConeTreeSettings settings{.bound = bound, .spread_threshold = threshold};
+        return ConeTree(set, 0, hierarchy, settings, Vec3(Vec3::UnitZ())).bytes();
+    };
+    const std::uint64_t swept = hierarchy.nodes.size() * sizeof(SweptSphere);
+    const std::uint64_t of_nodes = bytes(Bound::sphere_swept, 0) - swept;
+    for (const double threshold : {0.0, 1.0, 3.0, 10.0, 60.0}) {
+        std::uint64_t narrow = 0;
+        for (const Hierarchy::Node& node : hierarchy.nodes)
+            narrow +=
+                smallest_cap(
+                    rays_of(set,
+                            std::span(hierarchy.order).subspan(node.first_beam, node.beam_count))
+                        .directions)
+                    .angle() < threshold * pi_d / 180;
+        const std::uint64_t wide = hierarchy.nodes.size() - narrow;
+        if (threshold == 3) {
+            EXPECT_GT(narrow, 10U);
+            EXPECT_GT(wide, 10U);
+        }
+        EXPECT_EQ(bytes(Bound::hybrid, threshold) - of_nodes,
+                  narrow * sizeof(SingleCone) + wide * (sizeof(SweptSphere) + sizeof(DoubleCone)))
+            << threshold;
+    }
+}
+
+// README.md: a parent by its own rays is tighter than one by its children's cones.
+TEST(ConeTree, AsksFewerNodesWhereParentsAreMadeOfTheirRays) {
+    const BeamScene pool("pool", pool_desc(16));
+    const BeamSet& set = refracted(pool);
+    const Hierarchy hierarchy = binned_hierarchy(set, receiver_planes(set)[0].beams, 1);
+    const auto tests = [&](ConeTreeSettings::Merging merging) {
+        const ConeTree tree(set, 0, hierarchy,
+                            {.bound = Bound::double_cone, .merging = merging, .reach = 2},
+                            Vec3(Vec3::UnitZ()));
+        Rng rng(2, Stage::test, 0);
+        std::vector<std::uint32_t> stack;
+        std::vector<BeamHit> hits;
+        SearchCounts counts;
+        for (int i = 0; i < 2000; ++i)
+            tree.find(set, {2 * rng.next() - 1, 2 * rng.next() - 1, -1}, Vec3::UnitZ(), stack, hits,
+                      counts);
+        EXPECT_GT(hits.size(), 1000U);
+        return counts.cone_point_tests;
+    };
+    EXPECT_LT(tests(ConeTreeSettings::Merging::rays), tests(ConeTreeSettings::Merging::cones));
+}
+
 }  // namespace
 }  // namespace caustics::beamtree

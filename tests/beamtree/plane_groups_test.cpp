@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "core/math/rng.h"
+#include "core/math/sampling.h"
+
 namespace caustics::beamtree {
 namespace {
 
@@ -58,6 +63,33 @@ TEST(PlaneGroups, AreOneForEachAxisAndOneForBeamsThatSpreadTooFar) {
     }
     EXPECT_FALSE(groups[6].normal);
     EXPECT_EQ(groups[6].beams, std::vector<std::uint32_t>{6});
+}
+
+// Caps as wide as a fixed plane allows, but for rounding: its rays all come down to it steeply enough.
+TEST(PlaneGroups, HoldNoRayThatComesDownLessThanTheLeastSine) {
+    Rng rng(3, Stage::test, 0);
+    int of_caps = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3d axis = uniform_cap(2, rng.next(), rng.next()).cast<double>().normalized();
+        const double cosine = static_cast<double>(least_sine + 4e-6F * rng.next() - 2e-6F);
+        const double sine = std::sqrt(1 - cosine * cosine);
+        const Vec3d s = axis.unitOrthogonal();
+        const Vec3d t = axis.cross(s);
+        BeamSet set;
+        for (const Vec3d& aside : {s, Vec3d(-s), t})
+            set.rays.push_back({Vec3::Zero(), (cosine * axis + sine * aside).cast<float>()});
+        Beam beam;
+        beam.corners = {0, 1, 2, Beam::none};
+        set.beams = {beam};
+        for (const PlaneGroup& group : fixed_planes(set)) {
+            if (!group.normal) continue;
+            of_caps += group.normal->cwiseAbs().maxCoeff() < 1;
+            for (const VertexRay& ray : set.rays)
+                EXPECT_GE(-group.normal->cast<double>().dot(ray.direction.cast<double>()),
+                          static_cast<double>(least_sine));
+        }
+    }
+    EXPECT_GT(of_caps, 500);
 }
 
 }  // namespace

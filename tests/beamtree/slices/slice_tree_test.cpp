@@ -10,6 +10,7 @@
 
 #include "beamtree/beam_tree.h"
 #include "beamtree/cones/plane_groups.h"
+#include "beamtree/light/find_in_beam.h"
 #include "beamtree/slices/slice_box.h"
 #include "core/math/sampling.h"
 #include "tests/beamtree/beam_scenes.h"
@@ -327,6 +328,186 @@ TEST(SliceTree, TellsItsMemory) {
             count == 8 ? sizeof(SliceLeaf) : 2 * sizeof(SliceLeaf) + sizeof(SliceNode);
         EXPECT_EQ(tree.bytes(), of_beams + of_nodes);
     }
+}
+
+// Rays of a grid of triangles from a square of one half side to one of another, 1 m below.
+BeamSet between_squares(std::uint32_t cells, float above, float below) {
+    BeamSet set;
+    for (std::uint32_t i = 0; i <= cells; ++i)
+        for (std::uint32_t j = 0; j <= cells; ++j) {
+            const Vec3 from = above * Vec3(static_cast<float>(i), static_cast<float>(j), 0);
+            const Vec3 to =
+                below * Vec3(static_cast<float>(i), static_cast<float>(j), 0) - Vec3::UnitZ();
+            set.rays.push_back({from, (to - from).normalized()});
+        }
+    for (std::uint32_t i = 0; i < cells; ++i)
+        for (std::uint32_t j = 0; j < cells; ++j) {
+            const std::uint32_t a = i * (cells + 1) + j;
+            Beam beam;
+            beam.corners = {a, a + cells + 1, a + cells + 2, Beam::none};
+            set.beams.push_back(beam);
+            beam.corners = {a, a + cells + 2, a + 1, Beam::none};
+            set.beams.push_back(beam);
+        }
+    return set;
+}
+
+// Beams may be as narrow as rounding on either plane, and far apart: on the edges that two of them share a point is found as a
+// scan finds it.
+TEST(SliceTree, FindsWhatIsOnEdgesWhereBeamsAreNarrow) {
+    for (const auto& [above, below] : {std::pair(1.0F, 1.0F),
+                                       {1.0F, 1e-5F},
+                                       {1e-5F, 1.0F},
+                                       {300.0F, 300.0F},
+                                       {300.0F, 200.0F}}) {
+        const std::vector<BeamSet> sets = {between_squares(6, above, below)};
+        const float far = 7 * std::max(above, below);
+        const SliceTree tree(all_of(sets, box_of({-1, -1, -1}, {far, far, 0})), widest_isa());
+        Rng rng(11, Stage::test, 0);
+        std::size_t hits = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const float depth = 0.02F + 0.96F * rng.next();
+            const float along = i % 5 == 0 ? 0 : rng.next();
+            const auto rays = sets[0].triangle(sets[0].beams[rng.next_word() % 72], 0);
+            const auto at = [&](const VertexRay& ray) {
+                return Vec3(ray.position + depth / -ray.direction.z() * ray.direction);
+            };
+            const Vec3 point = (1 - along) * at(*rays[0]) + along * at(*rays[1]);
+            const auto truth = scanned(sets[0], point);
+            EXPECT_EQ(found_in(tree, sets, point), truth) << above << " to " << below;
+            hits += truth.size();
+        }
+        EXPECT_GT(hits, 3000U);
+    }
+}
+
+/// Rays whose starts and ways move with the wavelength, by at most so much along both axes.
+std::vector<BeamSet> drifting_beams(const Vec2& size, const Vec2& drift, float begins) {
+    std::vector<BeamSet> sets = {between_squares(4, 1, 1)};
+    BeamSet& set = sets[0];
+    set.light.drifts = true;
+    Rng rng(8, Stage::test, 0);
+    for (VertexRay& ray : set.rays) {
+        ray.position = Vec3(size.x() * ray.position.x(), size.y() * ray.position.y(), 0);
+        ray.position += begins * rng.next() * ray.direction;
+        const Vec3 by((rng.next_word() % 2 == 0 ? 1.0F : -1.0F) * drift.x(),
+                      (rng.next_word() % 2 == 0 ? 1.0F : -1.0F) * drift.y(), 0);
+        set.ends[0].push_back({ray.position - by, ray.direction});
+        set.ends[1].push_back({ray.position + by, ray.direction});
+    }
+    return sets;
+}
+
+// A triangle of a leaf must allow for all that its corners move.
+TEST(SliceTree, FollowsBeamsThatDrift) {
+    for (const Vec2& size : {Vec2(1, 1), Vec2(20, 0.5F), Vec2(0.5F, 20)})
+        for (const Vec2& share : {Vec2(0.2F, 0.2F), Vec2(0.4F, 0), Vec2(0, 0.4F)})
+            for (const float begins : {0.0F, 0.8F}) {
+                const std::vector<BeamSet> sets =
+                    drifting_beams(size, size.cwiseProduct(share), begins);
+                const BeamSet& set = sets[0];
+                const Vec3 far(5 * size.x(), 5 * size.y(), 0);
+                const SliceTree tree(all_of(sets, box_of({-far.x(), -far.y(), -1}, far)),
+                                     widest_isa());
+                Rng rng(12, Stage::test, 0);
+                std::size_t hits = 0;
+                for (int i = 0; i < 2000; ++i) {
+                    // Near the edges of a triangle at one end of the bin.
+                    const double place = i % 2 == 0 ? 1 : -1;
+                    const auto rays =
+                        set.triangle(set.beams[rng.next_word() % set.beams.size()], 0, place);
+                    const float depth = 0.05F + 0.9F * rng.next();
+                    const float along = rng.next();
+                    const Vec3 from = (1 - along) * rays[0].position + along * rays[1].position;
+                    const Vec3 inside = from + 0.05F * rng.next() * (rays[2].position - from);
+                    const Vec3 point(inside.x(), inside.y(), -depth);
+                    std::vector<std::uint32_t> truth;
+                    std::vector<BeamHit> found;
+                    SearchCounts counts;
+                    for (std::uint32_t beam = 0; beam < set.beams.size(); ++beam)
+                        find_in_beam(set, {0, beam}, {point, Vec3::UnitZ()}, found, counts);
+                    for (const BeamHit& hit : found) truth.push_back(hit.beam);
+                    std::ranges::sort(truth);
+                    EXPECT_EQ(found_in(tree, sets, point), truth)
+                        << size.transpose() << ", " << share.transpose() << ", " << begins << ": "
+                        << point.transpose();
+                    hits += truth.size();
+                }
+                EXPECT_GT(hits, 500U);
+            }
+}
+
+/// Sixteen times the same beam: two leaves, and the node above them. The triangle at the top shrinks by a factor on its way
+/// down, and moves along x.
+std::vector<BeamSet> one_beam_often(const Vec2& size, float shrinks, float moves) {
+    std::vector<BeamSet> sets(1);
+    for (const Vec2& at : {Vec2(0, 0), Vec2(size.x(), 0), Vec2(0, size.y())}) {
+        const Vec3 from(at.x(), at.y(), 0);
+        const Vec3 to(shrinks * at.x() + moves, shrinks * at.y(), -1);
+        sets[0].rays.push_back({from, (to - from).normalized()});
+    }
+    Beam beam;
+    beam.corners = {0, 1, 2, Beam::none};
+    sets[0].beams.resize(16, beam);
+    return sets;
+}
+
+// How often the tree of one_beam_often is walked through for two points inside.
+std::uint64_t walks_for(const std::vector<BeamSet>& sets, const Vec3& a, const Vec3& b) {
+    const SliceTree tree(all_of(sets, box_of({0, 0, -1}, {1, 1, 0})), widest_isa());
+    EXPECT_EQ(tree.node_count(), 3U);
+    std::array<ReceiverPoint, 2> points;
+    points[0].position = a;
+    points[1].position = b;
+    std::vector<std::uint32_t> stack;
+    std::array<std::vector<BeamHit>, 2> hits;
+    SearchCounts counts;
+    tree.find(sets, points, stack, hits, counts);
+    // Each point is tested against sixteen triangles, each walk against the boxes of two leaves.
+    return (counts.cone_point_tests - 2 * 16) / 2;
+}
+
+// Mean over both planes: a half and a whole of the longer side make up three quarters.
+TEST(SliceTree, WalksOnceForPointsWithinHalfALeafOfEachOther) {
+    for (const Vec2& size : {Vec2(1, 0.7F), Vec2(0.7F, 1)}) {
+        const std::vector<BeamSet> sets = one_beam_often(size, 0.5F, 0);
+        const float half_leaf = 0.75F / 2;
+        const Vec3 a(0.05F, 0.05F, -0.1F);
+        for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
+            EXPECT_EQ(walks_for(sets, a, a + 0.95F * half_leaf * axis), 1U);
+            EXPECT_EQ(walks_for(sets, a, a + 1.05F * half_leaf * axis), 2U);
+        }
+        // Rays that stay where they are may be asked about at all heights together.
+        EXPECT_EQ(walks_for(sets, a, a - 0.8F * Vec3::UnitZ()), 1U);
+    }
+    // And no more down than rays move by that.
+    const float moves = 2;
+    const std::vector<BeamSet> sets = one_beam_often({1, 0.7F}, 0.5F, moves);
+    const float most = 0.75F / 2 / moves;
+    const Vec3 a(1, 0.05F, -0.2F);
+    EXPECT_EQ(walks_for(sets, a, a - 0.95F * most * Vec3::UnitZ()), 1U);
+    EXPECT_EQ(walks_for(sets, a, a - 1.05F * most * Vec3::UnitZ()), 2U);
+}
+
+// Sixty-four leaves of eight triangles: eight nodes of eight, and the root.
+TEST(SliceTree, IsEightWideWhereItsHierarchyIsEven) {
+    const std::vector<BeamSet> sets = {lens(16, {0.5F, 0.5F, -1}, Vec3::Zero())};
+    Hierarchy halves;
+    halves.order.resize(512);
+    std::iota(halves.order.begin(), halves.order.end(), 0U);
+    halves.nodes.push_back({0, 512, 0, 0});
+    for (std::uint32_t i = 0; i < halves.nodes.size(); ++i) {
+        Hierarchy::Node& node = halves.nodes[i];
+        if (node.beam_count == 1) continue;
+        const std::uint32_t first = node.first_beam, half = node.beam_count / 2;
+        node.first_child = static_cast<std::uint32_t>(halves.nodes.size());
+        node.child_count = 2;
+        halves.nodes.push_back({first, half, 0, 0});
+        halves.nodes.push_back({first + half, half, 0, 0});
+    }
+    const SliceTree tree(all_of(sets, box_of({0, 0, -2}, {1, 1, 0})), halves, widest_isa());
+    EXPECT_EQ(tree.node_count(), 1U + 8U + 64U);
+    EXPECT_EQ(tree.height(), 3U);
 }
 
 TEST(SliceTree, RefusesPointsBelowItsSlab) {
