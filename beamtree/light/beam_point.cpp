@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "beamtree/light/projected.h"
 
@@ -214,15 +215,13 @@ bool is_uneven(const std::array<RayOnPlane, 3>& rays) {
     }
 }
 
-BeamHit hit_in(const Projected& found, std::size_t triangle, const TestPlane& plane) {
-    BeamHit hit;
+void write_hit(const Projected& found, std::size_t triangle, const TestPlane& plane, BeamHit& hit) {
     hit.plane_normal = plane.normal().cast<float>();
     hit.triangle = static_cast<std::uint8_t>(triangle);
     hit.winding = static_cast<std::int8_t>(found.winding > 0 ? 1 : -1);
     hit.weights = found.weights.cast<float>();
     hit.area = std::abs(found.area) * plane.area_scale();
     hit.flux_share = found.share;
-    return hit;
 }
 
 // Of a triangle; less is cut off by the rounding of a corner that lies on the plane.
@@ -251,7 +250,7 @@ inline Tested test_triangle(const Corners& corners, const TestPlane& plane) {
 // Four corners that keep their orientation and are lit evenly are one caustic polygon; otherwise each
 // triangle keeps its own flux.
 int test_quad(const std::array<const VertexRay*, 4>& rays, const Beam& beam, const TestPlane& plane,
-              std::array<BeamHit, 2>& hits) {
+              std::vector<BeamHit>& hits) {
     const std::array<Tested, 2> parts = {test_triangle(Corners{rays[0], rays[1], rays[2]}, plane),
                                          test_triangle(Corners{rays[0], rays[2], rays[3]}, plane)};
     const bool together =
@@ -259,12 +258,13 @@ int test_quad(const std::array<const VertexRay*, 4>& rays, const Beam& beam, con
     int written = 0;
     for (std::size_t i = 0; i < 2; ++i) {
         if (!parts[i].is_hit()) continue;
-        BeamHit hit = hit_in(parts[i].found, i, plane);
+        BeamHit& hit = hits.emplace_back();
+        write_hit(parts[i].found, i, plane, hit);
         if (together)
             hit.area = std::abs(parts[0].found.area + parts[1].found.area) * plane.area_scale();
         else
             hit.flux_share *= beam.share_of(i);
-        hits[static_cast<std::size_t>(written++)] = hit;
+        ++written;
     }
     return written;
 }
@@ -272,11 +272,11 @@ int test_quad(const std::array<const VertexRay*, 4>& rays, const Beam& beam, con
 }  // namespace
 
 int test_beam(const std::array<const VertexRay*, 4>& rays, const Beam& beam, const TestPlane& plane,
-              std::array<BeamHit, 2>& hits) {
+              std::vector<BeamHit>& hits) {
     if (rays[3] != nullptr) return test_quad(rays, beam, plane, hits);
     const Tested only = test_triangle(Corners{rays[0], rays[1], rays[2]}, plane);
     if (!only.is_hit()) return 0;
-    hits[0] = hit_in(only.found, 0, plane);
+    write_hit(only.found, 0, plane, hits.emplace_back());
     return 1;
 }
 
@@ -285,14 +285,19 @@ int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
     std::array<const VertexRay*, 4> rays = {};
     for (std::size_t i = 0; i < 4; ++i)
         if (beam.corners[i] != Beam::none) rays[i] = &set.rays[beam.corners[i]];
-    return test_beam(rays, beam, plane, hits);
+    std::vector<BeamHit> found;
+    const int count = test_beam(rays, beam, plane, found);
+    std::ranges::copy(found, hits.begin());
+    return count;
 }
 
 std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, std::size_t number,
                                      const TestPlane& plane) {
     const Tested tested = test_triangle(Corners{&corners[0], &corners[1], &corners[2]}, plane);
     if (!tested.is_hit()) return {};
-    return hit_in(tested.found, number, plane);
+    std::optional<BeamHit> hit(std::in_place);
+    write_hit(tested.found, number, plane, *hit);
+    return hit;
 }
 
 }  // namespace caustics::beamtree

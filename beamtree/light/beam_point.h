@@ -48,9 +48,9 @@ struct BeamHit {
 /// share / area is the density at the point.
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
               std::array<BeamHit, 2>& hits);
-/// The same for copies of the beam's rays; the last is null where it has three corners.
+/// The same for copies of the beam's rays, the last of which is null where it has three corners; appends the hits.
 int test_beam(const std::array<const VertexRay*, 4>& rays, const Beam& beam, const TestPlane& plane,
-              std::array<BeamHit, 2>& hits);
+              std::vector<BeamHit>& hits);
 
 /// One triangle of three rays at the point that the plane goes through; `number` is the triangle's.
 std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, std::size_t number,

@@ -25,12 +25,10 @@ void find_in_beam(const BeamSet& set, const BeamNumber& number, const TestPlane&
 void find_in_beam(const BeamSet& set, const std::array<const VertexRay*, 4>& rays,
                   const BeamNumber& number, const TestPlane& plane, std::vector<BeamHit>& hits,
                   SearchCounts& counts) {
-    std::array<BeamHit, 2> found;
-    const int count = test_beam(rays, set.beams[number.beam], plane, found);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        found[i].set = number.set;
-        found[i].beam = number.beam;
-        hits.push_back(found[i]);
+    const int count = test_beam(rays, set.beams[number.beam], plane, hits);
+    for (int i = 1; i <= count; ++i) {
+        hits.end()[-i].set = number.set;
+        hits.end()[-i].beam = number.beam;
     }
     ++counts.beam_point_tests;
     counts.beam_point_hits += count > 0 ? 1 : 0;

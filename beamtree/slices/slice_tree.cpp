@@ -212,14 +212,29 @@ void SliceTree::keep_corners(std::span<const BeamSet> sets) {
         }
 }
 
+/// Points, and the squares that some are asked about in their place.
+struct SliceTree::Asked {
+    std::span<const ReceiverPoint> points;
+    std::vector<std::optional<BeamSquare>> squares;  ///< none where no point has one
+
+    explicit Asked(std::span<const ReceiverPoint> all) : points(all) {
+        const auto has_cell = [](const ReceiverPoint& point) { return point.cell != nullptr; };
+        if (std::ranges::none_of(points, has_cell)) return;
+        squares.resize(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (has_cell(points[i]))
+                squares[i] = BeamSquare::at(points[i].position, *points[i].cell);
+    }
+    const BeamSquare* square(std::uint32_t point) const {
+        return squares.empty() || !squares[point] ? nullptr : &*squares[point];
+    }
+};
+
 /// Points near each other, each with its number among those that were asked about.
 struct SliceTree::Group {
     static constexpr std::uint32_t room = 16;
     std::array<SlicePoint, room> points;
     std::array<std::uint32_t, room> number;
-    std::array<const Vec3*, room> position;
-    std::array<std::optional<BeamSquare>, room>
-        square;  ///< that is asked about in the point's place
     std::uint32_t count = 0;
     /// x, y, share, and nothing.
     Eigen::Array4f low;
@@ -253,10 +268,11 @@ bool SliceTree::place(const ReceiverPoint& point, SlicePoint& placed) const {
     if (height - reach.down > frame_.top()) return false;
     if (height < frame_.bottom()) throw std::out_of_range("a receiver point below the slab");
     const Vec2d across = frame_.across(point.position.cast<double>());
+    const auto share = static_cast<float>(frame_.share(std::min(height, frame_.top())));
     placed = {{static_cast<float>(across.x()), static_cast<float>(across.y())},
-              static_cast<float>(frame_.share(std::min(height, frame_.top()))),
+              share,
               {static_cast<float>(reach.across.x()), static_cast<float>(reach.across.y())},
-              static_cast<float>(frame_.share(height - reach.down))};
+              reach.down == 0 ? share : static_cast<float>(frame_.share(height - reach.down))};
     return true;
 }
 
@@ -266,6 +282,7 @@ void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoin
     // Half a leaf across, and no more down than rays move by that.
     const float reach = leaf_width_ / 2;
     const Eigen::Array4f largest(reach, reach, reach / std::max(travel_, reach), 1);
+    const Asked asked(points);
     std::array<Group, groups_together> groups;
     std::size_t count = 0;  // of groups that have points
     for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -273,7 +290,7 @@ void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoin
         if (!place(points[i], point)) continue;
         if (count == 0 || !groups[count - 1].take(point, largest)) {
             if (count == groups.size()) {
-                find(groups, sets, stack, hits, counts);
+                find(groups, asked, sets, stack, hits, counts);
                 count = 0;
             }
             groups[count].count = 0;
@@ -281,17 +298,13 @@ void SliceTree::find(std::span<const BeamSet> sets, std::span<const ReceiverPoin
         }
         Group& group = groups[count - 1];
         group.number[group.count - 1] = i;
-        group.position[group.count - 1] = &points[i].position;
-        std::optional<BeamSquare>& square = group.square[group.count - 1];
-        square.reset();
-        if (points[i].cell != nullptr) square = BeamSquare::at(points[i].position, *points[i].cell);
     }
-    if (count > 0) find(std::span(groups).first(count), sets, stack, hits, counts);
+    if (count > 0) find(std::span(groups).first(count), asked, sets, stack, hits, counts);
 }
 
-void SliceTree::find(std::span<const Group> groups, std::span<const BeamSet> sets,
-                     std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
-                     SearchCounts& counts) const {
+void SliceTree::find(std::span<const Group> groups, const Asked& asked,
+                     std::span<const BeamSet> sets, std::vector<std::uint32_t>& stack,
+                     std::span<std::vector<BeamHit>> hits, SearchCounts& counts) const {
     constexpr std::size_t found_room = 16 * Group::room;
     std::array<std::array<SliceCandidate, found_room>, groups_together> found;
     std::array<SliceWalk, groups_together> walks;
@@ -320,7 +333,7 @@ void SliceTree::find(std::span<const Group> groups, std::span<const BeamSet> set
         walk_(view, walks.data(), groups.size());
         more = false;
         for (std::size_t i = 0; i < groups.size(); ++i) {
-            test(walks[i], groups[i], sets, hits, counts);
+            test(walks[i], groups[i], asked, sets, hits, counts);
             walks[i].found_count = 0;
             more = more || walks[i].stacked > 0;
         }
@@ -329,8 +342,9 @@ void SliceTree::find(std::span<const Group> groups, std::span<const BeamSet> set
 }
 
 // Exactly, what a walk has found.
-void SliceTree::test(const SliceWalk& walk, const Group& group, std::span<const BeamSet> sets,
-                     std::span<std::vector<BeamHit>> hits, SearchCounts& counts) const {
+void SliceTree::test(const SliceWalk& walk, const Group& group, const Asked& asked,
+                     std::span<const BeamSet> sets, std::span<std::vector<BeamHit>> hits,
+                     SearchCounts& counts) const {
     TestPlane plane = plane_;
     SliceCandidate last{Group::room, 0};
     for (std::size_t i = 0; i < walk.found_count; ++i) {
@@ -340,8 +354,9 @@ void SliceTree::test(const SliceWalk& walk, const Group& group, std::span<const 
         last = candidate;
         const BeamNumber& number = beams_[candidate.beam];
         const BeamSet& set = sets[number.set];
-        plane.move_to(*group.position[candidate.point]);
-        std::vector<BeamHit>& found_here = hits[group.number[candidate.point]];
+        const std::uint32_t point = group.number[candidate.point];
+        plane.move_to(asked.points[point].position);
+        std::vector<BeamHit>& found_here = hits[point];
         if (corner_count_ == 0) {
             find_in_beam(set, number, plane, found_here, counts);
             continue;
@@ -349,7 +364,7 @@ void SliceTree::test(const SliceWalk& walk, const Group& group, std::span<const 
         const VertexRay* const corner = corners_.data() + candidate.beam * corner_count_;
         std::array<const VertexRay*, 4> rays = {corner, corner + 1, corner + 2, nullptr};
         if (corner_count_ == 4 && !corner[3].direction.isZero(0)) rays[3] = corner + 3;
-        if (const auto& square = group.square[candidate.point])
+        if (const BeamSquare* const square = asked.square(point))
             find_on_square(set, rays, number, plane, *square, found_here, counts);
         else
             find_in_beam(set, rays, number, plane, found_here, counts);

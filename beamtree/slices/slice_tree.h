@@ -51,15 +51,17 @@ public:
     std::uint64_t bytes() const;
 
 private:
+    struct Asked;
     struct Group;
     SliceTree(SlicedBeams beams, const Hierarchy* hierarchy, Isa isa, int threads);
     bool place(const ReceiverPoint& point, SlicePoint& placed) const;
     void keep_corners(std::span<const BeamSet> sets);
-    void find(std::span<const Group> groups, std::span<const BeamSet> sets,
+    void find(std::span<const Group> groups, const Asked& asked, std::span<const BeamSet> sets,
               std::vector<std::uint32_t>& stack, std::span<std::vector<BeamHit>> hits,
               SearchCounts& counts) const;
-    void test(const SliceWalk& walk, const Group& group, std::span<const BeamSet> sets,
-              std::span<std::vector<BeamHit>> hits, SearchCounts& counts) const;
+    void test(const SliceWalk& walk, const Group& group, const Asked& asked,
+              std::span<const BeamSet> sets, std::span<std::vector<BeamHit>> hits,
+              SearchCounts& counts) const;
 
     std::vector<BeamNumber> beams_;  ///< in the order of the leaves
     /// Copies of the beams' corners in that order, `corner_count_` each (the fourth without a direction where there are
