@@ -373,6 +373,19 @@ TEST(PhotonTree, UnbalancedTellsItsDepth) {
                widest_isa())
         ->add_to(coincident);
     EXPECT_LT(coincident.at("tree_depth"), 400U);
+    // Nor do photons on a plane across an axis: they are parted along the two others.
+    Rng rng(27, Stage::test, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+        photons.clear();
+        for (int i = 0; i < 10'000; ++i) {
+            Vec3 at(rng.next(), rng.next(), rng.next());
+            at[axis] = 0.5F;
+            photons.push_back(photon_at(at));
+        }
+        Counters flat;
+        build_tree(TreeKind::unbalanced, store_of(photons), widest_isa())->add_to(flat);
+        EXPECT_LT(flat.at("tree_depth"), 100U) << axis;
+    }
 }
 
 TEST(PhotonTree, RefusesPositionsThatAreNotFinite) {
