@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "beamtree/beam_tree.h"
+#include "beamtree/light/find_in_beam.h"
 #include "tests/beamtree/beam_scenes.h"
 
 namespace caustics::beamtree {
@@ -275,6 +276,34 @@ TEST(BeamSquare, HoldsTheLightThatBeginsBeyondItsMiddle) {
         for (const float half : {1.0F, 2.0F})
             EXPECT_NEAR(mean_of(1, centre, half) / mean_of(20, centre, half), 1, 0.02)
                 << centre.x() << " " << half;
+}
+
+// Light that runs towards the horizon is not even in its polygon: it is asked at the point, as in find_in_beam.
+TEST(BeamSquare, IsAPointWhereLightComesDownUnevenly) {
+    for (const std::size_t flat : {0U, 1U, 2U}) {
+        BeamSet set;
+        const std::array<Vec3, 3> corners = {Vec3(-1, -1, 1), Vec3(2, -1, 1), Vec3(-1, 2, 1)};
+        for (std::size_t i = 0; i < 3; ++i)
+            set.rays.push_back({corners[i], i == flat ? Vec3(0.96F, 0, -0.28F) : Vec3(0, 0, -1)});
+        Beam beam;
+        beam.corners = {0, 1, 2, Beam::none};
+        set.beams = {beam};
+        const std::array<const VertexRay*, 4> rays = {&set.rays[0], &set.rays[1], &set.rays[2],
+                                                      nullptr};
+        const PixelCell cell = PixelCell::square(Vec3d::UnitZ(), 0.1);
+        std::vector<BeamHit> on_square, at_point;
+        SearchCounts counts;
+        Vec3 point = Vec3::Zero();
+        for (const VertexRay& ray : set.rays)
+            point += (ray.position - ray.direction / ray.direction.z()) / 3;
+        const TestPlane plane(point, Vec3::UnitZ());
+        find_on_square(set, rays, {0, 0}, plane, *BeamSquare::at(point, cell), on_square, counts);
+        find_in_beam(set, rays, {0, 0}, plane, at_point, counts);
+        ASSERT_EQ(at_point.size(), 1U);
+        ASSERT_EQ(on_square.size(), 1U);
+        EXPECT_FALSE(on_square[0].is_part_of_cell());
+        EXPECT_EQ(on_square[0].area, at_point[0].area);
+    }
 }
 
 // Each beam that brings light is one that was tested.

@@ -111,7 +111,7 @@ TEST(GroupGather, BoundsNoSearchByThatOfAnotherSide) {
 TEST(GroupGather, ReachesFromEveryMemberAsFarAsFromTheCentre) {
     for (const Vec3& towards : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0.8F, 0.6F)}) {
         std::vector<Photon> photons;
-        for (int i = 0; i < 60; ++i)
+        for (int i = 0; i < 500; ++i)
             photons.push_back(photon_at((0.05F + 1e-6F * static_cast<float>(i)) * towards));
         for (const float centre : {-0.005F, 0.0F, 0.005F}) {
             std::vector<ReceiverPoint> points;
@@ -136,6 +136,46 @@ TEST(GroupGather, LeavesOutTheOnePhotonOfAnotherSurface) {
         grouped += expect_as_scan(photons, points, {.nearest = 20, .max_radius = 1});
     }
     EXPECT_GT(grouped, 1'000U);
+}
+
+// Copies of where surfaces face are those of the photons copied, to the last bit: the other surface's code differs in its
+// high byte alone, and the common one's has twice the same byte, whatever bytes are taken for it.
+TEST(GroupGather, CopiesWhereSurfacesFaceWhole) {
+    const auto facing = [](unsigned flags) {
+        const Facing at = facing_of(flags);
+        return Vec3d(at.x, at.y, at.z).normalized();
+    };
+    for (const unsigned byte : {8U, 40U, 72U}) {
+        const unsigned common = byte << 8U | byte;
+        const Vec3d normal = facing(common);
+        unsigned other = common;
+        for (unsigned high = 0; high < 123 && facing(other).dot(normal) > -0.5; ++high)
+            other = high << 8U | byte;
+        ASSERT_LT(facing(other).dot(normal), 0);
+        std::vector<Photon> photons = scattered(40, 6);
+        const DirectionCode from = encode_direction(normal.cast<float>());
+        for (Photon& photon : photons) {
+            photon.flags = static_cast<std::uint16_t>(common);
+            photon.theta = from.theta;
+            photon.phi = from.phi;
+        }
+        std::vector<ReceiverPoint> points;
+        for (int i = 0; i < 8; ++i)
+            points.push_back(point_at({1e-3F * static_cast<float>(i), 0, 0}, normal.cast<float>()));
+        const GatherLimits limits{.nearest = 60, .max_radius = 3};
+        GatherScratch scratch;
+        // In the second round the arrays hold what was copied in the first.
+        for (std::size_t i = 0; i <= photons.size(); ++i) {
+            std::vector<Photon> all = photons;
+            if (i > 0) all[i - 1].flags = static_cast<std::uint16_t>(other);
+            all.push_back(photon_at({9, 9, 9}));
+            all.back().flags = static_cast<std::uint16_t>(other);
+            const auto found = gathered(all, points, limits, scratch);
+            for (std::size_t k = 0; k < points.size(); ++k)
+                EXPECT_EQ(found[k], linear_scan(all, points[k], limits)) << byte << " " << i;
+        }
+        EXPECT_EQ(scratch.single_queries, 0U);
+    }
 }
 
 }  // namespace
