@@ -318,6 +318,19 @@ class Page(unittest.TestCase):
         self.assertEqual(len(holes), 4)
         self.assertEqual(len(scene["cells"]), 5)
 
+    def test_a_picture_of_another_trial_is_a_hole(self):
+        row, parameters = {"method": "photonmap", "seed": "2", "spp": "4"}, {"nearest": "50", "tree": "packed", "alpha": "0.1"}
+        said = {"method": "photonmap", "seed": "2", "spp": "4"}
+        texts = lambda given, **known: {f"causticbench.{name}": value for name, value in
+                                        (said | {"parameters": json.dumps(given)} | known).items()}
+        page.require_own(texts({"nearest": 50, "tree": "packed"}), row, parameters)
+        page.require_own({}, row, parameters)
+        for given, known, words in (({"nearest": 20}, {}, "of nearest 20 in place of 50"), ({}, {"seed": "1"}, "of seed 1 in place of 2"),
+                                    ({"tree": "balanced"}, {}, "of tree balanced"), ({}, {"method": "beamtree"}, "of method beamtree"),
+                                    ({}, {"parameters": "[1"}, "no JSON object"), ({}, {"parameters": "[1]"}, "no JSON object")):
+            with self.assertRaisesRegex(exr.PictureError, words):
+                page.require_own(texts(given, **known), row, parameters)
+
     def test_a_missing_reference_is_a_hole(self):
         (self.sweep / "references" / f"{sweep.KEY}.exr").unlink()
         scene, = self.page()["scenes"]

@@ -6,7 +6,7 @@ import pathlib
 import shlex
 
 from report.intervals import student
-from report.records import FORMULAS
+from report.records import FORMULAS, same
 from report import exr
 from report_page import pictures
 from report_page.scenes import COSTS, ERRORS, best_of, rank, seeds_text
@@ -165,6 +165,7 @@ class SceneData:
         found = {"seed": seed, "trial": row["trial"], "hash": row.get("picture_hash", "")}
         try:
             layers, texts = pictures.read(path)
+            require_own(texts, row, cell.parameters)
             size = layers["caustic"].shape[1:]
             if self.size is not None and size != self.size:
                 raise exr.PictureError(f"{size[1]} x {size[0]} pixels beside others of {self.size[1]} x {self.size[0]}")
@@ -224,6 +225,21 @@ def judged_by_another(scene, mean):
         return None
     return (f"the errors of {len(others)} of {len(rows)} trials are against another picture, of mean "
             f"{float(others[0]['reference_mean']):.7g} where this one has {mean:.7g} (run the sweep again, which takes errors anew)")
+
+
+def require_own(texts, row, parameters):
+    """Raises exr.PictureError where a picture says that it is of another method, seed or parameter than its record."""
+    said = {name: texts.get(f"causticbench.{name}") for name in ("method", "seed", "spp")}
+    own = {name: row.get(name) for name in said}
+    try:
+        said |= json.loads(texts.get("causticbench.parameters", "{}"))
+    except (ValueError, TypeError) as error:
+        raise exr.PictureError("its parameters are no JSON object") from error
+    own |= {name: value for name, value in parameters.items() if name in said}
+    for name, value in own.items():
+        theirs = said[name] if isinstance(said[name], str) or said[name] is None else json.dumps(said[name])
+        if value and theirs and not same(value, theirs):
+            raise exr.PictureError(f"it is another trial's, of {name} {theirs} in place of {value}")
 
 
 def row_of(cell, seed):
