@@ -15,15 +15,22 @@ namespace {
 
 constexpr std::int64_t most = 1'000'000'000;
 constexpr std::int64_t most_samples = 1'000'000;  ///< as `render --spp`
-constexpr std::size_t most_trials = 1'000'000;    ///< a plan is held in memory
+constexpr std::size_t most_trials = 100'000;      ///< a plan is held in memory: 1.7 KB each
+constexpr std::size_t most_keys = 100;            ///< swept together
+constexpr std::size_t most_values = 1'000'000;    ///< of all keys and trials together
 
-/// Of a product of lists, before it is formed.
-void require_few(double trials, const JsonNode& node) {
+/// Of a product of lists of so many keys, before it is formed.
+void require_few(double trials, std::size_t keys, const JsonNode& node) {
+    const auto refuse = [&](const std::string& what) {
+        node.fail(fmt::format("makes {} (split the sweep file)", what));
+    };
+    const std::string count =
+        trials < 1e15 ? fmt::format("{:.0f}", trials) : fmt::format("{:.3g}", trials);
+    if (keys > most_keys) refuse(fmt::format("trials of {} keys, more than {}", keys, most_keys));
     if (trials > static_cast<double>(most_trials))
-        node.fail(fmt::format(
-            "makes {} trials, more than {} (split the sweep file)",
-            trials < 1e15 ? fmt::format("{:.0f}", trials) : fmt::format("{:.3g}", trials),
-            most_trials));
+        refuse(fmt::format("{} trials, more than {}", count, most_trials));
+    if (trials * static_cast<double>(keys) > static_cast<double>(most_values))
+        refuse(fmt::format("{} trials of {} keys, more than {} values", count, keys, most_values));
 }
 
 std::vector<JsonNode> list(const JsonNode& node) {
@@ -76,6 +83,18 @@ SweepFile::Axis read_axis(const std::string& name, const JsonNode& node) {
     return axis;
 }
 
+std::vector<SweepFile::Axis> read_axes(const JsonNode& set) {
+    const auto lists = set.others();
+    require_few(1, lists.size(), set);
+    std::vector<SweepFile::Axis> axes;
+    for (const auto& [name, node] : lists) {
+        SweepFile::Axis axis = read_axis(name, node);
+        require_own_pointer(axes, axis.pointer, node.at("pointer"));
+        axes.push_back(std::move(axis));
+    }
+    return axes;
+}
+
 /// A JSON object of the chosen parameters.
 std::string object_text(const std::vector<std::pair<std::string, std::string>>& params) {
     std::string text = "{";
@@ -110,11 +129,12 @@ using Params = std::vector<std::pair<std::string, std::string>>;
 std::vector<Params> combinations(const std::optional<JsonNode>& params) {
     std::vector<Params> cases(1);
     if (!params) return cases;
-    for (const auto& [key, value] : params->others()) {
+    const auto lists = params->others();
+    for (const auto& [key, value] : lists) {
         const std::vector<JsonNode> choices =
             value.is_array() ? list(value) : std::vector<JsonNode>{value};
         require_few(static_cast<double>(cases.size()) * static_cast<double>(choices.size()),
-                    *params);
+                    lists.size(), *params);
         std::vector<Params> product;
         for (const Params& so_far : cases)
             for (const JsonNode& choice : choices) {
@@ -197,12 +217,7 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     sweep.file = file;
     node.at("version").as_integer_in(1, 1);
     sweep.scenes = read_scenes(node.at("scenes"));
-    if (const std::optional<JsonNode> set = node.find("set"))
-        for (const auto& [name, node_of_axis] : set->others()) {
-            SweepFile::Axis axis = read_axis(name, node_of_axis);
-            require_own_pointer(sweep.axes, axis.pointer, node_of_axis.at("pointer"));
-            sweep.axes.push_back(std::move(axis));
-        }
+    if (const std::optional<JsonNode> set = node.find("set")) sweep.axes = read_axes(*set);
     for (const JsonNode& method : list(node.at("methods")))
         for (SweepFile::MethodCase& each :
              read_cases<SweepFile::MethodCase>(method, method_names(), method_of_trials))
@@ -228,7 +243,7 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
         sweep.reference = read_reference(*reference, sweep.spp);
     require_same_layers(sweep, node);
     node.finish();
-    require_few(count_trials(sweep), node);
+    require_few(count_trials(sweep), sweep.axes.size(), node);
     return sweep;
 }
 

@@ -181,6 +181,28 @@ TEST_F(SweepPlans, SetAWholeObjectBeforeAValueInIt) {
     EXPECT_EQ(all.trials[0].request.overrides, expected);
 }
 
+// Of 0.4 MB, they took all memory.
+TEST_F(SweepPlans, RefuseMoreValuesThanAPlanHolds) {
+    const auto keys = [](int count, const std::string& value) {
+        std::string text;
+        for (int i = 0; i < count; ++i)
+            text += (i == 0 ? "" : ",") + ("\"a" + std::to_string(i)) + "\": " + value;
+        return "{" + text + "}";
+    };
+    const std::string axis = R"({"pointer": "/ball/radius", "values": [1]})";
+    std::string many = "[1";
+    for (int i = 2; i <= 20'000; ++i) many += "," + std::to_string(i);
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {none + R"(, "set": )" + keys(101, axis),
+         "/set: makes trials of 101 keys, more than 100 (split the sweep file)"},
+        {R"("methods": [{"method": "photonmap", "param": )" + keys(101, "1") + "}]",
+         "/methods/0/param: makes trials of 101 keys"},
+        {R"("methods": [{"method": "photonmap", "param": )" + keys(60, many + "]") + "}]",
+         "makes 20000 trials of 60 keys, more than 1000000 values"}};
+    for (const auto& [members, words] : cases)
+        EXPECT_NE(error(members).find(words), std::string::npos) << error(members);
+}
+
 TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
     const std::vector<std::pair<std::string, std::string>> cases = {
         {R"("methods": [])", "/methods"},
@@ -191,7 +213,8 @@ TEST_F(SweepPlans, RefuseWhatDoesNotFitBeforeAnythingRuns) {
         {none + R"(, "version": 2)", "version"},
         {none + R"(, "repeats": 0)", "/repeats"},
         {none + R"(, "spq": 4)", "spq"},
-        {none + R"(, "repeats": 1000000000)", "makes 1000000000 trials, more than 1000000"},
+        {none + R"(, "repeats": 1000000000)", "makes 1000000000 trials, more than 100000 ("},
+        {none + R"(, "repeats": 100001)", "makes 100001 trials, more than 100000 ("},
         {R"("methods": [{"method": "photonmpa"}])", "/methods/0/method"},
         {R"("methods": [{"method": "photonmap", "param": {"photons": []}}])", "photons"},
         {R"("methods": [{"method": "photonmap", "param": {"photns": 5}}])", "photns"},
