@@ -41,12 +41,15 @@ export ASAN_OPTIONS=quarantine_size_mb=16 UBSAN_OPTIONS=print_stacktrace=1
 limits=(-timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=20000)
 # OpenEXR asks for memory that it never touches, and libpng leaves its callers by longjmp, with what they hold.
 limits_of_pictures=(-malloc_limit_mb=100000 -detect_leaks=0)
+# What is asked of a folder forks, which libFuzzer's thread that looks at the memory forbids; single allocations are limited.
+limits_of_folders=(-rss_limit_mb=0)
 
 # run TARGET ARGUMENTS...: in a folder of its own; its log is $work/TARGET.log.
 run() {
     local target=$1 code=0 more=()
     shift
     [ "$target" != picture ] || more=("${limits_of_pictures[@]}")
+    [ "$target" != folder ] || more=("${limits_of_folders[@]}")
     mkdir -p "$place/corpus/$target" "$place/found/$target" "$work/tmp/$target"
     (cd "$work/tmp/$target" && TMPDIR=$work/tmp/$target LLVM_PROFILE_FILE=$work/$target.profraw \
         "$place/fuzzers/fuzz_$target" "${limits[@]}" "${more[@]}" -artifact_prefix="$place/found/$target/" "$@" \
@@ -63,7 +66,7 @@ field() { sed -n "s/.*$2: *\([0-9]*\).*/\1/p" "$work/$1.log" | tail -n 1; }
 
 # One target's time; a crash ends a process, and the next one goes on.
 fuzz_target() {
-    local target=$1 executions=0 crashes=0 end=$((SECONDS + seconds)) left folders
+    local target=$1 executions=0 crashes=0 end=$((SECONDS + seconds)) left folders processor
     mapfile -t folders < <(mkdir -p "$place/corpus/$target"; inputs "$target")
     while left=$((end - SECONDS)) && [ "$left" -gt 0 ]; do
         run "$target" -max_total_time="$left" -print_final_stats=1 -use_value_profile=0 "${folders[@]}" ||
@@ -71,7 +74,9 @@ fuzz_target() {
         executions=$((executions + $(field "$target" 'number_of_executed_units' || true) + 0))
         [ "$crashes" -lt 20 ] || break
     done
-    echo "$target $executions $seconds $(ls "$place/corpus/$target" | wc -l) $crashes" >"$work/$target.row"
+    times >"$work/$target.times"  # of this shell, and of what it waited for
+    processor=$(awk 'NR == 2 {split($1 "m" $2, t, /[ms]+/); print int(60 * (t[1] + t[3]) + t[2] + t[4])}' "$work/$target.times")
+    echo "$target $executions $processor $(ls "$place/corpus/$target" | wc -l) $crashes" >"$work/$target.row"
     cat "$work/$target.row" >>"$place/log"
 }
 replay_target() {
@@ -93,13 +98,11 @@ wait
 
 if [ "$mode" = coverage ]; then
     llvm-profdata merge -sparse "$work"/*.profraw -o "$work/all.profdata"
-    programs=()
-    for target in "${targets[@]}"; do programs+=(-object "$place/fuzzers/fuzz_$target"); done
-    llvm-cov export -summary-only -instr-profile "$work/all.profdata" "${programs[@]:1}" | python3 tests/fuzz/coverage.py
+    python3 tests/fuzz/coverage.py "$work/all.profdata" "${targets[@]/#/$place/fuzzers/fuzz_}"
     exit
 fi
 found=0
-printf '%-14s %12s %8s %8s %8s\n' target executions seconds inputs found
+printf '%-14s %12s %8s %8s %8s\n' target executions cpu_s inputs found
 for target in "${targets[@]}"; do
     read -r name executions time kept crashes <"$work/$target.row"
     printf '%-14s %12s %8s %8s %8s\n' "$name" "$executions" "$time" "$kept" "$crashes"

@@ -14,7 +14,8 @@
 #include "tests/fuzz/word_hooks.h"
 
 // Each line of the input is a word. After "param" and "indirect" come a method's name and what it is given by
-// --param, after "set" what a scene is given by --set; all else is a command line, and each of its words a shard.
+// --param, after "set" what a scene is given by --set, after "slurm" what a task of an array finds in its surroundings; all else
+// is a command line, and each of its words a shard.
 
 namespace {
 
@@ -46,6 +47,17 @@ void parse_shards(const Words& words) {
         });
 }
 
+void parse_array_task(const Words& numbers) {
+    const char* const names[] = {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN",
+                                 "SLURM_ARRAY_TASK_MAX", "SLURM_ARRAY_TASK_COUNT"};
+    for (std::size_t i = 0; i < std::size(names); ++i)
+        if (i + 1 < numbers.size())
+            setenv(names[i], numbers[i + 1].c_str(), 1);
+        else
+            unsetenv(names[i]);
+    parse_shards({"auto"});
+}
+
 void parse_parameters(const std::string& name, const Words& assignments) {
     const Method method = parse_method(name, parameters_node(assignments));
     // What is in force is read back to the same.
@@ -70,6 +82,8 @@ void parse(const Words& words) {
     const bool two = words.size() > 1;
     if (first == "set")
         set_values({words.begin() + 1, words.end()});
+    else if (first == "slurm")
+        parse_array_task(words);
     else if (first == "param" && two)
         parse_parameters(words[1], {words.begin() + 2, words.end()});
     else if (first == "indirect" && two)
@@ -123,6 +137,7 @@ const std::vector<std::string>& caustics::fuzz::words() {
 }
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    caustics::fuzz::words();  // by the tables of all readers
     fuzz::put("small.json", fuzz::small_scene);
     std::filesystem::current_path(fuzz::scratch());
     return 0;

@@ -44,6 +44,7 @@ bool read_mesh(const std::string& name, const std::string& bytes, const Read& re
         const TriangleMesh smooth = load_mesh(file, {});
         require_sound(smooth);
         require(smooth.triangles == mesh.triangles, "other triangles from its file");
+        require(std::isfinite(largest_bend(smooth)), "no angle between normals");
     });
     require(again == read, "taken from its file alone, or from memory alone");
     require(flat.triangles.size() == mesh.triangles.size(), "other triangles when flat");

@@ -22,11 +22,15 @@ void read_picture(const std::filesystem::path& file, bool again_too) {
 }
 
 void read_texture(const std::filesystem::path& file, bool raw) {
-    const Bitmap bitmap = load_bitmap(file, raw);
+    Bitmap bitmap = load_bitmap(file, raw);
     for (const Spectrum& texel : bitmap.texels)
         fuzz::require(is_finite(texel) && texel.minCoeff() >= 0, "a texel that is no reflectance");
-    for (const float u : {-1e30F, -1.0F, 0.0F, 0.25F, 1.0F, 1e30F})
-        fuzz::require(is_finite(evaluate(bitmap, Vec2(u, 0.5F))), "no reflectance at a point");
+    for (const auto wrap : {Bitmap::Wrap::repeat, Bitmap::Wrap::mirror, Bitmap::Wrap::clamp})
+        for (const float u : {-1e30F, -1.0F, 0.0F, 0.25F, 1.0F, 1e30F}) {
+            bitmap.wrap = wrap;
+            bitmap.filter = u < 0 ? Bitmap::Filter::nearest : Bitmap::Filter::bilinear;
+            fuzz::require(is_finite(evaluate(bitmap, Vec2(u, 0.5F))), "no reflectance at a point");
+        }
 }
 
 }  // namespace

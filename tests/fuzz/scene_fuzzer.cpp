@@ -13,6 +13,19 @@ namespace {
 
 using namespace caustics;
 
+void put_heights(const char* name, int width, const std::vector<float>& values) {
+    Film film(width, static_cast<int>(values.size()) / width);
+    film.plane("Y") = values;
+    write_exr(film, fuzz::named(name));
+}
+
+std::string from_hex(std::string_view digits) {
+    std::string bytes;
+    for (std::size_t i = 0; i < digits.size(); i += 2)
+        bytes += static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
+    return bytes;
+}
+
 /// What scenes may name.
 void put_neighbours() {
     fuzz::put("mesh.ply",
@@ -22,11 +35,24 @@ void put_neighbours() {
     fuzz::put("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
     fuzz::put("part.json", R"({"type": "diffuse", "reflectance": 0.5})");
     fuzz::put("loop.json", R"({"a": {"$include": "loop.json"}})");
-    write_png(2, 2, {0, 10, 100, 200, 255, 1, 2, 3, 4, 90, 91, 92},
-              fuzz::scratch() / "texture.png");
-    Film heights(3, 2);
-    heights.plane("Y") = {0, 0.5F, 1, 0.25F, -1, 0};
-    write_exr(heights, fuzz::scratch() / "heights.exr");
+    fuzz::put("odd.json", R"({"type": "rgb", "value": [0.1, "x", 0.3]})");
+    fuzz::put("bad.json", R"({"type": )");
+    fuzz::put("bad.ply", "ply\n");
+    // More levels than may be.
+    for (int i = 0; i < 70; ++i)
+        fuzz::put("deep" + std::to_string(i) + ".json",
+                  R"({"$include": "deep)" + std::to_string(i + 1) + R"(.json"})");
+    write_png(2, 2, {0, 10, 100, 200, 255, 1, 2, 3, 4, 90, 91, 92}, fuzz::named("texture.png"));
+    put_heights("heights.exr", 3, {0, 0.5F, 1, 0.25F, -1, 0});
+    put_heights("bright.exr", 2, {0, 3, 1, 1e9F});
+    put_heights("row.exr", 2, {0, 1});
+    fuzz::put("grey8.png", from_hex("89504e470d0a1a0a0000000d4948445200000002000000020800000000"
+                                    "57dd52f80000000e4944415478da6360646260660100001d000b10dd1c70"
+                                    "0000000049454e44ae426082"));
+    fuzz::put("grey16.png",
+              from_hex("89504e470d0a1a0a0000000d4948445200000002000000021000000000"
+                       "074d8ebb000000124944415478da636064626661606563e70000008c0025d2205019"
+                       "0000000049454e44ae426082"));
 }
 
 /// Valid, but much work: tests of these limits are elsewhere.
@@ -69,8 +95,10 @@ void read_scene(std::string_view text) {
 const std::vector<std::string>& caustics::fuzz::words() {
     static const std::vector<std::string> all = [] {
         std::vector<std::string> known = fuzz::words_of(scene_file::scene_keys());
-        for (const char* file : {"mesh.ply", "mesh.obj", "texture.png", "heights.exr", "part.json",
-                                 "loop.json", "scene.json", "none.ply", "../scene.json", "."})
+        for (const char* file :
+             {"mesh.ply", "mesh.obj", "texture.png", "heights.exr", "bright.exr", "row.exr",
+              "grey8.png", "grey16.png", "part.json", "loop.json", "odd.json", "bad.json",
+              "bad.ply", "deep0.json", "scene.json", "none.ply", "../scene.json", "."})
             known.emplace_back(file);
         return known;
     }();
@@ -78,6 +106,7 @@ const std::vector<std::string>& caustics::fuzz::words() {
 }
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    caustics::fuzz::words();  // by the tables of all readers
     put_neighbours();
     return 0;
 }

@@ -12,6 +12,8 @@ import subprocess
 import sys
 import zlib
 
+import scene_seeds
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIG_KEYS = {"resolution": 8, "segments": 4, "levels": 3, "split_depth": 1, "mesh_resolution": 8, "photons": 500,
             "emitted": 500, "paths": 500, "spp": 4, "repeats": 2, "receiver_resolution": 8, "count": 8}
@@ -47,6 +49,7 @@ def scenes():
     for file in sorted((ROOT / "experiments").glob("**/scenes/**/*.json")):
         value = json.loads(file.read_text(encoding="utf-8"))
         yield file.stem, json.dumps(inlined(value, file.parent)).encode()
+    yield from scene_seeds.variants()
 
 
 def sweeps():
@@ -56,13 +59,32 @@ def sweeps():
         for axis in value.get("set", {}).values():
             axis["pointer"] = "/ball/radius"
         yield file.stem, json.dumps(value).encode()
-    yield "all", json.dumps({
+    whole = {
         "version": 1, "scenes": ["small.json"], "seeds": [1, 2], "repeats": 2, "spp": 4, "threads": 2,
         "set": {"r": {"pointer": "/ball/radius", "values": [0.5, 0.25]}},
         "methods": [{"method": "photonmap", "param": {"photons": [100, 200], "tree": "packed"}},
                     {"method": "beamtree", "param": {"mesh_resolution": 4}}],
         "indirect": [{"method": "none"}],
-        "reference": {"method": "lighttrace", "param": {"paths": 100}, "spp": 4, "seed": 3}}).encode()
+        "reference": {"method": "lighttrace", "param": {"paths": 100}, "spp": 4, "seed": 3}}
+    yield "all", json.dumps(whole).encode()
+    none = {"version": 1, "scenes": ["small.json"], "methods": [{"method": "none"}]}
+    radius = {"pointer": "/ball/radius", "values": [0.5]}
+    light = [{"method": "globalphotonmap", "param": {"photons": [50, 60], "nearest": 5}}]
+    for i, part in enumerate((
+            {"version": 2}, {"scenes": []}, {"scenes": ["none.json"]}, {"scenes": ["small.json", "other/small.json"]},
+            {"set": {"a": radius, "b": radius}}, {"set": {"A b": radius}}, {"set": {"rmse": radius}}, {"set": {"photons": radius}},
+            {"set": {"a": {"pointer": "/none/x", "values": [1]}}}, {"set": {f"a{k}": radius for k in range(101)}},
+            {"set": {"a": {**radius, "values": []}}}, {"seeds": list(range(400)), "repeats": 300}, {"seeds": [-1]},
+            {"seeds": list(range(20000)), "set": {f"a{k}": {"pointer": f"/x{k}", "values": [1]} for k in range(60)}}, {"repeats": 1000000000},
+            {"methods": []}, {"methods": [{"method": "x"}]}, {"methods": [{"method": "none", "x": 1}]},
+            {"methods": [{"method": "photonmap", "param": {"photons": []}}]}, {"methods": [{"method": "photonmap", "param": {"save": "x"}}]},
+            {"methods": [{"method": "photonmap", "param": {"load": "none.map"}}]}, {"methods": [{"method": "photonmap", "param": {"photons": [10] * 2}}]},
+            {"methods": [{"method": "photonmap", "param": {"photons": 10}}], "set": {"photons": radius}},
+            {"indirect": light}, {"indirect": light, "reference": {"method": "lighttrace", "param": {"paths": 100}}},
+            {"indirect": light, "reference": {"method": "lighttrace", "param": {"paths": 100}, "indirect": {"method": "lighttrace", "param": {"paths": 50}}}},
+            {"indirect": light, "set": {"indirect_photons": radius}}, {"indirect": []}, {"indirect": [{"method": "globalphotonmap", "param": {"save": "x"}}]},
+            {"reference": {"method": "pathtrace"}}, {"reference": {"method": "lighttrace", "param": {"paths": 100}, "seed": 1.5}}, {"spq": 1})):
+        yield f"part-{i}", json.dumps({**none, **part}).encode()
 
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)]
@@ -125,12 +147,47 @@ def png(width, height, depth, colour, rows):
             palette + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
+def exr_headers():
+    """Pictures of one pixel by hand: what no tool writes."""
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+    def header(width=0, channel=2, **more):
+        window = struct.pack("<4i", 0, 0, width, 0)
+        channels = b"Y\0" + struct.pack("<i4B2i", channel, 0, 0, 0, 0, 1, 1) + b"\0"
+        texts = b"".join(attribute(name, kind, value) for name, (kind, value) in more.items())
+        return (attribute("channels", "chlist", channels) + attribute("compression", "compression", b"\0") +
+                attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window) +
+                attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1)) +
+                attribute("screenWindowCenter", "v2f", bytes(8)) + attribute("screenWindowWidth", "float", struct.pack("<f", 1)) +
+                texts + b"\0")
+
+    def file(head, flags=0, width=1):
+        start = b"\x76\x2f\x31\x01" + struct.pack("<I", 2 | flags) + head
+        return start + struct.pack("<Q2i", len(start) + 8, 0, 4 * width) + struct.pack("<f", 0.5) * width
+    rec709 = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
+    yield "exr-one", file(header())
+    yield "exr-whole-number", file(header(channel=0))
+    yield "exr-wide", file(header(width=1 << 26))
+    for name, white in (("rec709", rec709[7]), ("other", 0.4)):
+        yield f"exr-{name}", file(header(chromaticities=("chromaticities", struct.pack("<8f", *rec709[:7], white))))
+    yield "exr-text", file(header(comment=("string", b"text"), odd=("string", b"a\nb")))
+    parts = header(name=("string", b"a"), type=("string", b"scanlineimage"), chunkCount=("int", struct.pack("<i", 1)))
+    yield "exr-parts", file(parts + parts.replace(b"\1\0\0\0a", b"\1\0\0\0b") + b"\0", 0x1000)
+    deep = header(name=("string", b"a"), type=("string", b"deepscanline"), chunkCount=("int", struct.pack("<i", 1)),
+                  version=("int", struct.pack("<i", 1)), maxSamplesPerPixel=("int", struct.pack("<i", 1)))
+    yield "exr-deep", file(deep, 0x800)
+
+
 def pictures():
     for name, depth, colour, size in (("grey8", 8, 0, 3), ("grey16", 16, 0, 6), ("rgb8", 8, 2, 9), ("rgba8", 8, 6, 12),
                                       ("palette", 8, 3, 3), ("rgb16", 16, 2, 18), ("bits", 1, 0, 1)):
         rows = b"".join(b"\x00" + bytes((40 * y + x) % (4 if colour == 3 else 256) for x in range(size))
                         for y in range(2))
         yield name, png(3, 2, depth, colour, rows)
+    yield "huge", png(1 << 16, 1 << 15, 8, 0, b"")
+    for name, line in exr_headers():
+        yield name, line
     if shutil.which("oiiotool") is None:
         return
     folder = pathlib.Path(sys.argv[1])
@@ -148,19 +205,46 @@ def pictures():
 def points():
     yield "plain", b"x,y,z,nx,ny,nz\n0,0,-1,0,0,1\n0.5,-0.25,-1,0,0,2\n"
     yield "viewers", b"nx,ny,nz,x,y,z,wx,wy,wz,radius\r\n0,0,1,0,0,-1,0,-1,1,0.5\r\n0,0,1,+1,1e0,-1,0,0,1,0.1\r\n"
-    yield "wrong", b"x,y,z,nx,ny,nz\n1e19,0,0,0,0,1\n0,0,-1,0,0,nan\n"
+    head = "x,y,z,nx,ny,nz"
+    for i, text in enumerate((
+            "", "\ufeff" + head + "\n0,0,-1,0,0,1\n\n", head + "\n1e19,0,0,0,0,1\n", head + "\n0,0,-1,0,0,nan\n",
+            head + "\n0,0,-1,0,0,x\n", head + "\n0,0,-1,0,0,1,2\n", head + "\n0,0,-1,0,0,0\n", head + "\n0,0,9,0,0,1\n",
+            head + ",q\n", head + ",x\n", "x,y\n", head + ",wx\n0,0,-1,0,0,1,1\n", head + ",wx,wy,wz\n0,0,-1,0,0,1,0,0,-1\n",
+            head + ",radius\n0,0,-1,0,0,1,0\n", head + "\n0.1,0.1,-1,0,0,-1\n", head + "\n0,0.5,0,0,1,0\n")):
+        yield f"other-{i}", text.encode()
+
+
+# What a method is asked by one word each, for all that have such a key.
+ASSIGNMENTS = """preset=jensen1996 preset=chuangcheng1995 preset=x photons=1000 photons=0 photons=1e3 photons=1.5 emitted=100 nearest=20
+nearest=1 filter=cone filter_k=1.5 filter=gaussian filter_beta=2 filter_alpha=0.9 tree=balanced tree="packed" tree=5 passes=2
+estimator=raw radius=0.1 radius=0 radius=none max_radius=1 adaptive=true adaptive=1 footprint=0.1 pixel_footprint=true
+load=none.map load=small.json save=a.map save=none/a.map tables=true emission=stratified interaction=split max_bounces=3 paths=100
+resolution=4 mesh_resolution=4 light_samples=4 rest=photons intensity=area refine=2 spp=4 seed=-1 x=1 = photons"""
 
 
 def lines():
-    for i, line in enumerate((
-            "render small.json --method photonmap --param photons=100 --set /ball/radius=0.25 --spp 4 --seed 7 -o a.exr",
-            "probe small.json --method none --points p.csv -o out.csv --threads 2 --isa plain",
-            "sweep a.json b.json -o out --filter seed=1 --shard 2/5 --timeout 1.5 --memory 100 --jobs 2 --rerun failed",
-            "compare a.exr b.exr --json --layer caustic --mask m.exr", "merge a b -o c", "explain out trial",
-            "verify --gallery", "export small.json --to mitsuba -o x", "help scene", "info small.json --version",
-            "photons=1000 nearest=20 tree=packed filter=cone filter_k=1.5 passes=2", "bound=two_slice leaf=\"n\"",
-            "/ball/radius=1 /lamp/intensity=[1,2,3] /floor/bsdf={\"type\":\"phong\"}", "1/1 3/2 auto 02/3")):
-        yield str(i), line.replace(" ", "\n").encode()
+    texts = [
+        "render small.json --method photonmap --param photons=100 --set /ball/radius=0.25 --spp 4 --seed 7 -o a.exr -o b.png",
+        "render small.json --indirect globalphotonmap --indirect-param photons=5 --exposure 1 --seconds 2.5 --work 1e5 -o a.exr",
+        "render small.json --isa avx9 --threads 0", "render small.json --spp x -o a.bmp", "render", "render a b c",
+        "probe small.json --method none --points p.csv -o out.csv --threads 2 --isa plain --layer caustic",
+        "sweep a.json b.json -o out --filter seed=1 --shard 2/5 --timeout 1.5 --memory 100 --jobs 2 --rerun failed",
+        "sweep a.json -o out --list --force --fail-fast --references rebuild --dry-run", "sweep a.json --timeout -1 --jobs 0",
+        "compare a.exr b.exr --json --layer caustic --mask m.exr --strip s.png", "merge a b -o c", "explain out trial",
+        "verify --gallery --method none", "export small.json --to mitsuba -o x --max-bounces 3 --wavelengths 5",
+        "info small.json --scene s --beams b.obj --dot d.dot", "report out --tables --columns 3 --references --megabytes 5",
+        "help scene", "help", "--help", "--version", "info --help", "--verb", "teapot", "info \xff", "info --set  a", "1/1 3/2 auto 02/3 1/0",
+        "set /ball/radius=1 /lamp/intensity=[1,2,3] /floor/bsdf={\"type\":\"phong\"}", "set /ball={\"$include\":\"small.json\"}",
+        "set /camera/to_world/0/look_at/origin/2=5 /camera/to_world/9=1", "set /camera/to_world/00=1", "set ball=1", "set /none/x=1",
+        "set /ball/radius/x=1", "set /ball/bsdf/type=diffuse /floor/bsdf/reflectance=.5", "set /~2=1", "set =", "set /a~1b~0=[", "set",
+        "slurm", "slurm 3 1 5 5", "slurm 0 0 4 5", "slurm 3 2 5 4",
+        "slurm 6 1 5 5", "slurm x 1 5 5", "param", "param teapot", "indirect teapot", "indirect none x=1", "indirect globalphotonmap photons=100 nearest=5"]
+    for method in ("none", "pathtrace", "lighttrace", "photonmap", "beamtree", "illuminationmap", "causticpolygons"):
+        texts += [f"param {method} {word}" for word in ASSIGNMENTS.split()]
+    for method in ("pathtrace", "lighttrace", "globalphotonmap"):
+        texts += [f"indirect {method} {word}" for word in ("photons=50", "nearest=3", "paths=9", "x=1")]
+    for i, line in enumerate(texts):
+        yield str(i), line.replace(" ", "\n").encode("latin-1")
 
 
 def folders():
@@ -178,9 +262,42 @@ def folders():
              "variances": {"x": ["0", 0.5]}}
     folder = {"plan.json": plan, "trials/a/record.json": record, "trials/b/record.json": failed, ".table": table,
               "environment.json": {"commit": "x"}, "records.csv": "trial\n", "records.jsonl": "{}\n"}
-    yield "whole", json.dumps(folder).encode()
-    yield "no_table", json.dumps({key: folder[key] for key in list(folder)[:3]}).encode()
-    yield "text", json.dumps({"plan.json": json.dumps(plan)[:-9], "trials/a/record.json": "{"}).encode()
+    variants = {"whole": folder, "no_table": {key: folder[key] for key in list(folder)[:3]},
+                "text": {"plan.json": json.dumps(plan)[:-9], "trials/a/record.json": "{"}, "empty": {}}
+    both = {"plan.json": plan, "trials/a/record.json": record, "environment.json": {}, "references/r.exr": "1",
+            "two/plan.json": plan, "two/trials/b/record.json": failed, "two/environment.json": {}, "two/references/r.exr": "1"}
+    judged = {"reference": {"key": "r", "mean": 1.0, "name": "lighttrace", "parameters": {}, "spp": 4, "seed": 1}}
+    variants |= {
+        "two": both, "two-pictures": {**both, "two/references/r.exr": "2"}, "two-environment": {**both, "environment.json": []},
+        "two-plans": {**both, "two/plan.json": {**plan, "trials": []}}, "two-codes": {**both, "two/trials/b/record.json": {**failed, "code_version": "y"}},
+        "two-isa": {**both, "two/trials/b/record.json": {**failed, "isa": "avx2"}},
+        "two-cpu": {**both, "two/trials/b/record.json": {**failed, "machine": {"cpu": "d"}}},
+        "twice": {**both, "trials/b/record.json": failed}, "figure": {**both, "report/figures/a.png": "x"},
+        "missing": {"plan.json": {**plan, "trials": [{**plan["trials"][0], "trial": str(i)} for i in range(9)]}}}
+    for i, part in enumerate(({"version": 2}, {"swept": ["A b"]}, {"trials": [{"trial": "../x", "cell": "", "seed": 1, "chosen": True}]},
+                              {"trials": [{"trial": "x", "cell": "", "seed": -1, "chosen": True}]}, {"filters": 5})):
+        variants[f"plan-{i}"] = {"plan.json": {**plan, **part}}
+    method = {"name": "photonmap", "parameters": {"photons": 100, "nearest": 5}}
+    for i, part in enumerate((
+            {"status": "running"}, {"machine": 5}, {"seed": -1}, {"spp": "x"}, {"isa": 5}, {"repeat": 99999999999}, judged,
+            {"method": method}, {"method": {"name": "photonmap", "parameters": {"save": "x"}}}, {"method": {"name": "x"}},
+            {"method": {"name": "photonmap", "parameters": {"load": "m.map"}, "files": {"load": "0"}}}, {"scene": {"file": "none.json"}},
+            {"indirect": {"name": "globalphotonmap", "parameters": {"photons": 50}}}, {"swept": {"method_seed": 1, "x": "=2"}},
+            {"scene": {**record["scene"], "set": {"/ball/radius": "x"}}}, {"scene": {**record["scene"], "file": "/dev/null"}})):
+        variants[f"record-{i}"] = {**both, "trials/a/record.json": {**record, **part}}
+    for name, part in (("target-inside", {"into": "out/merged"}), ("target-there", {"into": "two"}), ("text-beside", {"references/r.txt": "x"})):
+        variants[name] = {**both, **part}
+    for i, record_of_kind in enumerate(({"threads": "x"}, {"message": 5}, {"message": 'a, "b"\nc'}, {"swept": {"x": "=1", "seed": 5}})):
+        variants[f"kind-{i}"] = {**both, "plan.json": {**plan, "swept": ["alpha", "x", "seed", "method_seed"]}, "trials/a/record.json": {**record, **record_of_kind}}
+    own = {**table, "code_version": "own", "csv": "own", "jsonl": "own"}
+    variants |= {"own-table": {**folder, ".table": own}, "own-row": {**folder, ".table": own, "records.csv": 'trial,"x"\na,1\n'},
+                 "deep-table": {**folder, ".table": "[" * 70}, "null-mean": {**folder, ".table": {**own, "variances": {"x": ["0", None]}}}}
+    variants["judges"] = {**both, "trials/a/record.json": {**record, **judged},
+                          "two/trials/b/record.json": {**failed, "reference": {**judged["reference"], "mean": 2.0}}}
+    for name in ("b", "none", "x", ""):
+        variants[f"explain-{name}"] = {**folder, "explain": name}
+    for name, files in variants.items():
+        yield name, json.dumps(files).encode()
 
 
 def main():

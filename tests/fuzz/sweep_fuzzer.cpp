@@ -34,7 +34,7 @@ void read_sweep(std::string_view text) {
     std::optional<SweepFile> sweep;
     if (!fuzz::taken(fuzz::Naming::file, [&] { sweep = read_sweep_file(file); })) return;
     // A plan reads the scenes and begins the reference.
-    if (count(*sweep) > 50 || !fuzz::one_in(8, text)) return;
+    if (count(*sweep) > 50 || !fuzz::one_in(4, text)) return;
     fuzz::taken(fuzz::Naming::file, [&] {
         SweepPlan plan = read_plan({file});
         fuzz::require(
@@ -56,8 +56,9 @@ const std::vector<std::string>& caustics::fuzz::words() {
         for (const IndirectDescription* method : all_indirect_methods())
             objects.push_back({method->facts().name, "", method->parameters()});
         std::vector<std::string> known = fuzz::words_of(objects);
-        for (const char* word : {"small.json", "sweep.json", "../small.json", "/ball/radius",
-                                 "/floor/bsdf/reflectance", "/camera", "/none/x", "/"})
+        for (const char* word :
+             {"small.json", "other/small.json", "sweep.json", "../small.json", "/ball/radius",
+              "/floor/bsdf/reflectance", "/camera", "/none/x", "/"})
             known.emplace_back(word);
         return known;
     }();
@@ -65,7 +66,9 @@ const std::vector<std::string>& caustics::fuzz::words() {
 }
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    caustics::fuzz::words();  // by the tables of all readers
     fuzz::put("small.json", fuzz::small_scene);
+    fuzz::put("other/small.json", fuzz::small_scene);
     return 0;
 }
 
