@@ -153,25 +153,6 @@ void require_one_part(const std::string& bytes) {
                                  " parts, and pictures of one are read");
 }
 
-/// A small file that declares many channels or pixels is broken or hostile: they would fill the memory before the
-/// first missing line is met.
-void require_room_for(const Imf::Header& header, std::size_t bytes) {
-    constexpr double always_taken = 1 << 30;
-    // Deflate makes 1,032 bytes of one at most, of half values that become twice as large.
-    constexpr double most_of_one = 2100;
-    const Imath::Box2i& window = header.dataWindow();
-    const std::int64_t width = std::int64_t{1} + window.max.x - window.min.x;
-    const std::int64_t height = std::int64_t{1} + window.max.y - window.min.y;
-    const double plane = sizeof(float) * static_cast<double>(width) * static_cast<double>(height);
-    double room = 0;
-    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
-        room += plane;
-    if (room > always_taken && room > most_of_one * static_cast<double>(bytes))
-        throw std::runtime_error("it declares " + std::to_string(width) + " x " +
-                                 std::to_string(height) + " pixels, more than its " +
-                                 std::to_string(bytes) + " bytes can hold");
-}
-
 Primaries primaries(const Imf::Chromaticities& of) {
     return {of.red.x,  of.red.y,  of.green.x, of.green.y,
             of.blue.x, of.blue.y, of.white.x, of.white.y};
@@ -189,7 +170,6 @@ ExrFile::ExrFile(const std::string& bytes) : opened_(std::make_unique<Opened>(by
         if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
             throw std::runtime_error(std::string("channel ") + channel.name() +
                                      " has less than one value a pixel");
-    require_room_for(header, bytes.size());
     if (header.dataWindow() != header.displayWindow())
         throw std::runtime_error("its data window is not the whole picture");
     if (Imf::hasChromaticities(header)) require_rec709(primaries(Imf::chromaticities(header)));

@@ -42,18 +42,19 @@ std::optional<std::string_view> take_word(std::string_view& rest) {
     return word;
 }
 
-bool is_channel_list(std::string_view value) {
-    for (;;) {
+/// Nothing where the value is no list of channels.
+std::optional<std::size_t> count_channels(std::string_view value) {
+    for (std::size_t count = 0;; ++count) {
         const std::optional<std::string_view> name = take_word(value);
-        if (!name) return false;
-        if (name->empty()) return value.empty();
-        if (value.size() < channel_bytes) return false;
+        if (!name) return {};
+        if (name->empty()) return value.empty() ? std::optional(count) : std::nullopt;
+        if (value.size() < channel_bytes) return {};
         value.remove_prefix(channel_bytes);
     }
 }
 
 bool has_its_length(std::string_view type, std::string_view value) {
-    if (type == "chlist") return is_channel_list(value);
+    if (type == "chlist") return count_channels(value).has_value();
     const auto* const known = std::ranges::find(lengths, type, &Length::type);
     return known == lengths.end() || known->bytes == value.size();
 }
@@ -69,10 +70,45 @@ void require_small_tiles(std::string_view tile_description) {
                                  std::to_string(most_pixels));
 }
 
-/// Up to the empty name that ends a header. Whether it is there.
-bool pass_header(std::string_view& rest) {
-    for (;;) {
+/// What a header says of the picture's size.
+struct Declared {
+    std::array<std::int32_t, 4> window{0, 0, -1, -1};  ///< least x and y, most x and y
+    std::size_t channels = 0;
+    unsigned char compression = 0;
+
+    void take(std::string_view name, std::string_view type, std::string_view value) {
+        if (name == "dataWindow" && type == "box2i")
+            std::memcpy(window.data(), value.data(), sizeof window);
+        if (name == "channels" && type == "chlist") channels = *count_channels(value);
+        if (type == "compression") compression = static_cast<unsigned char>(value[0]);
+    }
+};
+
+/// A small file that declares many channels or pixels is broken or hostile: they would fill the memory before the
+/// first missing line is met.
+void require_room_for(const Declared& picture, std::size_t bytes) {
+    constexpr double always_taken = 1 << 27;
+    // Deflate makes 1,032 bytes of one at most, of half values that become twice as large. What is one colour takes no
+    // room at all by wavelets and cosines (PIZ, DWAA, DWAB).
+    constexpr double most_of_one = 2100;
+    constexpr double most_of_one_by_waves = 1 << 16;
+    const bool by_waves = picture.compression == 4 || picture.compression >= 8;
+    const std::int64_t width = std::int64_t{1} + picture.window[2] - picture.window[0];
+    const std::int64_t height = std::int64_t{1} + picture.window[3] - picture.window[1];
+    const double room = sizeof(float) * static_cast<double>(picture.channels) *
+                        static_cast<double>(width) * static_cast<double>(height);
+    if (room > always_taken &&
+        room > (by_waves ? most_of_one_by_waves : most_of_one) * static_cast<double>(bytes))
+        throw std::runtime_error("it declares " + std::to_string(width) + " x " +
+                                 std::to_string(height) + " pixels, more than its " +
+                                 std::to_string(bytes) + " bytes can hold");
+}
+
+/// Up to the empty name that ends the header of a file of so many bytes. Whether it is there.
+bool pass_header(std::string_view& rest, std::size_t file_bytes) {
+    for (Declared picture;;) {
         const std::optional<std::string_view> name = take_word(rest);
+        if (name && name->empty()) require_room_for(picture, file_bytes);
         if (!name || name->empty()) return name.has_value();
         const std::optional<std::string_view> type = take_word(rest);
         std::int32_t length = 0;
@@ -87,6 +123,7 @@ bool pass_header(std::string_view& rest) {
                                      std::to_string(bytes) + " bytes, which no " + one_line(*type) +
                                      " has");
         if (*type == "tiledesc") require_small_tiles(rest);
+        picture.take(*name, *type, rest.substr(0, bytes));
         rest.remove_prefix(bytes);
     }
 }
@@ -99,7 +136,7 @@ void require_attributes_within(const std::string& bytes) {
     std::string_view rest = std::string_view(bytes).substr(magic_and_version);
     const bool goes_on = (static_cast<unsigned char>(bytes[5]) & many_parts) != 0;
     // Headers of many parts end with an empty one.
-    while (pass_header(rest) && goes_on && !rest.empty() && rest.front() != '\0') {}
+    while (pass_header(rest, bytes.size()) && goes_on && !rest.empty() && rest.front() != '\0') {}
 }
 
 }  // namespace caustics

@@ -34,9 +34,10 @@ std::size_t PictureFile::pixel_count() const {
 }
 
 void PictureFile::read_rows(const std::function<void(int y, const float* values)>& take) {
-    constexpr int rows_at_once = 64;
+    constexpr std::size_t values_at_once = 1 << 22;  // a row may have a million pixels
     const std::size_t row =
         static_cast<std::size_t>(shape().width) * static_cast<std::size_t>(shape().channels);
+    const int rows_at_once = static_cast<int>(std::clamp<std::size_t>(values_at_once / row, 1, 64));
     std::vector<float> values(row * static_cast<std::size_t>(rows_at_once));
     for (int first = 0; first < shape().height; first += rows_at_once) {
         const int last = std::min(first + rows_at_once, shape().height);

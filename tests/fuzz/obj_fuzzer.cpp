@@ -17,7 +17,8 @@ std::vector<float> numbers_of(const std::string& text) {
     for (std::string word; in >> word;) {
         double value = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error == std::errc{}) numbers.push_back(static_cast<float>(value));
+        if (error == std::errc{} && std::isfinite(value))
+            numbers.push_back(static_cast<float>(value));
     }
     std::ranges::sort(numbers);
     return numbers;

@@ -1,6 +1,7 @@
 #include "core/picture/picture_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cstdint>
@@ -158,8 +159,8 @@ std::string with_attribute(std::string bytes, const std::string& name, const std
     return bytes.replace(at, value.size(), value);
 }
 
-std::string window(std::int32_t side) {
-    const std::array<std::int32_t, 4> corners = {0, 0, side - 1, side - 1};
+std::string window(std::int32_t width, std::int32_t height) {
+    const std::array<std::int32_t, 4> corners = {0, 0, width - 1, height - 1};
     return {reinterpret_cast<const char*>(corners.data()), sizeof corners};
 }
 
@@ -182,9 +183,28 @@ TEST(PictureFile, ATextureHasColoursByNameAndAllItsPixels) {
         EXPECT_NE(as_texture(support::exr_of_kind({.channels = bad})).find("(its channels are "),
                   std::string::npos)
             << bad[0];
-    EXPECT_NE(as_texture(with_attribute(support::exr_of_kind({}), "displayWindow", window(3)))
+    EXPECT_NE(as_texture(with_attribute(support::exr_of_kind({}), "displayWindow", window(3, 3)))
                   .find("a.exr: cannot be read (its data window is not the whole picture)"),
               std::string::npos);
+}
+
+// 64 rows at a time were 0.8 GB.
+TEST(PictureFile, MayBeAMillionPixelsWide) {
+    const support::TemporaryFolder folder;
+    constexpr int width = 1'000'000;
+    std::vector<unsigned char> pixels(std::size_t{3} * width * 2, 0);
+    pixels.back() = 255;
+    write_png(width, 2, pixels, folder / "a.png");
+    const auto most_memory = [] {
+        rusage used{};
+        getrusage(RUSAGE_SELF, &used);
+        return used.ru_maxrss;  // KB
+    };
+    const long before = most_memory();
+    const Bitmap bitmap = load_bitmap(folder / "a.png", true);
+    EXPECT_TRUE((bitmap.texels.front() == black()).all());
+    EXPECT_EQ(bitmap.texels.back()[2], 1);
+    EXPECT_LT(most_memory() - before, 400'000);
 }
 
 /// OpenEXR makes room before it reads: 2 GB for a text, as much as the channels ask for.
@@ -220,13 +240,20 @@ TEST(PictureFile, AnOpenExrFileThatAsksForMoreThanItHoldsIsRefused) {
     const std::string large = "its tiles have 4 x 8257540 pixels";
     expect_refused(std::string(good).insert(magic_and_version, tiles), large, large);
 
+    const auto with_size = [](std::string picture, std::int32_t width, std::int32_t height) {
+        for (const char* name : {"dataWindow", "displayWindow"})
+            picture = with_attribute(picture, name, window(width, height));
+        return picture;
+    };
     std::vector<std::string> many(400);
     for (std::size_t i = 0; i < many.size(); ++i) many[i] = "c" + std::to_string(1000 + i);
-    std::string bytes = support::exr_of_kind({.channels = many});
-    for (const char* name : {"dataWindow", "displayWindow"})
-        bytes = with_attribute(bytes, name, window(10'000));
-    expect_refused(bytes + std::string(80'000, '\0'), "it declares 10000 x 10000 pixels, more than",
-                   "its channels are c1000");
+    const std::string channels =
+        with_size(support::exr_of_kind({.channels = many}), 10'000, 10'000);
+    const std::string square = "it declares 10000 x 10000 pixels, more than";
+    expect_refused(channels + std::string(80'000, '\0'), square, square);
+    // 500 bytes: 0.3 GB as a picture, 8.5 GB and 26 s as a texture.
+    const std::string row = "it declares 67108865 x 1 pixels, more than";
+    expect_refused(with_size(good, 67'108'865, 1), row, row);
 }
 
 TEST(PictureFile, HasNoMorePixelsThanAFilm) {
