@@ -291,9 +291,11 @@ private:
             sum += cost->seconds;
         }
         if (runner_ != nullptr)
-            for (const TrialRunner::Running& each : runner_->running())
-                if (const std::optional<Cost> cost = status_.costs.of(*each.trial))
-                    sum += std::max(0.0, cost->seconds - each.seconds);
+            for (const TrialRunner::Running& each : runner_->running()) {
+                const std::optional<Cost> cost = status_.costs.of(*each.trial);
+                if (!cost) return {};
+                sum += std::max(0.0, cost->seconds - each.seconds);
+            }
         waiting_ = sum / options_.trials.jobs;
         return waiting_;
     }

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -96,6 +98,99 @@ TEST_F(Runner, MakesARowOfATrialThatEatsMemory) {
     EXPECT_EQ(hungry.at("message"), "took more than 200 MiB of memory");
     EXPECT_EQ(hungry.at("memory_limit_bytes"), 200 << 20);
     EXPECT_NE(log_of(hungry).find("failed: took more than"), std::string::npos);
+}
+
+// Failures of one kind do not make up for those of another: one finds no memory for its picture, the other has too little
+// time to come to it. (On a machine so slow that the first takes too long as well, two do.)
+TEST_F(Runner, FailsWhereAsManyTrialsFailAsTakeTooLong) {
+    const std::string file = folder_ / "sweep.json";
+    write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+        "set": {{"film": {{"pointer": "/sensor/film", "values": [
+            {{"type": "hdrfilm", "width": 11000, "height": 11000}}]}}}},
+        "methods": [{{"method": "none"}},
+                    {{"method": "photonmap", "param": {{"emitted": 2000000000}}}}]}})",
+                                        swept_scene));
+    const ProgramResult result = sweep(file, {"--memory", "200", "--timeout", "1"});
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    ASSERT_EQ(rows().size(), 2U);
+    for (const json& row : rows()) EXPECT_NE(row.at("status"), "done");
+    EXPECT_EQ(rows()[1].at("status"), "timeout");
+}
+
+// By records whose times are known: ended, running and waiting trials.
+TEST_F(Runner, TellsHowLongTheOthersWillTake) {
+    const std::string quick = R"({"method": "lighttrace", "param": {"paths": [100, 200]}})";
+    const auto pretend_it_took = [&](const std::string& file, double seconds) {
+        ASSERT_EQ(sweep(file, {"--filter", "method=none"}).exit_code, 0);
+        for (const json& row : rows()) {
+            const fs::path record =
+                fs::path(out_) / "trials" / row.at("trial").get<std::string>() / "record.json";
+            json changed = json::parse(read_whole_file(record));
+            changed["elapsed_s"] = seconds;
+            write_atomic_file(record, changed.dump());
+        }
+    };
+    // Before the first has ended nothing is known; then the second takes what the first took, next to nothing.
+    const ProgramResult unknown = sweep(write_sweep("[" + quick + "]"));
+    EXPECT_NE(unknown.err.find(", ETA 0:00\n"), std::string::npos) << unknown.err;
+    EXPECT_EQ(unknown.err.find("ETA -"), std::string::npos) << unknown.err;
+
+    // The first of two is like the one of 1,000 s before, then the second like the mean of both.
+    out_ = folder_ / "mean";
+    const std::string same = write_sweep(R"([{"method": "none"}, )" + quick + "]");
+    pretend_it_took(same, 1000);
+    const ProgramResult mean = sweep(same);
+    EXPECT_NE(mean.err.find("[2/3] "), std::string::npos) << mean.err;
+    EXPECT_EQ(mean.err.find("ETA -"), std::string::npos) << mean.err;
+    EXPECT_EQ(mean.err.find("ETA 16:"), std::string::npos) << mean.err;
+
+    // While one of 500 s by that mean is at work, half of what is left for two at once is 4:10.
+    out_ = folder_ / "running";
+    const std::string long_one = write_sweep(
+        R"([{"method": "none"}, {"method": "photonmap", "param": {"emitted": 2000000000}}, )" +
+        quick + "]");
+    pretend_it_took(long_one, 1000);
+    support::Program program(arguments(long_one, {"--jobs", "2"}));
+    while (std::ranges::count_if(fs::directory_iterator(fs::path(out_) / "trials"),
+                                 [](const fs::directory_entry& trial) {
+                                     return fs::exists(trial.path() / "record.json");
+                                 }) < 3)
+        ASSERT_FALSE(program.has_ended());
+    program.signal(SIGTERM);
+    const std::string lines = program.wait().err;
+    EXPECT_NE(lines.find(", ETA 4:"), std::string::npos) << lines;
+}
+
+/// What a sweep writes on a terminal, until it ends or so many seconds are over.
+std::string on_terminal(const std::string& arguments, const std::string& seconds) {
+    return support::shell("export P; script -qec \"timeout -s INT " + seconds + " $P sweep " +
+                          arguments + "\" /dev/null")
+        .out;
+}
+
+// The done share of what is at work, and what goes on beside it; while no trial has ended nothing is known of the time.
+TEST_F(Runner, KeepsALineOnATerminalUpToDate) {
+    const std::string file =
+        write_sweep(R"([{"method": "photonmap", "param": {"emitted": [10000000, 10000001]}}])");
+    const std::string shown = on_terminal("'" + file + "' -o '" + out_ + "' --jobs 2", "1.5");
+    EXPECT_TRUE(std::regex_search(shown, std::regex("ETA -, [1-9][0-9]? % "))) << shown;
+    EXPECT_NE(shown.find(" and 1 "), std::string::npos) << shown;
+}
+
+// By its done share; of the trials after it nothing is known.
+TEST_F(Runner, TellsHowLongAReferenceWillTake) {
+    const std::string file = folder_ / "sweep.json";
+    write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1,
+        "methods": [{{"method": "none"}}],
+        "reference": {{"method": "lighttrace", "param": {{"paths": 4000000}}}}}})",
+                                        swept_scene));
+    const std::string shown = on_terminal("'" + file + "' -o '" + out_ + "'", "100");
+    const std::regex line("ETA at least ([0-9]+):([0-9]+), [1-9][0-9]? % ref");
+    std::vector<int> seconds;
+    for (std::sregex_iterator at(shown.begin(), shown.end(), line), end; at != end; ++at)
+        seconds.push_back(60 * std::stoi((*at)[1]) + std::stoi((*at)[2]));
+    ASSERT_FALSE(seconds.empty()) << shown;
+    EXPECT_GE(seconds.front(), seconds.back()) << "it falls";
 }
 
 TEST_F(Runner, KeepsOtherRunnersOutUntilItEnds) {

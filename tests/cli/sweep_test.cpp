@@ -231,6 +231,11 @@ TEST_F(Sweeps, LeaveTrialsToDoWhoseReferenceFindsNoRoom) {
     EXPECT_NE(full.err.find("2 trials of this reference are left to do"), std::string::npos)
         << full.err;
     EXPECT_TRUE(records().empty());
+    const ProgramResult only =
+        support::shell("ulimit -f 4; $P sweep '" + file + "' -o '" + out_ + "' --references only");
+    EXPECT_EQ(only.exit_code, 1) << only.err;
+    EXPECT_EQ(sweep(file, {"--references", "only"}).exit_code, 0);
+    EXPECT_TRUE(records().empty());
     EXPECT_EQ(sweep(file).exit_code, 0);
     EXPECT_EQ(records().size(), 4U);
 }
