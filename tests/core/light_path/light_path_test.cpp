@@ -462,5 +462,25 @@ TEST(LightPath, TellsBlackSidesFromBlackWater) {
     }
 }
 
+// A floor that scatters and mirrors on its front is black below: a path that comes there ends, once.
+TEST(LightPath, EndsOnceOnTheBlackSideOfAFloorThatMirrors) {
+    Bsdf blend = support::diffuse(0.8F);
+    blend.mirror = MirrorPart{0.5F, Spectrum(Spectrum::Constant(0.9F))};
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("water", 1, 1, true, support::glass(1.33F)),
+                   support::horizontal("floor", 0, 1, false, blend)};  // in the water's shadow
+    desc.lights = {support::point_light({0, 0, 3}, 1)};
+    const Scene scene(std::move(desc));
+    LightPathCounts counts;
+    std::uint64_t sent = 0;
+    send(AimedEmission(scene), [&](const LightParticle& particle, Rng& rng) {
+        ++sent;
+        EXPECT_FALSE(trace_one(scene, particle, {16}, rng, counts));
+    });
+    EXPECT_GT(counts.on_black_side, sent / 4);
+    EXPECT_EQ(counts.absorbed, 0U);
+    EXPECT_EQ(counts.missed + counts.escaped + counts.on_black_side, sent);
+}
+
 }  // namespace
 }  // namespace caustics
