@@ -33,14 +33,12 @@ if(CAUSTICS_SANITIZE)
     list(APPEND CAUSTICS_LINK_OPTIONS "-fsanitize=${CAUSTICS_SANITIZE}")
 endif()
 if(CAUSTICS_FUZZ)
-    # Both of LLVM: what libFuzzer goes by, and the lines that llvm-cov reports.
-    list(APPEND CAUSTICS_COMPILE_OPTIONS -fsanitize=fuzzer-no-link
-        -fprofile-instr-generate -fcoverage-mapping)
-    list(APPEND CAUSTICS_LINK_OPTIONS -fprofile-instr-generate)
+    list(APPEND CAUSTICS_COMPILE_OPTIONS -fsanitize=fuzzer-no-link)
 endif()
-if(CAUSTICS_COVERAGE)
-    list(APPEND CAUSTICS_COMPILE_OPTIONS --coverage -fprofile-update=atomic)
-    list(APPEND CAUSTICS_LINK_OPTIONS --coverage)
+if(CAUSTICS_FUZZ OR CAUSTICS_COVERAGE)
+    # Of LLVM: the lines and branches that llvm-cov reports.
+    list(APPEND CAUSTICS_COMPILE_OPTIONS -fprofile-instr-generate -fcoverage-mapping)
+    list(APPEND CAUSTICS_LINK_OPTIONS -fprofile-instr-generate)
 endif()
 
 # The headers of others that most files read, compiled once: parsing them is half of a build's time.

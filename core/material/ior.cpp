@@ -14,7 +14,11 @@ Ior::Ior(Law law, std::vector<SellmeierTerm> terms) : n_(0), law_(law), terms_(s
 
 Ior Ior::cauchy(double a, double b) { return {Law::cauchy, {{a, b}}}; }
 
-Ior Ior::sellmeier(std::vector<SellmeierTerm> terms) { return {Law::sellmeier, std::move(terms)}; }
+Ior Ior::sellmeier(std::vector<SellmeierTerm> terms) {
+    // 0 / 0 at its pole.
+    std::erase_if(terms, [](const SellmeierTerm& term) { return term.b == 0; });
+    return {Law::sellmeier, std::move(terms)};
+}
 
 // With l_F, l_C, l_d = 0.4861327, 0.6562725, 0.5875618 um.
 Ior Ior::abbe(double n_d, double v_d) {
@@ -38,7 +42,7 @@ std::optional<std::string> Ior::why_unusable() const {
     if (law_ == Law::sellmeier)
         for (const SellmeierTerm& term : terms_) {
             const double pole = term.c > 0 ? 1e3 * std::sqrt(term.c) : 0;
-            if (term.b != 0 && pole >= shortest_wavelength && pole <= longest_wavelength)
+            if (pole >= shortest_wavelength && pole <= longest_wavelength)
                 return "the index is infinite" + at(pole);
         }
     for (double nm = shortest_wavelength; nm <= longest_wavelength; nm += 1) {

@@ -68,6 +68,17 @@ TEST(Ior, ALawWithoutDispersionIsANumber) {
     EXPECT_FALSE(named("f2") == named("sf5"));
 }
 
+// Between 380 and 780 nm: at least 1, at most 10, and finite. Lists of the law may hold terms of no weight.
+TEST(Ior, TellsWhereALawIsNoIndex) {
+    EXPECT_FALSE(Ior(40.0F).why_unusable()) << "a number is asked for its range by its key";
+    EXPECT_FALSE(Ior::sellmeier({{1.25, 0.01}, {0, 0.25}}).why_unusable());
+    EXPECT_EQ(Ior::sellmeier({{1.25, 0.01}, {0.5, 0.25}}).why_unusable(),
+              "the index is infinite at 500 nm");
+    EXPECT_EQ(Ior::sellmeier({{-1.25, 0}}).why_unusable(), "the index is not finite at 380 nm");
+    EXPECT_EQ(Ior::cauchy(1.1, -0.0361).why_unusable(), "the index is 0.850000 at 380 nm, below 1");
+    EXPECT_EQ(Ior::cauchy(9, 0.1805).why_unusable(), "the index is 10.250000 at 380 nm, above 10");
+}
+
 // Least deviation of a prism of 60 degrees: 2 asin(n / 2) - 60 degrees, by two refractions.
 TEST(Ior, APrismTurnsItsColoursByAsMuchAsSnellSays) {
     Bsdf glass = support::glass(1.5F);

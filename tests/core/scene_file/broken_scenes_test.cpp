@@ -129,6 +129,13 @@ std::vector<Broken> broken_scenes() {
          with_bsdf(
              R"({"type": "dielectric", "int_ior": {"type": "sellmeier", "B": [1, 2], "C": [0]}})"),
          {"/it/b/int_ior", "equal length"}},
+        {"glass_and_one_list",
+         with_bsdf(R"({"type": "dielectric",
+                       "int_ior": {"type": "sellmeier", "material": "bk7", "C": [0]}})"),
+         {"/it/b/int_ior/material", "either a material or B and C"}},
+        {"no_terms",
+         with_bsdf(R"({"type": "dielectric", "int_ior": {"type": "sellmeier", "B": [], "C": []}})"),
+         {"/it/b/int_ior", "at least 1"}},
         {"pole_in_the_light",
          with_bsdf(
              R"({"type": "dielectric", "int_ior": {"type": "sellmeier", "B": [1], "C": [0.25]}})"),

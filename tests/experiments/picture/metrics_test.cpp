@@ -79,8 +79,36 @@ TEST(Metrics, NameThePixelThatIsNotFinite) {
 
 TEST(Metrics, RefuseOtherSizesAndMissingLayers) {
     const Film x = grey_film("caustic", {1, 1, 1, 1});
-    EXPECT_THROW(measure(x, Film(2, 1), "caustic", all), InputError);
-    EXPECT_THROW(measure(x, grey_film("direct", {1, 1, 1, 1}), "caustic", all), InputError);
+    const auto refusal = [](const Film& film, const Film& reference) -> std::string {
+        try {
+            measure(film, reference, "caustic", all);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "taken";
+    };
+    EXPECT_EQ(refusal(x, Film(2, 1)), "the picture has 2x2 pixels, the reference 2x1");
+    EXPECT_EQ(refusal(x, Film(1, 2)), "the picture has 2x2 pixels, the reference 1x2");
+    const Film other = grey_film("direct", {1, 1, 1, 1});
+    EXPECT_EQ(refusal(x, other), "no layer \"caustic\" in the reference");
+    EXPECT_EQ(refusal(other, x), "no layer \"caustic\" in the picture");
+}
+
+TEST(Metrics, WantBeautyAndCausticOfEveryPictureAndIndirectLightWhereItIsThere) {
+    const auto refusal = [](const Film& film) -> std::string {
+        try {
+            require_finite(film, "a.exr");
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "taken";
+    };
+    Film film = grey_film("caustic", {1, 1, 1, 1});
+    EXPECT_EQ(refusal(film), "a.exr: no layer \"beauty\"");
+    for (std::size_t i = 0; i < 4; ++i) film.set_rgb("", i, Spectrum::Constant(1));
+    EXPECT_EQ(refusal(film), "taken");
+    film.set_rgb("indirect", 3, Spectrum::Constant(std::numeric_limits<float>::infinity()));
+    EXPECT_EQ(refusal(film), "a.exr: layer \"indirect\" is not finite at pixel (1, 1)");
 }
 
 TEST(Masks, LeaveOutWhatEitherPictureCannotReach) {
@@ -90,6 +118,7 @@ TEST(Masks, LeaveOutWhatEitherPictureCannotReach) {
     r.plane("unreached.Y") = {0, 0, 0, 1};
     EXPECT_EQ(reached_pixels(x, r), (PixelMask{true, false, true, false}));
     EXPECT_DOUBLE_EQ(fraction(reached_pixels(x, r)), 0.5);
+    EXPECT_EQ(fraction({}), 0);
 }
 
 TEST(Masks, KeepPixelsAtLeastAsBrightAsTheMean) {
@@ -129,6 +158,9 @@ TEST(StandardError, IsTheRootMeanSquareOverTheMean) {
     for (std::size_t i = 0; i < 4; ++i) r.set_rgb("indirect_stderr", i, {1, 2, 2});
     EXPECT_NEAR(*relative_standard_error(r, "indirect", all), std::sqrt(3.0) / 4, 1e-7);
     EXPECT_FALSE(relative_standard_error(r, "direct", all));
+    Film black = grey_film("caustic", {0, 0, 0, 0});
+    black.plane("stderr.Y") = {1, 1, 1, 1};
+    EXPECT_FALSE(relative_standard_error(black, "caustic", all)) << "of what share?";
 }
 
 }  // namespace
