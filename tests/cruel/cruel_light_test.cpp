@@ -24,7 +24,7 @@ std::string disagreement(const std::filesystem::path& file, const std::string& m
                          std::uint64_t seed) {
     const Scene scene(load_scene(file).desc);
     if (why_nothing_is_aimed(scene)) return "";
-    return LightCheck(scene, seed).disagreement(method);
+    return LightCheck(scene, seed).verdict(method).disagreement;
 }
 
 Json shrunk_scene(const Json& scene, const std::filesystem::path& folder, const std::string& method,
@@ -38,28 +38,38 @@ Json shrunk_scene(const Json& scene, const std::filesystem::path& folder, const 
     });
 }
 
-// The beams of one setting are much like those of another, and slow.
+// Slow ones, in few scenes.
 bool is_its_turn(const std::string& method, std::uint64_t seed) {
-    if (method == "causticpolygons") return seed % 8 == 0;
-    if (method == "beamtree area") return seed % 3 == 0;
-    if (method == "beamtree refined") return seed % 4 == 0;
+    if (method == "causticpolygons") return seed % 16 == 0;
+    if (method == "beamtree squares") return seed % 4 == 0;
     return true;
 }
 
+void check_light(const SceneRange& range, std::uint64_t seed) {
+    const support::TemporaryFolder folder("cruel_light" + std::to_string(seed));
+    const Json made = cruel_scene(Purpose::light, seed, folder.path());
+    const Scene scene(load_scene(write(made, folder.path())).desc);
+    if (why_nothing_is_aimed(scene)) return;
+    LightCheck check(scene, seed);
+    for (const std::string& method : checked_methods()) {
+        if (!is_its_turn(method, seed)) continue;
+        const Verdict found = check.verdict(method);
+        if (found.served)
+            range.note("{}\t{}\t{}\t{}\t{}\t{}\t{}", seed, method, found.efforts, found.light.value,
+                       found.light.variance, found.of_particles.value, found.of_particles.variance);
+        if (found.disagreement.empty()) continue;
+        ADD_FAILURE() << "seed " << seed << ", " << method << ": " << found.disagreement;
+        // Many scenes are tried first and those that fail once more.
+        if (range.count == 1)
+            ADD_FAILURE() << shrunk_scene(made, folder.path(), method, seed).dump();
+    }
+}
+
 TEST(CruelLight, IsTheSameByEveryMethod) {
-    const SceneRange range = SceneRange::asked(3);
+    const SceneRange range = SceneRange::asked(10);
     for (std::uint64_t seed = range.first; seed < range.first + range.count; ++seed) {
-        const support::TemporaryFolder folder("cruel_light" + std::to_string(seed));
-        const Json made = cruel_scene(Purpose::light, seed, folder.path());
-        const Scene scene(load_scene(write(made, folder.path())).desc);
-        if (why_nothing_is_aimed(scene)) continue;
-        LightCheck check(scene, seed);
-        for (const std::string& method : checked_methods()) {
-            if (!is_its_turn(method, seed)) continue;
-            const std::string text = check.disagreement(method);
-            EXPECT_EQ(text, "") << "seed " << seed << ", " << method << ", in "
-                                << shrunk_scene(made, folder.path(), method, seed).dump();
-        }
+        SCOPED_TRACE(seed);
+        EXPECT_NO_THROW(check_light(range, seed));
     }
 }
 

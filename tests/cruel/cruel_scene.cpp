@@ -32,8 +32,11 @@ public:
         if (dice_.chance(0.5)) scene_["version"] = 1;
         add_sensor();
         add_receivers();
-        for (int i = dice_.whole(1, parts_.measured() ? 3 : 6); i > 0; --i) add_caster();
-        for (int i = dice_.whole(1, parts_.measured() ? 2 : 3); i > 0; --i) add_light();
+        // Most scenes are small, so that many can be tried.
+        const bool many = dice_.chance(0.15);
+        for (int i = dice_.whole(1, !many ? 2 : parts_.measured() ? 3 : 6); i > 0; --i)
+            add_caster();
+        for (int i = dice_.whole(1, many ? 3 : 1); i > 0; --i) add_light();
         return scene_;
     }
 
@@ -64,11 +67,13 @@ private:
 
     void add_sensor() {
         Json film = {{"type", "hdrfilm"}, {"width", 12}, {"height", 8}};
+        // Several tiles for several threads, the last of them a pixel high.
+        if (dice_.chance(0.3)) film = {{"type", "hdrfilm"}, {"width", 18}, {"height", 17}};
         if (dice_.chance(0.2)) film["filter"] = {{"type", "box"}};
         Json sampler = {{"type", dice_.pick({"independent", "stratified", "adaptive"})}};
         sampler["sample_count"] = sampler["type"] == "adaptive" ? 2 : dice_.pick({1, 4});
         if (sampler["type"] == "adaptive") {
-            sampler["max_sample_count"] = 8;
+            sampler["max_sample_count"] = 4;
             if (dice_.chance(0.5)) sampler["max_error"] = dice_.number(0.01, 0.5);
         }
         if (sampler["type"] == "stratified") sampler["jitter"] = dice_.chance(0.7);
@@ -194,7 +199,7 @@ private:
             case 3:
             case 4:
             case 5:
-                if (low && parts_.measured()) break;
+                if (parts_.measured() && (low || dice_.chance(0.7))) break;
                 return add_area(aimed);
             default: break;
         }

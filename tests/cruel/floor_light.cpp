@@ -77,6 +77,7 @@ FloorLight FloorAsked::by_particles(const support::Emit& emit, std::uint64_t pat
     Tally squares, discs;
     LightPathCounts counts;
     double sent = 0;
+    Eigen::Array3d on_casters = Eigen::Array3d::Zero();
     std::vector<Deposit> deposits;
     for (std::uint64_t path = 0; path < paths; ++path) {
         Rng rng(seed_, Stage::test, path);
@@ -85,7 +86,9 @@ FloorLight FloorAsked::by_particles(const support::Emit& emit, std::uint64_t pat
         ++counts.aimed;
         sent += static_cast<double>(particle->flux.maxCoeff());
         deposits.clear();
+        const std::uint64_t missed = counts.missed;
         trace_light_path(scene_, *particle, {max_bounces}, rng, counts, deposits);
+        if (counts.missed == missed) on_casters += particle->flux.cast<double>();
         for (const Deposit& d : deposits) {
             if (d.shape != floor_ || !d.front) continue;
             const auto place = floor_place(to_local * d.position.cast<double>());
@@ -97,6 +100,9 @@ FloorLight FloorAsked::by_particles(const support::Emit& emit, std::uint64_t pat
     const double area = std::pow(2 * radius_ / disc_share, 2), disc = pi_d * radius_ * radius_;
     const auto n = static_cast<double>(paths);
     FloorLight light;
+    for (std::size_t c = 0; c < 3; ++c)
+        light.on_casters[c] =
+            on_casters[static_cast<Eigen::Index>(c)] / (n * FloorLight::squares * area);
     const double one = counts.aimed > 0 ? sent / static_cast<double>(counts.aimed) : 0;
     light.in_squares = squares.cells(n, area, FloorLight::squares * area, one);
     light.in_discs = discs.cells(n, disc, FloorLight::squares * disc, one);

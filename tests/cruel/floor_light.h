@@ -23,8 +23,10 @@ struct FloorLight {
     static constexpr int squares = 9;
     using Cells = std::array<std::array<Measured, 3>, squares + 1>;
     Cells in_squares;
-    Cells in_discs;         ///< that the squares hold, as wide as they are
-    double share_lost = 0;  ///< of the light, between casters, as the method itself reports
+    Cells in_discs;  ///< that the squares hold, as wide as they are
+    /// The flux that particles bring to casters, over the floor's area [W/m^2].
+    std::array<double, 3> on_casters{};
+    double share_lost = 0;  ///< of that, between casters, as the method itself reports
 };
 
 /// The floor of a scene and how it is asked.

@@ -73,7 +73,7 @@ void spoil(TriangleMesh& mesh, Dice& dice, bool closed) {
 }  // namespace
 
 Json Parts::mesh_file(bool closed) {
-    TriangleMesh mesh = tessellate_sphere(dice_.whole(4, measured() ? 24 : 8));
+    TriangleMesh mesh = tessellate_sphere(dice_.whole(4, 8));
     spoil(mesh, dice_, closed);
     const std::string type = dice_.pick({"ply", "obj"});
     const auto file = new_file("." + type);
@@ -84,7 +84,8 @@ Json Parts::mesh_file(bool closed) {
 }
 
 Json Parts::lathe(bool closed) {
-    Json shape = {{"type", "lathe"}, {"resolution", dice_.whole(measured() ? 24 : 3, 32)}};
+    Json shape = {{"type", "lathe"},
+                  {"resolution", dice_.whole(measured() ? 6 : 3, dice_.chance(0.2) ? 32 : 12)}};
     const double bulge = dice_.number(0.3, 0.8);
     Json profile = {{closed ? 0.0 : 0.2, -0.8}, {bulge, dice_.number(-0.5, 0)}, {0.3, 0.6}};
     if (dice_.chance(0.5)) profile[1] = {{"at", profile[1]}, {"crease", dice_.chance(0.5)}};
@@ -94,7 +95,7 @@ Json Parts::lathe(bool closed) {
         shape["open"] = true;
     shape["profile"] = profile;
     if (dice_.chance(0.5)) shape["interpolation"] = dice_.pick({"linear", "catmullrom"});
-    if (dice_.chance(0.5)) shape["segments"] = dice_.whole(1, 6);
+    if (dice_.chance(0.9)) shape["segments"] = dice_.whole(1, dice_.chance(0.2) ? 6 : 2);
     if (measured() || dice_.chance(0.5)) shape["face_normals"] = true;
     return shape;
 }
@@ -112,7 +113,7 @@ Json Parts::cut() {
         shape["planes"] = Json::array({{dice_.number(-1, 1), 0.3, -1, dice_.number(0.3, 0.5)}});
     if (dice_.chance(0.6)) shape["height"] = 0.4;
     if (shape.contains("height") && dice_.chance(0.5)) {
-        shape["inner"] = {{"profile", {{0.2, 0.4}, {0.15, 0.2}, {0, 0.1}}}};
+        shape["inner"] = {{"profile", {{0.15, 0.4}, {0.12, 0.2}, {0, 0.1}}}};
         if (dice_.chance(0.5)) shape["inner"]["interpolation"] = "catmullrom";
         if (dice_.chance(0.5)) shape["inner"]["segments"] = dice_.whole(1, 4);
         shape["resolution"] = dice_.whole(3, 16);
@@ -136,7 +137,7 @@ Json Parts::solid() {
             Json ball = {{"type", "sphere"}};
             if (dice_.chance(0.2)) ball["center"] = {0, dice_.number(-0.2, 0.2), 0};
             if (ball.contains("center")) ball["radius"] = dice_.number(0.3, 0.8);
-            return exact_or_mesh(ball, measured() ? 12 : 2, 24);
+            return exact_or_mesh(ball, measured() ? 6 : 2, 10);
         }
     }
 }
@@ -150,7 +151,7 @@ Json Parts::waves() {
     }
     Json shape = {{"type", "heightfield"}, {"waves", list}};
     if (dice_.chance(0.5)) shape["half_size"] = {dice_.number(0.3, 0.7), dice_.number(0.3, 0.7)};
-    return exact_or_mesh(shape, 4, 24);
+    return exact_or_mesh(shape, 4, 12);
 }
 
 Json Parts::ground() {
@@ -185,7 +186,7 @@ Json Parts::sheet() {
                                   {"p0", {0, 0, dice_.number(-0.5, 0)}},
                                   {"p1", {0, dice_.number(0, 0.3), 0.5}},
                                   {"radius", dice_.number(0.2, 0.6)}},
-                                 measured() ? 12 : 3, 24);
+                                 measured() ? 8 : 3, 12);
         case 5: return exact_or_mesh({{"type", "disk"}}, measured() ? 8 : 1, 16);
         default: {
             Json shape = exact_or_mesh({{"type", "rectangle"}}, 1, 8);

@@ -1,28 +1,46 @@
 #!/usr/bin/env bash
-# cruel_scenes.sh bits|light FIRST COUNT [SECONDS]: random scenes by the seeds FIRST to FIRST + COUNT - 1 through
-# tests/cruel, built with preset ci. Each scene has a process of its own and so many seconds (default: 600), so that
-# a crash or a hang is one failed seed. Prints each failure and, last, how many scenes passed.
+# cruel_scenes.sh bits|light FIRST COUNT [SECONDS [TABLE]]: random scenes by the seeds FIRST to FIRST + COUNT - 1 through
+# tests/cruel, built with preset ci. A process tries 25 of them; where one crashes, fails or takes more CPU seconds than
+# SECONDS (600), each of the 25 has a process of its own. Prints each failure, what was compared (with Python 3), and,
+# last, how many scenes passed. TABLE keeps a line for each scene and method, and is added to where it is there.
 # Exit codes: 0 all passed, 1 some did not, 2 bad usage.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 program=build/ci/tests/test_cruel_scenes
 
-usage() { echo "usage: tools/reliability/cruel_scenes.sh bits|light FIRST COUNT [SECONDS]" >&2; exit 2; }
+usage() { echo "usage: tools/reliability/cruel_scenes.sh bits|light FIRST COUNT [SECONDS [TABLE]]" >&2; exit 2; }
 case "${1:-}" in
     bits) filter='CruelBits.*' ;;
     light) filter='CruelLight.IsTheSameByEveryMethod' ;;
     *) usage ;;
 esac
-[[ ${2:-} =~ ^[0-9]+$ && ${3:-} =~ ^[0-9]+$ ]] || usage
+[[ ${2:-} =~ ^[0-9]+$ && ${3:-} =~ ^[0-9]+$ && ${4:-600} =~ ^[0-9]+$ ]] || usage
 [ -x "$program" ] || { echo "cruel_scenes: $program is not built" >&2; exit 2; }
+end=$(($2 + $3)) seconds=${4:-600}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+table=${5:-$folder/table}
+touch "$table"
+
+# FIRST COUNT: what these scenes say; their lines join the table where all passed.
+try() {
+    rm -f "$folder/lines"
+    (ulimit -t "$seconds" && CAUSTICS_CRUEL_TABLE=$folder/lines CAUSTICS_CRUEL_FIRST=$1 CAUSTICS_CRUEL_COUNT=$2 \
+        exec timeout $((60 * seconds)) "$program" --gtest_filter="$filter" >"$folder/said" 2>&1) || return 1
+    [ ! -e "$folder/lines" ] || cat "$folder/lines" >>"$table"
+}
 
 failed=0
-for ((seed = $2; seed < $2 + $3; ++seed)); do
-    if said=$(CAUSTICS_CRUEL_FIRST=$seed CAUSTICS_CRUEL_COUNT=1 timeout "${4:-600}" "$program" --gtest_filter="$filter" 2>&1); then
-        continue
-    fi
-    failed=$((failed + 1))
-    printf 'seed %s failed:\n%s\n' "$seed" "$said"
+for ((first = $2; first < end; first += 25)); do
+    last=$((first + 25 < end ? first + 25 : end))
+    ! try "$first" $((last - first)) || continue
+    for ((seed = first; seed < last; ++seed)); do
+        ! try "$seed" 1 || continue
+        failed=$((failed + 1))
+        printf 'seed %s failed:\n' "$seed"
+        cat "$folder/said"
+    done
 done
+python3 tools/reliability/cruel_table.py "$1" "$table"
 echo "$(($3 - failed)) of $3 scenes passed"
 [ "$failed" -eq 0 ]
