@@ -6,6 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+
 #include "core/math/frame.h"
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
@@ -212,6 +216,55 @@ TEST(Bsdf, CastersReceiversAndSides) {
     EXPECT_TRUE(scatters_from(support::diffuse(1, true), false));
     EXPECT_FLOAT_EQ(albedo(support::diffuse(0.25F), Vec2::Zero())[2], 0.25F);
     EXPECT_EQ(albedo(support::mirror(0.5F), Vec2::Zero())[0], 1);
+}
+
+// Two squares of a bitmap, of 0.3 and 0.6.
+Bitmap two_texels() {
+    Bitmap bitmap;
+    bitmap.width = 2;
+    bitmap.height = 1;
+    bitmap.texels = {Spectrum::Constant(0.3F), Spectrum::Constant(0.6F)};
+    return bitmap;
+}
+
+TEST(Phong, SendsAsMuchToItsLobeAsItsBrightestPlacesSay) {
+    scene_file::Assets assets;
+    const auto read = [&](const std::string& keys) {
+        return Phong::read(JsonNode::parse_text(R"({"type": "phong", )" + keys + "}", "test"),
+                           assets);
+    };
+    EXPECT_FLOAT_EQ(read(R"("diffuse_reflectance": 0.6, "specular_reflectance": 0.3)").lobe_share,
+                    1.0F / 3);
+    EXPECT_FLOAT_EQ(read(R"("diffuse_reflectance": 0, "specular_reflectance": 0)").lobe_share,
+                    0.5F);
+    const std::string board =
+        R"({"type": "checkerboard", "color0": 0.1, "color1": 0.6, "to_uv": []})";
+    EXPECT_FLOAT_EQ(
+        read(R"("specular_reflectance": 0.2, "diffuse_reflectance": )" + board).lobe_share, 0.25F);
+    EXPECT_THROW(read(R"("diffuse_reflectance": 0.5, "specular_reflectance": )" + board),
+                 InputError)
+        << "1.1 where the board is brightest";
+}
+
+TEST(Phong, AHighlightForPovRayIsOfTheOldModelAndOfOneStrength) {
+    Phong phong{.specular_reflectance = Spectrum(Spectrum::Constant(0.2F)), .exponent = 40};
+    EXPECT_NE(phong.to_povray().refused.reason.find("\"classic\""), std::string::npos);
+    phong.model = Phong::Model::classic;
+    EXPECT_EQ(phong.to_povray().refused.reason, "");
+    EXPECT_EQ(phong.to_povray().highlight, fmt::format(" phong {} phong_size 40", pi * 0.2F));
+    for (const Texture& texture : {Texture(two_texels()), Texture(Spectrum(0.2F, 0.2F, 0.1F))}) {
+        phong.specular_reflectance = texture;
+        EXPECT_NE(phong.to_povray().refused.reason.find("one strength"), std::string::npos);
+    }
+}
+
+// The angle at which cos^e is a half.
+TEST(Phong, TellsHowNarrowItsLobeIs) {
+    Phong phong{.exponent = 2};
+    EXPECT_NEAR(*phong.lobe_half_width(), pi / 4, 1e-6);
+    phong.lobe_share = 0;
+    EXPECT_FALSE(phong.lobe_half_width()) << "no lobe";
+    EXPECT_FALSE((Phong{.exponent = 1e-3F}.lobe_half_width())) << "as wide as all directions";
 }
 
 }  // namespace

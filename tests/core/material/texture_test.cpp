@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/render/film.h"
@@ -134,7 +135,10 @@ TEST(LoadBitmap, NamesWhatIsWrongInOneLine) {
     Film negative(2, 1);
     negative.set_rgb("", 1, {0, -1, 0});
     write_exr(negative, temporary("negative.exr"));
-    for (const char* name : {"broken.png", "negative.exr", "absent.png"}) {
+    Film endless(2, 1);
+    endless.set_rgb("", 1, {0, std::numeric_limits<float>::infinity(), 0});
+    write_exr(endless, temporary("endless.exr"));
+    for (const char* name : {"broken.png", "negative.exr", "endless.exr", "absent.png"}) {
         try {
             static_cast<void>(load_bitmap(temporary(name), false));
             ADD_FAILURE() << name;

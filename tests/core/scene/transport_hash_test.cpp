@@ -69,12 +69,30 @@ TEST(TransportHash, OfAllPhotonsSeesHowReceiversScatter) {
         desc.shapes[0].bsdf = floor;
         return whole_transport_hash(Scene(std::move(desc)));
     };
-    const std::vector<Bsdf> floors = {
-        support::diffuse(0.5F),         support::diffuse(0.6F),
-        support::schlick(0.8F, 0.1F),   support::schlick(0.8F, 0.2F),
-        support::schlick(0.7F, 0.1F),   support::phong(0.3F, 0.2F, 30),
-        support::phong(0.4F, 0.2F, 30), support::phong(0.3F, 0.1F, 30),
-        support::phong(0.3F, 0.2F, 31), support::phong(0.3F, 0.2F, 30, Phong::Model::classic)};
+    const auto textured = [](std::vector<float> texels, int width, Bitmap::Wrap wrap) {
+        Bitmap bitmap;
+        bitmap.width = width;
+        bitmap.height = static_cast<int>(texels.size()) / width;
+        for (const float texel : texels) bitmap.texels.push_back(Spectrum::Constant(texel));
+        bitmap.wrap = wrap;
+        Bsdf bsdf = support::diffuse(0.5F);
+        std::get<Diffuse>(bsdf.model).reflectance = bitmap;
+        return bsdf;
+    };
+    const std::vector<Bsdf> floors = {textured({0.1F, 0.2F}, 2, Bitmap::Wrap::repeat),
+                                      textured({0.2F, 0.1F}, 2, Bitmap::Wrap::repeat),
+                                      textured({0.1F, 0.2F}, 1, Bitmap::Wrap::repeat),
+                                      textured({0.1F, 0.2F}, 2, Bitmap::Wrap::mirror),
+                                      support::diffuse(0.5F),
+                                      support::diffuse(0.6F),
+                                      support::schlick(0.8F, 0.1F),
+                                      support::schlick(0.8F, 0.2F),
+                                      support::schlick(0.7F, 0.1F),
+                                      support::phong(0.3F, 0.2F, 30),
+                                      support::phong(0.4F, 0.2F, 30),
+                                      support::phong(0.3F, 0.1F, 30),
+                                      support::phong(0.3F, 0.2F, 31),
+                                      support::phong(0.3F, 0.2F, 30, Phong::Model::classic)};
     std::set<std::uint64_t> hashes;
     for (const Bsdf& floor : floors) hashes.insert(whole(floor));
     EXPECT_EQ(hashes.size(), floors.size());
