@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "beamtree/beam_tree.h"
@@ -50,13 +51,21 @@ void expect_steady(const Phase& phase) {
 
 TEST(TraceProgress, GrowsSteadilyWhileBeamsAreTraced) {
     for (const Intensity intensity : {Intensity::area, Intensity::refined})
-        for (const int bounces : {1, 16}) {
+        for (const int bounces : {1, 2, 16}) {
+            if (bounces == 2 && intensity == Intensity::area) continue;  // it ends before refining
             BeamTreeParams params;
             params.intensity = intensity;
             params.max_bounces = bounces;
             const std::vector<Phase> found = phases(params);
             ASSERT_EQ(found.front().name, "beams");
             expect_steady(found.front());
+            if (bounces == 1 && intensity == Intensity::refined) {
+                EXPECT_NEAR(found.front().shares.back(), 1, 1e-9);
+            }
+            // And not before the end.
+            const auto whole = std::ranges::count_if(found.front().shares,
+                                                     [](double share) { return share > 1 - 1e-9; });
+            EXPECT_LE(whole, 2) << bounces << " of " << found.front().shares.size();
             ASSERT_EQ(found.back().name, "tree");
             EXPECT_NEAR(found.back().shares.back(), 1, 1e-9);
         }

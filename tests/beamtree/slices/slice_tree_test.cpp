@@ -381,9 +381,14 @@ TEST(SliceTree, FindsWhatIsOnEdgesWhereBeamsAreNarrow) {
     }
 }
 
-/// Rays whose starts move with the wavelength, by so much along both axes. With `begins` they begin at all heights down to
-/// there and go apart.
-std::vector<BeamSet> drifting_beams(const Vec2& size, const Vec2& drift, float begins) {
+/// How rays move with the wavelength.
+struct Drift {
+    Vec2 start;          ///< of their starts, to either side
+    bool meets = false;  ///< all wavelengths come together below
+    float begins = 0;    ///< rays begin at all heights down to there, and go apart
+};
+
+std::vector<BeamSet> drifting_beams(const Vec2& size, const Drift& drift) {
     std::vector<BeamSet> sets = {between_squares(4, 1, 1)};
     BeamSet& set = sets[0];
     set.light.drifts = true;
@@ -391,14 +396,19 @@ std::vector<BeamSet> drifting_beams(const Vec2& size, const Vec2& drift, float b
     const auto either = [&rng] { return rng.next_word() % 2 == 0 ? 1.0F : -1.0F; };
     for (VertexRay& ray : set.rays) {
         ray.position = Vec3(size.x() * ray.position.x(), size.y() * ray.position.y(), 0);
-        if (begins > 0) {
-            ray.position.z() -= begins * rng.next();
+        if (drift.begins > 0) {
+            ray.position.z() -= drift.begins * rng.next();
             ray.direction = Vec3(0.5F * either() * size.x(), 0.5F * either() * size.y(), -1);
             ray.direction.normalize();
         }
-        const Vec3 by(either() * drift.x(), either() * drift.y(), 0);
-        set.ends[0].push_back({ray.position - by, ray.direction});
-        set.ends[1].push_back({ray.position + by, ray.direction});
+        const Vec3 by(either() * drift.start.x(), either() * drift.start.y(), 0);
+        const Vec3 foot =
+            ray.position + (1 + ray.position.z()) / -ray.direction.z() * ray.direction;
+        for (const std::size_t end : {0U, 1U}) {
+            const Vec3 from = ray.position + (end == 0 ? -by : by);
+            set.ends[end].push_back(
+                {from, drift.meets ? Vec3((foot - from).normalized()) : ray.direction});
+        }
     }
     return sets;
 }
@@ -417,38 +427,41 @@ std::vector<std::uint32_t> scanned_drifting(const BeamSet& set, const Vec3& poin
 // A triangle of a leaf must allow for all that its corners move, also where it is cut.
 TEST(SliceTree, FollowsBeamsThatDrift) {
     for (const Vec2& size : {Vec2(1, 1), Vec2(20, 0.5F), Vec2(0.5F, 20)})
-        for (const Vec2& share : {Vec2(0.2F, 0.2F), Vec2(0.4F, 0), Vec2(0, 0.4F)})
-            for (const float begins : {0.0F, 0.8F}) {
-                const std::vector<BeamSet> sets =
-                    drifting_beams(size, size.cwiseProduct(share), begins);
-                const BeamSet& set = sets[0];
-                const SliceTree tree(all_of(sets, box_of({0, 0, -1}, {0, 0, 0})), widest_isa());
-                Rng rng(12, Stage::test, 0);
-                std::size_t hits = 0;
-                for (int i = 0; i < 2000; ++i) {
-                    // Near an edge of a triangle at one end of the bin.
-                    const auto rays = set.triangle(set.beams[rng.next_word() % set.beams.size()], 0,
-                                                   i % 2 == 0 ? 1 : -1);
-                    const float inwards = 0.05F * rng.next();
-                    const float along = (1 - inwards) * rng.next();
-                    Vec3 from = Vec3::Zero();
-                    Vec3 way = Vec3::Zero();
-                    for (const auto& [weight, ray] : {std::pair(1 - along - inwards, rays[0]),
-                                                      {along, rays[1]},
-                                                      {inwards, rays[2]}}) {
-                        from += weight * ray.position;
-                        way += weight * ray.direction;
-                    }
-                    const float depth = -from.z() + (0.95F + from.z()) * rng.next();
-                    const Vec3 point = from + (from.z() + depth) / -way.z() * way;
-                    const auto truth = scanned_drifting(set, point);
-                    EXPECT_EQ(found_in(tree, sets, point), truth)
-                        << size.transpose() << ", " << share.transpose() << ", " << begins << ": "
-                        << point.transpose();
-                    hits += truth.size();
+        for (const Drift& shares :
+             {Drift{{0.2F, 0.2F}}, Drift{{0.4F, 0}}, Drift{{0, 0.4F}}, Drift{{0.4F, 0}, true},
+              Drift{{0, 0.4F}, true}, Drift{{0.2F, 0.2F}, false, 0.8F},
+              Drift{{0.4F, 0}, false, 0.8F}, Drift{{0, 0.4F}, false, 0.8F}}) {
+            Drift drift = shares;
+            drift.start = drift.start.cwiseProduct(size);
+            const std::vector<BeamSet> sets = drifting_beams(size, drift);
+            const BeamSet& set = sets[0];
+            const SliceTree tree(all_of(sets, box_of({0, 0, -1}, {0, 0, 0})), widest_isa());
+            Rng rng(12, Stage::test, 0);
+            std::size_t hits = 0;
+            for (int i = 0; i < 2000; ++i) {
+                // Near an edge of a triangle at one end of the bin.
+                const auto rays = set.triangle(set.beams[rng.next_word() % set.beams.size()], 0,
+                                               i % 2 == 0 ? 1 : -1);
+                const float inwards = 0.05F * rng.next();
+                const float along = (1 - inwards) * rng.next();
+                Vec3 from = Vec3::Zero();
+                Vec3 way = Vec3::Zero();
+                for (const auto& [weight, ray] : {std::pair(1 - along - inwards, rays[0]),
+                                                  {along, rays[1]},
+                                                  {inwards, rays[2]}}) {
+                    from += weight * ray.position;
+                    way += weight * ray.direction;
                 }
-                EXPECT_GT(hits, 500U);
+                const float depth = -from.z() + (0.95F + from.z()) * rng.next();
+                const Vec3 point = from + (from.z() + depth) / -way.z() * way;
+                const auto truth = scanned_drifting(set, point);
+                EXPECT_EQ(found_in(tree, sets, point), truth)
+                    << size.transpose() << ", " << shares.start.transpose() << ", " << drift.meets
+                    << drift.begins << ": " << point.transpose();
+                hits += truth.size();
             }
+            EXPECT_GT(hits, 500U);
+        }
 }
 
 /// Sixteen times the same beam: two leaves, and the node above them. The triangle at the top shrinks by a factor on its way
