@@ -49,6 +49,12 @@ std::optional<std::size_t> count_channels(std::string_view value) {
         if (!name) return {};
         if (name->empty()) return value.empty() ? std::optional(count) : std::nullopt;
         if (value.size() < channel_bytes) return {};
+        std::uint32_t type = 0;  // whole number, half, float
+        std::memcpy(&type, value.data(), sizeof type);
+        // OpenImageIO ends the program.
+        if (type > 2)
+            throw std::runtime_error("its channel " + one_line(*name) +
+                                     " has values of an unknown type, " + std::to_string(type));
         value.remove_prefix(channel_bytes);
     }
 }

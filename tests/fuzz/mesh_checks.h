@@ -37,6 +37,7 @@ bool read_mesh(const std::string& name, const std::string& bytes, const Read& re
     if (read) require_sound(mesh);
     if (!one_in(16, bytes)) return read;
     put(name, bytes);
+    require(!taken(Naming::file, [&] { load_mesh(named("mesh.stl"), {}); }), "a mesh of any name");
     TriangleMesh flat;
     const bool again = taken(Naming::file, [&] {
         flat = load_mesh(file, {.face_normals = true, .flip_normals = true});

@@ -235,6 +235,16 @@ TEST(PictureFile, AnOpenExrFileThatAsksForMoreThanItHoldsIsRefused) {
     const std::string wrong = "its attribute lineOrder has 2 bytes";
     expect_refused(with_length(0, 2), wrong, wrong);
 
+    // In a file of two parts the program was ended by SIGABRT.
+    std::string odd = good;
+    const std::string channels_and_length{"channels\0chlist\0", 16};
+    const std::size_t type = odd.find('\0', odd.find(channels_and_length) + 20) + 1;
+    odd[type] = 7;
+    const std::string unknown = "its channel ";
+    expect_refused(odd, unknown, unknown);
+    EXPECT_NE(refusal([&] { read_exr(file); }).find("has values of an unknown type, 7)"),
+              std::string::npos);
+
     const std::string tiles{"tiles\0tiledesc\0\t\0\0\0\4\0\0\0\4\0\x7e\0\0", 28};
     constexpr std::size_t magic_and_version = 8;
     const std::string large = "its tiles have 4 x 8257540 pixels";
