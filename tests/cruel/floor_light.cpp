@@ -134,17 +134,22 @@ FloorLight FloorAsked::at_points(const experiments::Method& method, int n, bool 
             points.push_back(point(x, y, points.size()));
             cells.push_back(static_cast<std::size_t>(side * (j / n) + i / n));
         }
-    Tally tally;
     const auto answers = support::irradiance(*built, points);
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-        tally.add(cells[i], answers[i].value);
-        tally.add(in_all, answers[i].value);
-    }
     FloorLight light;
-    const double asked = n * n;
-    light.in_squares = tally.cells(asked, 1, 1);
-    const auto whole = tally.cells(asked * FloorLight::squares, 1, 1);
-    light.in_squares[in_all] = whole[in_all];
+    const double asked = n * n, in_whole = asked * FloorLight::squares;
+    // Two neighbours tell how unsure each of them is.
+    for (std::size_t i = 0; i + 1 < answers.size(); i += 2)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto channel = static_cast<Eigen::Index>(c);
+            const auto a = static_cast<double>(answers[i].value[channel]);
+            const auto b = static_cast<double>(answers[i + 1].value[channel]);
+            const double squared = (a - b) * (a - b);
+            Measured &one = light.in_squares[cells[i]][c], &all = light.in_squares[in_all][c];
+            one.value += (a + b) / asked;
+            one.variance += squared / (asked * asked);
+            all.value += (a + b) / in_whole;
+            all.variance += squared / (in_whole * in_whole);
+        }
     const auto report = built->build_report();
     const auto captured = report.resolved.find("flux_share_captured");
     if (captured != report.resolved.end()) light.share_lost = 1 - captured->second;

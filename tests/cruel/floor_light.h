@@ -36,7 +36,7 @@ public:
 
     /// Particles that lie where they fall; `emit` draws them.
     FloorLight by_particles(const support::Emit& emit, std::uint64_t paths, int max_bounces) const;
-    /// A method's irradiance at n x n points of each square: at random in their cells, or in the middle.
+    /// A method's irradiance at n x n points of each square, n even: at random in their cells, or in the middle.
     FloorLight at_points(const experiments::Method& method, int n, bool jittered = true) const;
     /// A method's irradiance at the discs' middles.
     FloorLight over_discs(const experiments::Method& method, int seeds) const;

@@ -23,10 +23,9 @@ constexpr double off_in_squares = 0.1;
 // Of beams, of the light on casters: what coarse polygons send elsewhere, of grazing light round in a ball for example.
 constexpr double misled_by_polygons = 0.005;
 constexpr double rounding = 1e-5;
-// What is surer than this share of the floor's light needs no second effort. At points what differs from place to place
-// counts as an error: there the share is larger.
+// What is surer than this share of the floor's light needs no second effort; at points the share is larger.
 constexpr double sure = 0.05;
-constexpr double unsure = 0.4;
+constexpr double sure_at_points = 0.15;
 
 /// A fault that is asked for, to see that it is seen: the method's light, times so much.
 double planted(const std::string& method) {
@@ -108,7 +107,7 @@ public:
           floor_(scene, 100 * seed + static_cast<std::uint64_t>(effort)),
           effort_(effort),
           paths_(24'000ULL << (2 * effort)),
-          points_(8 << effort) {}
+          points_(10 << effort) {}
 
     FloorLight particles() const {
         const AimedEmission emission(scene_);
@@ -210,7 +209,8 @@ Verdict LightCheck::verdict(const std::string& method) {
             continue;
         }
         const double error = std::sqrt(found.light.variance + found.of_particles.variance);
-        const double enough = (answer.over_discs ? sure : unsure) * found.of_particles.value;
+        const double enough =
+            (answer.over_discs ? sure : sure_at_points) * found.of_particles.value;
         if (effort > 0 || error <= enough) return found;
     }
     found.disagreement = text;
