@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -83,6 +84,16 @@ void require_plain_exr(const OIIO::ImageSpec& spec) {
     if (spec.nchannels >= 3) require_rec709(primaries);
 }
 
+/// The library's own takes a place before the bytes, of a broken file, for one behind them, and reads there.
+class Memory : public OIIO::Filesystem::IOMemReader {
+public:
+    using IOMemReader::IOMemReader;
+
+    std::size_t pread(void* to, std::size_t count, std::int64_t from) override {
+        return from < 0 ? 0 : IOMemReader::pread(to, count, from);
+    }
+};
+
 class OpenImageIoSource : public PictureSource {
 public:
     OpenImageIoSource(const std::filesystem::path& file, const std::string& bytes) {
@@ -121,7 +132,7 @@ private:
         std::string why;
         if (!format.empty()) input_ = OIIO::ImageInput::create(format);
         if (input_ && input_->supports("ioproxy")) {
-            memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
+            memory_ = std::make_unique<Memory>(bytes.data(), bytes.size());
             input_->set_ioproxy(memory_.get());
             // A '?' in a file's name would be taken for a query.
             const std::string name = "picture." + format;
@@ -151,7 +162,7 @@ private:
         return true;
     }
 
-    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;
+    std::unique_ptr<Memory> memory_;
     std::unique_ptr<OIIO::ImageInput> input_;
     std::vector<float> tiles_;
 };

@@ -84,7 +84,10 @@ def sweeps():
             {"indirect": light, "reference": {"method": "lighttrace", "param": {"paths": 100}, "indirect": {"method": "lighttrace", "param": {"paths": 50}}}},
             {"indirect": light, "set": {"indirect_photons": radius}}, {"indirect": []}, {"indirect": [{"method": "globalphotonmap", "param": {"save": "x"}}]},
             {"reference": {"method": "pathtrace"}}, {"reference": {"method": "lighttrace", "param": {"paths": 100}, "seed": 1.5}}, {"spq": 1})):
-        yield f"part-{i}", json.dumps({**none, **part}).encode()
+        text = json.dumps({**none, **part}).encode()
+        while fnv1a(text) % 4 != 0:  # of these the target makes plans
+            text += b"\t"
+        yield f"part-{i}", text
 
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)]
@@ -235,6 +238,7 @@ def lines():
         "info small.json --scene s --beams b.obj --dot d.dot", "report out --tables --columns 3 --references --megabytes 5",
         "help scene", "help", "--help", "--version", "info --help", "--verb", "teapot", "info \xff", "info --set  a", "1/1 3/2 auto 02/3 1/0",
         "set /ball/radius=1 /lamp/intensity=[1,2,3] /floor/bsdf={\"type\":\"phong\"}", "set /ball={\"$include\":\"small.json\"}",
+        "set /ball={\"$include\":\"small.json\"} /ball/x=1 /ball=1",
         "set /camera/to_world/0/look_at/origin/2=5 /camera/to_world/9=1", "set /camera/to_world/00=1", "set ball=1", "set /none/x=1",
         "set /ball/radius/x=1", "set /ball/bsdf/type=diffuse /floor/bsdf/reflectance=.5", "set /~2=1", "set =", "set /a~1b~0=[", "set",
         "slurm", "slurm 3 1 5 5", "slurm 0 0 4 5", "slurm 3 2 5 4",
@@ -279,7 +283,7 @@ def folders():
         variants[f"plan-{i}"] = {"plan.json": {**plan, **part}}
     method = {"name": "photonmap", "parameters": {"photons": 100, "nearest": 5}}
     for i, part in enumerate((
-            {"status": "running"}, {"machine": 5}, {"seed": -1}, {"spp": "x"}, {"isa": 5}, {"repeat": 99999999999}, judged,
+            {"status": "running"}, {"spp": 3000000000}, {"indirect": {"name": "globalphotonmap", "parameters": {"save": "x"}}}, {"machine": 5}, {"seed": -1}, {"spp": "x"}, {"isa": 5}, {"repeat": 99999999999}, judged,
             {"method": method}, {"method": {"name": "photonmap", "parameters": {"save": "x"}}}, {"method": {"name": "x"}},
             {"method": {"name": "photonmap", "parameters": {"load": "m.map"}, "files": {"load": "0"}}}, {"scene": {"file": "none.json"}},
             {"indirect": {"name": "globalphotonmap", "parameters": {"photons": 50}}}, {"swept": {"method_seed": 1, "x": "=2"}},
