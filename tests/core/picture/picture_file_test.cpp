@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <random>
@@ -205,6 +206,20 @@ TEST(PictureFile, MayBeAMillionPixelsWide) {
     EXPECT_TRUE((bitmap.texels.front() == black()).all());
     EXPECT_EQ(bitmap.texels.back()[2], 1);
     EXPECT_LT(most_memory() - before, 400'000);
+}
+
+// OpenImageIO read what lies before the file's bytes in memory.
+TEST(PictureFile, AnOpenExrFileWhoseLinesLieBeforeItIsRefused) {
+    const support::TemporaryFolder folder;
+    std::string bytes = support::exr_of_kind({});
+    // The first place in the table of lines is that behind the table.
+    std::size_t table = 0;
+    for (std::uint64_t place = 0; place <= table || place > table + 512; ++table)
+        std::memcpy(&place, &bytes.at(table + 1), sizeof place);
+    bytes.replace(table, sizeof(std::uint64_t), sizeof(std::uint64_t), '\xFF');
+    write_atomic_file(folder / "a.exr", bytes);
+    EXPECT_NE(refusal([&] { load_bitmap(folder / "a.exr", true); }).find("a.exr: cannot be read ("),
+              std::string::npos);
 }
 
 /// OpenEXR makes room before it reads: 2 GB for a text, as much as the channels ask for.
