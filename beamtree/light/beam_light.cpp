@@ -23,8 +23,9 @@ double resolvable_area(const Vec3& point) {
 
 /// The ray of a hit that arrives at the point.
 struct ArrivingRay {
-    SegmentEnd start;  ///< where the light was bent
-    Vec3 direction;    ///< unit, the way the light goes
+    SegmentEnd start;                            ///< where the light was bent
+    Vec3 direction;                              ///< unit, the way the light goes
+    std::optional<SegmentEnd> other_start = {};  ///< to be tried where the first is not free
 };
 
 Vec3 longest_side(const std::array<VertexRay, 3>& rays) {
@@ -36,19 +37,20 @@ Vec3 longest_side(const std::array<VertexRay, 3>& rays) {
     return longest;
 }
 
-// Where light leaves the triangle of its rays. Corners of a sliver that lie on a curved surface do not tell how it lies there: its
-// plane may stand on the surface, and a start that is moved along that plane's normal stays inside.
-SegmentEnd start_on(const std::array<VertexRay, 3>& rays, const Vec3& position,
-                    const Vec3& direction, float offset) {
+// Where light leaves a sliver. Corners that lie on a curved surface do not tell how it lies there: the sliver's plane may stand
+// on the surface, and a start that is moved along that plane's normal stays inside. Where light leaves nearly along a flat surface
+// this start stays inside instead. None for other triangles.
+std::optional<SegmentEnd> start_on_sliver(const std::array<VertexRay, 3>& rays,
+                                          const Vec3& position, const Vec3& direction,
+                                          float offset) {
     constexpr float least_height = 0.1F;  // of the longest side
     const Vec3 &a = rays[0].position, &b = rays[1].position, &c = rays[2].position;
     const Vec3 longest = longest_side(rays);
-    if (longest.isZero(0)) return {position, direction, offset};  // bent all at one place
-    if ((b - a).cross(c - a).norm() >= least_height * longest.squaredNorm())
-        return {position, triangle_normal(a, b, c), offset};
+    if (longest.isZero(0)) return SegmentEnd{position, direction, offset};  // bent all at one place
+    if ((b - a).cross(c - a).norm() >= least_height * longest.squaredNorm()) return {};
     const Vec3 along = longest.stableNormalized();
     const Vec3 across = direction - direction.dot(along) * along;
-    return {position, across.isZero(0) ? direction : across.normalized(), 2 * offset};
+    return SegmentEnd{position, across.isZero(0) ? direction : across.normalized(), 2 * offset};
 }
 
 ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
@@ -62,7 +64,12 @@ ArrivingRay arriving_ray(const BeamSet& set, const BeamHit& hit) {
         direction += weight * rays[i].direction;
     }
     direction.normalize();
-    return {start_on(rays, position, direction, beam.offset), direction};
+    const SegmentEnd on_plane{position,
+                              triangle_normal(rays[0].position, rays[1].position, rays[2].position),
+                              beam.offset};
+    const auto on_sliver = start_on_sliver(rays, position, direction, beam.offset);
+    return {on_sliver.value_or(on_plane), direction,
+            on_sliver ? std::optional(on_plane) : std::nullopt};
 }
 
 // Whether what light meets first on its way to a part of a cell is the receiver: the same shape about where the part lies, or
@@ -118,11 +125,14 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
         if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
         const Spectrum factor = share * weight(Vec3(-ray.direction));
         if (is_black(factor)) continue;
-        if (hit.cell_radius > 0 ? !meets_receiver(scene_, point, hit, ray.start)
-                                : scene_.occluded(receiver, ray.start))
-            continue;
-        // Of light after several events the earlier legs were seen to be free when it was traced.
-        if (set.path.size() <= 1 && !sees(scene_, ray.start, set.light)) continue;
+        const auto is_free = [&](const SegmentEnd& start) {
+            if (hit.cell_radius > 0 ? !meets_receiver(scene_, point, hit, start)
+                                    : scene_.occluded(receiver, start))
+                return false;
+            // Of light after several events the earlier legs were seen to be free when it was traced.
+            return set.path.size() > 1 || sees(scene_, start, set.light);
+        };
+        if (!is_free(ray.start) && !(ray.other_start && is_free(*ray.other_start))) continue;
         const double cosine =
             std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction)));
         const Spectrum left = transmittance(set.absorption[beam.inside ? 1 : 0],
