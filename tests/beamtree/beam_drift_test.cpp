@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "beamtree/beams/light_sample.h"
-#include "tests/support/build_scene.h"
+#include "tests/beamtree/beam_scenes.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -20,7 +20,7 @@ TEST(DriftAccount, AddsRaysAndKeepsTheLargestBend) {
     EXPECT_EQ(all.bend, 0.3);
 }
 
-const std::array<Vec3, 3> places = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+const std::array<Vec3, 3>& places = corners_in_light;
 
 // A triangle of glass in parallel light, with a lid over each of its first corners.
 SceneDesc lidded(std::size_t lids) {
@@ -34,11 +34,7 @@ SceneDesc lidded(std::size_t lids) {
     desc.shapes = {support::mesh("glass", glass, Transform::Identity(), support::glass(1.5F)),
                    support::horizontal("floor", -1, 3, true, support::diffuse(0.5F))};
     std::get<Dielectric>(desc.shapes[0].bsdf.model).int_ior = Ior::cauchy(1.5, 0.02);
-    for (std::size_t i = 0; i < lids; ++i)
-        desc.shapes.push_back(support::sphere("lid" + std::to_string(i),
-                                              (places[i] + Vec3(0.3F, 0, 0.4F)).cast<double>(), 0.1,
-                                              support::diffuse(0.5F)));
-    desc.lights = {support::directional_light({-0.6, 0, -0.8}, 1)};
+    add_light_and_lids(desc, lids);
     return desc;
 }
 

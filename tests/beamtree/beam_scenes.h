@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,19 @@ inline SceneDesc pool_desc(int resolution) {
                    support::horizontal("floor", -1, 3, true, support::diffuse(0.5F))};
     desc.lights = {support::point_light({0.4, 0.3, 2.5}, 10)};
     return desc;
+}
+
+/// Corners of a triangle that parallel light down a sine of 0.6 comes to.
+inline const std::array<Vec3, 3> corners_in_light = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+
+/// That light, and a lid over each of the first corners.
+inline void add_light_and_lids(SceneDesc& desc, std::size_t lids) {
+    for (std::size_t i = 0; i < lids; ++i) {
+        const Vec3 above = corners_in_light[i] + Vec3(0.3F, 0, 0.4F);
+        desc.shapes.push_back(support::sphere("lid" + std::to_string(i), above.cast<double>(), 0.1,
+                                              support::diffuse(0.5F)));
+    }
+    desc.lights = {support::directional_light({-0.6, 0, -0.8}, 1)};
 }
 
 inline SceneDesc ring_desc(int resolution) {

@@ -56,19 +56,26 @@ def functions(exported):
     return found
 
 
+def lines(shown):
+    """For each file whether its lines were reached, of those that can be."""
+    found = {}
+    for file, text in re.findall(r"^(/.*):\n((?: .*\n)*)", shown, re.M):
+        found[file] = {int(line): int(count != "0") for line, count in re.findall(r"^ +(\d+)\| +([\d.]+[kMGE]?)\|", text, re.M)}
+    return found
+
+
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     words = ["-instr-profile", sys.argv[1], sys.argv[2], *[word for each in sys.argv[3:] for word in ("-object", each)]]
     sources = [str(ROOT / reader) for reader in READERS]
     ranges = functions(json.loads(ask("llvm-cov", "export", *words, "-skip-expansions", *sources))["data"][0]["functions"])
+    reached = lines(ask("llvm-cov", "show", *words, *sources))
     print("| reader | lines | reached | not reached |\n|---|--:|--:|---|")
     for reader, chosen in READERS.items():
         file = str(ROOT / reader)
         wanted = [(first, last) for name, first, last in ranges.get(file, []) if not chosen or re.search(chosen, name)]
-        counts = {int(line): int(count != "0") for line, count in
-                  re.findall(r"^ +(\d+)\| +([\d.]+[kMGE]?)\|", ask("llvm-cov", "show", *words, file), re.M)}
-        inside = {line: count for line, count in counts.items()
+        inside = {line: count for line, count in reached.get(file, {}).items()
                   if not chosen or any(first <= line <= last for first, last in wanted)}
         missed = ", ".join(str(line) for line in sorted(inside) if not inside[line])
         if inside:

@@ -1,19 +1,11 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "tests/fuzz/json_mutator.h"
 #include "tests/fuzz/reading.h"
 
 // libFuzzer's hooks for inputs that are JSON. The one source file of a program includes this and defines `words`.
-
-namespace caustics::fuzz {
-
-/// What the program's kind of file knows.
-const std::vector<std::string>& words();
-
-}  // namespace caustics::fuzz
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace caustics::fuzz {
 
@@ -19,6 +20,9 @@ std::filesystem::path put(const std::filesystem::path& name, std::string_view by
 inline std::string_view view(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
+
+/// What a program's kind of file knows; defined by targets whose inputs are changed by words (json_hooks.h, word_hooks.h).
+const std::vector<std::string>& words();
 
 /// Whether an input is one of so many, by its hash: of these alone, what costs much is asked as well.
 bool one_in(unsigned share, std::string_view bytes);

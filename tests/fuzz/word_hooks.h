@@ -1,15 +1,9 @@
 #pragma once
 
+#include "tests/fuzz/reading.h"
 #include "tests/fuzz/word_mutator.h"
 
 // libFuzzer's hook for inputs that are words. The one source file of a program includes this and defines `words`.
-
-namespace caustics::fuzz {
-
-/// What the program's kind of file knows.
-const std::vector<std::string>& words();
-
-}  // namespace caustics::fuzz
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {

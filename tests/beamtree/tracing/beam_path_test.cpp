@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "beamtree/tracing/beam_drift.h"
-#include "tests/support/build_scene.h"
+#include "tests/beamtree/beam_scenes.h"
 
 namespace caustics::beamtree {
 namespace {
 
 constexpr float depth = 0.5F;
 constexpr float absorption = 1.5F;  // of the glass [1/m]
-const std::array<Vec3, 3> places = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+const std::array<Vec3, 3>& places = corners_in_light;
 
 TriangleMesh level_triangle(float z, float half) {
     TriangleMesh mesh;
@@ -36,11 +36,7 @@ SceneDesc slab(std::size_t lids) {
                    support::horizontal("floor", -1, 9, true, support::diffuse(0.5F))};
     for (std::size_t i = 0; i < 2; ++i)
         std::get<Dielectric>(desc.shapes[i].bsdf.model).int_ior = Ior::cauchy(1.5, 0.02);
-    for (std::size_t i = 0; i < lids; ++i)
-        desc.shapes.push_back(support::sphere("lid" + std::to_string(i),
-                                              (places[i] + Vec3(0.3F, 0, 0.4F)).cast<double>(), 0.1,
-                                              support::diffuse(0.5F)));
-    desc.lights = {support::directional_light({-0.6, 0, -0.8}, 1)};
+    add_light_and_lids(desc, lids);
     return desc;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/base/error.h"
@@ -18,6 +19,15 @@ Film grey_film(const std::string& layer, const std::vector<float>& values) {
 }
 
 const PixelMask all(4, true);
+
+std::string refusal_of(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "taken";
+}
 
 TEST(Metrics, FollowTheirFormulasByHand) {
     const Film x = grey_film("caustic", {1, 3, 2, 1});
@@ -79,13 +89,8 @@ TEST(Metrics, NameThePixelThatIsNotFinite) {
 
 TEST(Metrics, RefuseOtherSizesAndMissingLayers) {
     const Film x = grey_film("caustic", {1, 1, 1, 1});
-    const auto refusal = [](const Film& film, const Film& reference) -> std::string {
-        try {
-            measure(film, reference, "caustic", all);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "taken";
+    const auto refusal = [](const Film& film, const Film& reference) {
+        return refusal_of([&] { measure(film, reference, "caustic", all); });
     };
     EXPECT_EQ(refusal(x, Film(2, 1)), "the picture has 2x2 pixels, the reference 2x1");
     EXPECT_EQ(refusal(x, Film(1, 2)), "the picture has 2x2 pixels, the reference 1x2");
@@ -95,13 +100,8 @@ TEST(Metrics, RefuseOtherSizesAndMissingLayers) {
 }
 
 TEST(Metrics, WantBeautyAndCausticOfEveryPictureAndIndirectLightWhereItIsThere) {
-    const auto refusal = [](const Film& film) -> std::string {
-        try {
-            require_finite(film, "a.exr");
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "taken";
+    const auto refusal = [](const Film& film) {
+        return refusal_of([&] { require_finite(film, "a.exr"); });
     };
     Film film = grey_film("caustic", {1, 1, 1, 1});
     EXPECT_EQ(refusal(film), "a.exr: no layer \"beauty\"");
