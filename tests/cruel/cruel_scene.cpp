@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -162,8 +163,8 @@ private:
         water["waves"] = Json::array({wave});
         water["bsdf"] = {{"type", "dielectric"}, {"int_ior", "water"}, {"ext_ior", "air"}};
         place("water", water, {move_to({0, 0, height})});
-        // What else there is would cross the surface.
-        if (parts_.measured()) rooms_.push_back({{0, 0, 100}, 100 - height + 0.3});
+        // What else there is would cross the surface; below it there is always room for something small.
+        if (parts_.measured()) rooms_.push_back({{0, 0, 100}, 100 - std::max(height - 0.3, 0.12)});
     }
 
     /// Something in the middle of a glass: glass, a bubble, a mirror, or a lamp.
