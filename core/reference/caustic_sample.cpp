@@ -13,9 +13,10 @@ Spectrum chain_radiance(const Scene& scene, BackwardChain chain, int max_bounces
     for (;;) {
         const std::optional<SurfacePoint> hit = scene.intersect(chain.ray);
         if (!hit) {
-            // An absorbing medium without end leaves nothing.
-            if (chain.bounces > 0 && is_clear(chain.start_absorption))
-                result += chain.weight * scene.background();
+            if (chain.bounces > 0)
+                result += chain.weight * scene.background() *
+                          segment_transmittance(chain.start_absorption, nullptr,
+                                                scene.distance_out(chain.ray));
             return result;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;

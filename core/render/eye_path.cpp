@@ -80,8 +80,9 @@ EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum
         Branch branch = stack.pop();
         const auto hit = scene.intersect(branch.ray);
         if (!hit) {
-            if (is_clear(branch.start_absorption))
-                path.emitted += branch.weight * scene.background();
+            path.emitted += branch.weight * scene.background() *
+                            segment_transmittance(branch.start_absorption, nullptr,
+                                                  scene.distance_out(branch.ray));
             continue;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;

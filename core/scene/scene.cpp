@@ -72,6 +72,10 @@ const Spectrum* Scene::area_light_medium(std::uint32_t shape) const {
 
 float Scene::diameter() const { return bounds_.diagonal().norm(); }
 
+float Scene::distance_out(const Ray& ray) const {
+    return std::max(0.0F, -distance_to_entry(bounds_, ray.origin, -ray.direction));
+}
+
 bool disperses(const Scene& scene) {
     return std::ranges::any_of(scene.shapes(),
                                [](const Shape& shape) { return is_dispersive(shape.bsdf); });

@@ -92,6 +92,8 @@ public:
     const Vec3d& origin() const { return origin_; }  ///< as SceneDesc::origin
     const Box& bounds() const { return bounds_; }    ///< of the surfaces
     float diameter() const;                          ///< of the bounds [m]
+    /// Along a ray that meets nothing, to where light from infinitely far away begins: the bounds [m]; 0 beyond them.
+    float distance_out(const Ray& ray) const;
 
 private:
     std::vector<Shape> shapes_;

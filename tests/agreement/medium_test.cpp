@@ -131,6 +131,46 @@ TEST(Medium, OfTheEyesPathGoesOnBehindAMirror) {
     EXPECT_TRUE((*points[0].point.medium == ink).all());
 }
 
+// Ink of index 1 without end above a surface, up to the height of a mast: light from afar begins there. Shapes: floor,
+// surface, mast.
+SceneDesc ink_without_end() {
+    SceneDesc desc;
+    desc.shapes = {
+        support::horizontal("floor", 0, 0.4, true, support::diffuse(0.5F)),
+        support::horizontal("surface", 1, 2, true, support::glass(1, 1, black(), ink)),
+        support::rectangle("mast", {1.95, 0, 2}, {0, 0.05, 0}, {0, 0, 1}, support::diffuse(0))};
+    return desc;
+}
+
+TEST(Medium, WithoutEndAbsorbsLightFromAfarFromTheBoundsOn) {
+    SceneDesc desc = ink_without_end();
+    desc.lights = {support::directional_light({0, 0, -1}, 3)};
+    const Scene sunny(desc);
+    const Spectrum two_metres = (-2 * ink).exp();
+    const auto points = points_on(sunny, 0, {0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0});
+    for (const LightWay& way : light_ways())
+        expect_near(way, sunny, points, [&](const Vec3d&) { return 3 * two_metres; });
+    Rng rng(1, Stage::test, 0);
+    const Spectrum through = direct_radiance(sunny, points[0], rng, Shadows::transparent);
+    for (Eigen::Index i = 0; i < 3; ++i)
+        EXPECT_NEAR(through[i] * pi / 0.5F, 3 * two_metres[i], 1e-5F);
+
+    desc.lights = {ConstantLight{Spectrum::Ones()}};
+    const Scene grey(desc);
+    std::vector<WeightedPoint> met;
+    const EyePath up =
+        trace_eye_path(grey, {Vec3(0.1F, 0, 0.5F), Vec3::UnitZ()}, black(), rng, met);
+    for (Eigen::Index i = 0; i < 3; ++i) EXPECT_NEAR(up.emitted[i], two_metres[i], 1e-5F);
+    const auto traced = support::irradiance(*build(grey, PathTraceParams{.spp = 4000}, {}), points);
+    const auto of_path = [&](const Vec3d& at) -> Spectrum {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (points[i].position.cast<double>() == at) return traced[i].value;
+        return black();
+    };
+    for (const LightWay& way : light_ways())
+        if (way.name == "lighttrace") expect_near(way, grey, points, of_path);
+}
+
 // A lamp before a mirror over a floor, all in ink of index 1, whose surface above reflects nothing: light that
 // comes by the mirror is that of the lamp's image. Shapes: floor, mirror, surface.
 const Vec3d lamp(0.5, 0.25, 1);

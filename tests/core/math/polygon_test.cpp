@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "core/base/error.h"
 
@@ -112,14 +111,12 @@ TEST(Polygon, WhatWouldTakeVeryLongIsRefused) {
     EXPECT_THROW(triangulate_polygon(tangle), InputError);
 }
 
-// Corners that turn right were looked at for nothing, and took 16 s of a file of 1 MB.
-TEST(Polygon, LoopsThatTurnTheOtherWayAreRefusedInTime) {
+// Corners that turn right count as work, too: 30,000 such loops, 1 MB, took 16 s; these few would pass uncounted.
+TEST(Polygon, LoopsThatTurnTheOtherWayCountAsWork) {
     std::vector<Vec3> loops = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
-    for (int i = 0; i < 30'000; ++i)
+    for (int i = 0; i < 3000; ++i)
         loops.insert(loops.end(), {{5, 5, 0}, {5, 5.001F, 0}, {5.001F, 5, 0}});
-    const std::clock_t start = std::clock();
     EXPECT_THROW(triangulate_polygon(loops), InputError);
-    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10);
 }
 
 }  // namespace
