@@ -65,7 +65,7 @@ struct GlobalMaps {
 
     std::uint64_t bytes() const {
         return indirect->bytes() + (all ? all->bytes() : 0) +
-               (irradiance ? irradiance->bytes() : 0);
+               (irradiance ? irradiance->bytes() : 0) + (shadows ? shadows->bytes() : 0);
     }
 };
 

@@ -26,7 +26,7 @@ const char* most_frequent_end(const LightPathCounts& counts) {
     if (most == counts.misdirected)
         return "smooth normals over hard edges sent the light to the wrong side of the casters "
                "(face_normals: true shades their triangles flat)";
-    return counts.refracted == 0 && counts.reflected > 0
+    return counts.refracted == 0
                ? "all light was reflected at the casters, none refracted, and met no receiver"
                : "light that left the casters met no receiver; casters far larger than what they "
                  "light send most of it elsewhere: cut them to the part that lights it";

@@ -40,7 +40,7 @@ StratifiedSquare StratifiedSquare::nearest(std::uint64_t blocks, unsigned bits, 
     const auto side = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(blocks)));
     StratifiedSquare best(side, side, bits);
     std::uint64_t smallest_gap = ~std::uint64_t{0};
-    for (std::uint64_t columns = side; 4 * columns >= 3 * side && columns > 0; --columns) {
+    for (std::uint64_t columns = side; 4 * columns >= 3 * side; --columns) {
         const std::uint64_t rows = (or_more ? blocks + columns - 1 : blocks) / columns;
         const std::uint64_t gap =
             std::max(columns * rows, blocks) - std::min(columns * rows, blocks);

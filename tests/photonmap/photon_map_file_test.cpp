@@ -11,6 +11,8 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "photon_sets.h"
+#include "photonmap/photon_map.h"
+#include "tests/support/build_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics::photonmap {
@@ -188,6 +190,73 @@ TEST_F(PhotonMapFile, OfOlderVersionsIsRead) {
                               now.photons.store.photons().data(), now.photons.store.bytes()),
                   0);
     }
+}
+
+// Whole numbers of the header that an int does not hold, and choices that are none.
+TEST_F(PhotonMapFile, RefusesNumbersWithoutSense) {
+    save(3);
+    const std::string good = content(file_);
+    const std::size_t numbers = std::string_view("causticbench photon map\n").size() + 8 + 2 * 8;
+    const auto refusal_with = [&](std::size_t word, std::uint32_t value) {
+        std::string bad = good;
+        std::memcpy(bad.data() + numbers + 4 * word, &value, sizeof value);
+        write_atomic_file(file_, bad);
+        return refusal(file_);
+    };
+    // Emission, interaction, max_bounces, whole_paths, diffuse_bounces.
+    const std::uint32_t beyond[] = {2, 2, 0x80000000U, 2, 0x80000000U};
+    for (std::size_t word = 0; word < 5; ++word)
+        EXPECT_EQ(refusal_with(word, beyond[word]),
+                  file_.string() + ": is damaged: its header has no sense")
+            << word;
+    EXPECT_NE(refusal_with(2, 0x7fffffffU).find("checksum"), std::string::npos)
+        << "the largest int has sense, but was not written";
+}
+
+TEST_F(PhotonMapFile, RefusesAnotherNumberOfPhotonsThanItsCounts) {
+    for (const std::uint64_t counted : {2U, 4U}) {
+        TracedPhotons photons = traced(3);
+        photons.counts.stored = counted;
+        save_photon_map(photons, origin, file_);
+        EXPECT_NE(refusal(file_).find("is damaged"), std::string::npos) << counted;
+    }
+}
+
+TEST_F(PhotonMapFile, HasNoChecksumWhereItIsCutShort) {
+    save(3);
+    const std::string good = content(file_);
+    const std::size_t start = std::string_view("causticbench photon map\n").size() + 4;
+    for (const std::size_t left : {0U, 7U}) {
+        write_atomic_file(file_, std::string_view(good).substr(0, start + left));
+        try {
+            photon_map_checksum(file_);
+            ADD_FAILURE() << left;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("cut short"), std::string::npos);
+        }
+    }
+}
+
+// An old map still gives a picture, and the record says that it is old.
+TEST_F(PhotonMapFile, OfAnOlderVersionIsNamedInTheReport) {
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("mirror", 0, 1, true, support::mirror()),
+                   support::horizontal("ceiling", 2, 4, false, support::diffuse(0.5F))};
+    desc.lights = {support::point_light({0, 0, 1}, 1)};
+    const Scene scene(std::move(desc));
+    build(scene, PhotonMapParams{.photons = 100, .save = file_}, {});
+    const std::string content_now = content(file_);
+    const auto version_of = [&](const std::string& text) {
+        write_atomic_file(file_, text);
+        const BuildReport report =
+            build(scene, PhotonMapParams{.photons = 0, .load = file_}, {})->build_report();
+        EXPECT_EQ(report.counters.at("photons_stored"), 100U);
+        const auto found = report.resolved.find("photon_map_version");
+        return found == report.resolved.end() ? 0.0 : found->second;
+    };
+    EXPECT_EQ(version_of(content_now), 0);
+    EXPECT_EQ(version_of(as_version(3, content_now)), 0) << "its photons' surfaces are known";
+    EXPECT_EQ(version_of(as_version(2, content_now)), 2);
 }
 
 TEST_F(PhotonMapFile, NamesWhatIsWrong) {

@@ -73,6 +73,24 @@ TEST(PhotonMapParams, ChooseTheFilterAndARadiusInPlaceOfTheNearest) {
     }
 }
 
+// A number that would change nothing is refused rather than ignored.
+TEST(PhotonMapParams, NumbersOfAFilterBelongToThatFilter) {
+    EXPECT_EQ(params_of(R"({"filter": "cone", "filter_k": 1.5})").filter_k, 1.5);
+    EXPECT_EQ(params_of(R"({"filter": "gaussian", "filter_beta": 2})").filter_beta, 2);
+    EXPECT_EQ(params_of(R"({"filter": "gaussian", "filter_alpha": 0.918})").filter_alpha, 0.918);
+    for (const std::string filter : {"none", "gaussian", "epanechnikov"})
+        EXPECT_NE(refusal_of_params(R"({"filter_k": 1.5, "filter": ")" + filter + "\"}")
+                      .find("/filter_k: belongs to the filter cone"),
+                  std::string::npos)
+            << filter;
+    for (const std::string key : {"filter_beta", "filter_alpha"})
+        for (const std::string filter : {"none", "cone", "epanechnikov"})
+            EXPECT_NE(refusal_of_params("{\"" + key + R"(": 2, "filter": ")" + filter + "\"}")
+                          .find("/" + key + ": belongs to the filter gaussian"),
+                      std::string::npos)
+                << key << " " << filter;
+}
+
 TEST(PhotonMapParams, AverageOverASquareWhereThatHasAMeaning) {
     EXPECT_EQ(params_of("{}").footprint, 0);
     EXPECT_EQ(params_of(R"({"footprint": 0.5, "nearest": 20})").footprint, 0.5F);

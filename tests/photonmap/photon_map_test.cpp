@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -232,6 +233,41 @@ TEST(PhotonMap, RefusesParametersThatContradictEachOther) {
     EXPECT_THROW(build(scene, {.photons = 10, .adaptive = true, .radius = 1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .nearest = 10, .adaptive = true}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = 1, .radius = 1}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .nearest = 100'001, .adaptive = true}, {}),
+                 InputError);
+}
+
+// One map has one file; a loaded one is there already.
+TEST(PhotonMap, RefusesFilesForSeveralMapsAndAFileToWriteBesideOneToRead) {
+    const Scene scene(flat_mirror(grey));
+    EXPECT_THROW(
+        build(scene, PhotonMapParams{.photons = 0, .save = "a.photons", .load = "b.photons"}, {}),
+        InputError);
+    EXPECT_THROW(build(scene, PhotonMapParams{.photons = 10, .passes = 2, .save = "a.photons"}, {}),
+                 InputError);
+    EXPECT_THROW(build(scene, PhotonMapParams{.photons = 0, .passes = 2, .load = "a.photons"}, {}),
+                 InputError);
+}
+
+TEST(PhotonMap, RefusesASquareToAverageOverWhereThatHasNoMeaning) {
+    const Scene scene(flat_mirror(grey));
+    using Estimator = PhotonMapParams::Estimator;
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    const PhotonMapParams good{.photons = 10, .footprint = 0.1F};
+    EXPECT_NO_THROW(build(scene, good, {}));
+    const auto refused = [&](const auto& change) {
+        PhotonMapParams params = good;
+        change(params);
+        EXPECT_THROW(build(scene, params, {}), InputError);
+    };
+    refused([&](PhotonMapParams& params) { params.footprint = -0.1F; });
+    refused([&](PhotonMapParams& params) { params.footprint = nan; });
+    refused([](PhotonMapParams& params) { params.adaptive = true; });
+    refused([](PhotonMapParams& params) { params.estimator = Estimator::raw; });
+    refused([](PhotonMapParams& params) {
+        params.filter = FilterKind::gaussian;
+        params.filter_alpha = 0.918;
+    });
 }
 
 }  // namespace

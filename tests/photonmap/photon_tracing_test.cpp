@@ -175,6 +175,33 @@ TEST(PhotonTracing, KeepsFluxOverTwelveOrdersOfMagnitudeAndAnyColour) {
     }
 }
 
+// Each number is finite; their sum is beyond the largest float.
+TEST(PhotonTracing, KeepsFluxWhoseSumIsNoFloat) {
+    const Spectrum flux = Spectrum::Constant(2e38F);
+    ASSERT_TRUE(std::isinf(flux.sum()));
+    const OnePath paths = [&](std::uint64_t path) {
+        std::optional<Deposit> deposit = synthetic_paths(1)(path);
+        deposit->flux = flux;
+        return deposit;
+    };
+    const TracedPhotons traced = trace(paths, {.stored = 10}, {}, flux);
+    for (const Photon& photon : traced.store.photons())
+        EXPECT_LT((decode_rgbe(photon.energy) * (traced.flux_unit / flux) - 1).abs().maxCoeff(),
+                  1e-6F);
+}
+
+// Without a path there is nothing to divide by, without a photon nothing that was dropped.
+TEST(PhotonTracing, TheUnitOfNoPhotonsIsFinite) {
+    const Spectrum unit(1, 2, 3);
+    for (const std::uint64_t emitted : {std::uint64_t{0}, std::uint64_t{9}}) {
+        TracedPhotons none{PhotonStore(0), {}, unit};
+        none.counts.emitted = emitted;
+        EXPECT_TRUE((none.flux_per_energy() == unit).all()) << emitted;
+    }
+    const TracedPhotons some{PhotonStore(0), {.emitted = 10, .stored = 1, .dropped = 3}, unit};
+    EXPECT_LT((some.flux_per_energy() / unit - 0.4F).abs().maxCoeff(), 1e-6F);
+}
+
 TEST(PhotonTracing, GivesUpAndSaysWhy) {
     try {
         trace(synthetic_paths(0.0001F), {.stored = 1'000, .patience = 20'000});
@@ -201,12 +228,13 @@ TEST(PhotonTracing, GivesUpAndSaysWhy) {
 
 TEST(PhotonTracing, NamesThePathOfAPhotonThatIsNotFinite) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (int broken = 0; broken < 3; ++broken) {
+    for (int broken = 0; broken < 4; ++broken) {
         const OnePath paths = [&](std::uint64_t path) {
             std::optional<Deposit> deposit = synthetic_paths(1)(path);
             if (path == 77 && broken == 0) deposit->position.y() = nan;
             if (path == 77 && broken == 1) deposit->flux[2] = nan;
             if (path == 77 && broken == 2) deposit->flux[0] = -1;
+            if (path == 77 && broken == 3) deposit->wi.z() = nan;
             return deposit;
         };
         try {

@@ -91,5 +91,16 @@ TEST(Rgbe, LosesWhatIsBelowItsRangeAndRefusesTheRest) {
     EXPECT_THROW(encode_rgbe({1, std::numeric_limits<float>::infinity(), 1}), std::range_error);
 }
 
+// Up to 255 of 256 parts of 2^126; what rounds to more has no exponent.
+TEST(Rgbe, EndsWhereTheLargestMantissaOfTheLargestExponentDoes) {
+    const Spectrum largest = Spectrum::Constant(255.0F / 256 * 0x1p126F);
+    EXPECT_EQ(encode_rgbe(largest).exponent, 254);
+    EXPECT_TRUE((decode_rgbe(encode_rgbe(largest)) == largest).all());
+    EXPECT_EQ(encode_rgbe(largest), encode_rgbe(largest, {0.5, 0.5, 0.5}));
+    const Spectrum beyond = Spectrum::Constant(std::nextafter(0x1p126F, 0.0F));
+    EXPECT_THROW(encode_rgbe(beyond), std::range_error);
+    EXPECT_THROW(encode_rgbe(beyond, {0.5, 0.5, 0.5}), std::range_error);
+}
+
 }  // namespace
 }  // namespace caustics::photonmap

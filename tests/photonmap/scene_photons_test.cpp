@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <string>
 #include <utility>
 
 #include "core/base/error.h"
@@ -208,6 +209,102 @@ TEST(ScenePhotons, GivesUpWhereNothingArrives) {
     no_caster.shapes = {floor_under(0)};
     no_caster.lights = {support::point_light({0, 0, 1}, 1)};
     EXPECT_THROW(trace(Scene(std::move(no_caster)), params(mode, 10)), UnsupportedScene);
+}
+
+/// The sun on a mirror below a roof; few of the particles are reflected, or none where a lid is in the way.
+SceneDesc dull_mirror(float reflectance, bool with_lid = false) {
+    SceneDesc desc;
+    desc.shapes = {
+        support::horizontal("mirror", 0, 1, true, support::mirror(reflectance)),
+        support::rectangle("roof", {0, 5, 1}, {5, 0, 0}, {0, -5, 0}, support::diffuse(0.5F))};
+    if (with_lid)
+        desc.shapes.push_back(
+            support::rectangle("lid", {0, -1.5, 0.5}, {2, 0, 0}, {0, 2, 0}, support::diffuse(0)));
+    desc.lights = {support::directional_light({0, 3, -1}, 1)};
+    return desc;
+}
+
+std::string refusal_of_tracing(const Scene& scene, const PhotonMapParams& p) {
+    try {
+        trace(scene, p);
+    } catch (const UnsupportedScene& error) {
+        return error.what();
+    }
+    return "traced";
+}
+
+// Two million paths are patience enough for a first photon.
+TEST(ScenePhotons, GiveUpWhereNoPathArrivesAtAll) {
+    const Scene scene(dull_mirror(1, true));
+    // The pilot's last part is just beyond that.
+    const std::string message = refusal_of_tracing(scene, params(modes[1], 1'000'448));
+    EXPECT_NE(message.find("no photon can be stored: no light path met a caster"),
+              std::string::npos)
+        << message;
+}
+
+// One in some 3,000 paths arrives: few photons can be had, many would take more than fifty million paths.
+TEST(ScenePhotons, GiveUpWhereFewPathsArriveAndManyPhotonsAreAsked) {
+    // The mirror has a fifth of the disc that the sun's rays are sent through.
+    const Scene scene(dull_mirror(0.0017F));
+    const std::string message = refusal_of_tracing(scene, params(modes[1], 20'000));
+    EXPECT_NE(message.find("light paths stored only"), std::string::npos) << message;
+    EXPECT_NE(message.find("of 20000 photons"), std::string::npos) << message;
+    EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
+    const TracedPhotons few = trace(scene, params(modes[1], 20));
+    EXPECT_EQ(few.store.size(), 20U);
+}
+
+// Light through a ball without an edge, n = 1, onto a floor under its one half: in strata that the middle does not cut the
+// pilot's parts all store the same, one half, and so many paths are planned that exactly enough photons come. Where the middle
+// cuts strata of the plan itself it may be fewer: then all is traced again with a tenth more paths.
+TEST(ScenePhotons, OfStrataAreTracedAgainWhereTooFewCame) {
+    SceneDesc desc;
+    desc.shapes = {
+        support::sphere("ball", {0, 0, 0}, 1, support::glass(1)),
+        support::rectangle("floor", {2, 0, -2}, {2, 0, 0}, {0, 2, 0}, support::diffuse(0.5F))};
+    desc.lights = {support::directional_light({0, 0, -1}, 1)};
+    const Scene scene(std::move(desc));
+    constexpr std::uint64_t wanted = 49;
+    int at_once = 0, again = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const TracedPhotons photons = trace(scene, params(modes[1], wanted), seed);
+        EXPECT_EQ(photons.store.size(), wanted);
+        EXPECT_EQ(photons.counts.stored, wanted);
+        // 7 x 14 strata, of which the middle cuts 14: half of those store, up to chance.
+        at_once += photons.counts.emitted == 98 ? 1 : 0;
+        again += photons.counts.emitted == 108 ? 1 : 0;
+    }
+    EXPECT_GT(at_once, 10);
+    EXPECT_GT(again, 5) << "two in five, by chance";
+}
+
+// Where surfaces mirror and scatter a path leaves several photons: as many as asked come all the same, and their flux is that
+// of paths whose number was given.
+TEST(ScenePhotons, AreAsManyAsAskedWherePathsLeaveSeveral) {
+    Bsdf blend = support::diffuse(0.5F);
+    blend.mirror = MirrorPart{0.5F, Spectrum(Spectrum::Ones())};
+    SceneDesc desc;
+    desc.shapes = {support::enclosure(2, blend),
+                   support::sphere("ball", {0, 0, 0}, 0.5, support::glass(1.5F))};
+    desc.lights = {support::point_light({0, 0, 1.2}, 1)};
+    const Scene scene(std::move(desc));
+    for (const Mode& mode : {modes[0], modes[2]}) {
+        support::Moments exactly, planned;
+        for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+            const TracedPhotons photons = trace(scene, params(mode, 500), seed);
+            EXPECT_EQ(photons.store.size(), 500U);
+            const LightPathCounts& c = photons.counts;
+            EXPECT_GT(c.branched, 0U);
+            EXPECT_EQ(c.missed + c.escaped + c.absorbed + c.misdirected + c.on_black_side +
+                          c.depth_limited + c.stored + c.dropped,
+                      c.aimed + c.branched);
+            exactly.add(flux(photons));
+            planned.add(flux(trace(scene, params(mode, 0, 500), 100 + seed)));
+        }
+        EXPECT_NEAR(exactly.mean(), planned.mean(),
+                    4 * std::hypot(exactly.standard_error(), planned.standard_error()));
+    }
 }
 
 /// Resident memory of this process [bytes].

@@ -29,10 +29,18 @@ Bsdf phong(float exponent) {
     }};
 }
 
-double phong_as_printed(double exponent, const Vec3d& n, const Vec3d& wo, const Vec3d& wi) {
+Bsdf classic_phong(float exponent) {
+    Bsdf bsdf = phong(exponent);
+    std::get<Phong>(bsdf.model).model = Phong::Model::classic;
+    return bsdf;
+}
+
+double phong_as_printed(const Phong& phong, const Vec3d& n, const Vec3d& wo, const Vec3d& wi) {
+    const auto exponent = static_cast<double>(phong.exponent);
     const double cosine = (2 * n.dot(wo) * n - wo).dot(wi);
-    return 0.5 / pi_d +
-           0.5 * (exponent + 2) / (2 * pi_d) * (cosine > 0 ? std::pow(cosine, exponent) : 0);
+    const double factor =
+        phong.model == Phong::Model::normalised ? (exponent + 2) / (2 * pi_d) : 1 / n.dot(wi);
+    return 0.5 / pi_d + 0.5 * factor * (cosine > 0 ? std::pow(cosine, exponent) : 0);
 }
 
 /// f_r over grey_red.
@@ -40,7 +48,7 @@ double reflection_as_printed(const Bsdf& bsdf, const Vec3d& n, const Vec3d& wo, 
     if (const auto* schlick = std::get_if<Schlick>(&bsdf.model))
         return test::schlick_as_printed(static_cast<double>(schlick->alpha), n, wo, wi);
     if (const auto* phong = std::get_if<Phong>(&bsdf.model))
-        return phong_as_printed(static_cast<double>(phong->exponent), n, wo, wi);
+        return phong_as_printed(*phong, n, wo, wi);
     return 1 / pi_d;
 }
 
@@ -243,6 +251,44 @@ TEST(Shading, ArrivingLeavesOutAndWeighs) {
                 truth += (decode_rgbe(photons.energy(i)) * photons.weight(i)).cast<double>();
         for (const Isa isa : supported_isas())
             expect_close(Shading(isa).arriving(photons.photons(true, left_out)), truth, name(isa));
+    }
+}
+
+// The mirror in a blend has its weight, the rest has what is left.
+TEST(Shading, AMirrorPartLeavesTheRestItsShare) {
+    Rng rng(49, Stage::test, 0);
+    const PhotonArrays photons = test::random_photons(100, 50);
+    for (Bsdf bsdf : {lambert(), schlick(0.3F), phong(7), classic_phong(7)}) {
+        const ReceiverPoint point = test::random_point(rng, bsdf);
+        const SpectrumSum alone = Shading(Isa::plain).reflected(point, photons.photons());
+        bsdf.mirror = MirrorPart{0.25F, Spectrum(Spectrum::Constant(0.9F))};
+        BrdfLobeTable table;
+        for (const Isa isa : supported_isas())
+            expect_close(Shading(isa).reflected(point, photons.photons()), 0.75 * alone, name(isa));
+        expect_close(Shading(Isa::plain).reflected(point, photons.photons(), table), 0.75 * alone,
+                     "table ");
+    }
+}
+
+// Where light arrives along the surface the classic lobe has no bound: what is summed is as in evaluate(), to a float's rounding.
+TEST(Shading, IsTheLawOf1975WithoutAKernel) {
+    const Bsdf bsdf = classic_phong(12);
+    Rng rng(51, Stage::test, 0);
+    BrdfLobeTable table;
+    const PhotonArrays photons = test::random_photons(200, 52);
+    for (int place = 0; place < 5; ++place) {
+        const ReceiverPoint point = test::random_point(rng, bsdf);
+        for (const std::size_t left_out : {std::size_t{17}, WeightedPhotons::none})
+            for (const bool weighted : {true, false}) {
+                const auto given = photons.photons(weighted, left_out);
+                const SpectrumSum truth = oracle(point, photons, weighted, left_out);
+                EXPECT_GT(truth[0], 0);
+                for (const SpectrumSum& found :
+                     {Shading(Isa::plain).reflected(point, given),
+                      Shading(Isa::plain).reflected(point, given, table)})
+                    for (int c = 0; c < 3; ++c)
+                        EXPECT_NEAR(found[c], truth[c], 1e-4 * truth[c]) << place;
+            }
     }
 }
 

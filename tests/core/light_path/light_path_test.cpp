@@ -79,6 +79,20 @@ TEST(AimedEmission, RefusesPowerThatFloatsDoNotServe) {
     EXPECT_GT(emission(1e30F, 1), 1e29F);
     for (const float strength : {1e-44F, 1e-34F, 1e36F, 3e38F})
         EXPECT_THROW(emission(strength, 1), UnsupportedScene) << strength;
+    // The message says where the light was to go.
+    SceneDesc desc = ball_lit_from_a_point(1, 4);
+    std::get<PointLight>(desc.lights[0]).intensity.setConstant(1e-36F);
+    const Scene faint(std::move(desc));
+    const std::pair<Aim, std::string> aims[] = {{Aim::casters, "towards the casters, "},
+                                                {Aim::everywhere, "towards the scene, "}};
+    for (const auto& [where, expected] : aims) {
+        try {
+            const AimedEmission none(faint, Isa::plain, where);
+            ADD_FAILURE() << expected;
+        } catch (const UnsupportedScene& error) {
+            EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+        }
+    }
 }
 
 // Overlapping cones: every direction of the union equally often, none twice.
@@ -429,6 +443,44 @@ TEST(LightPath, CountsAddUpOneByOne) {
     Counters twice;
     sum.add_to(twice);
     for (const auto& [name, count] : named) EXPECT_EQ(twice.at(name), 2 * count) << name;
+}
+
+// The counters of a method that traces no light, or of an older record, have none or some of them.
+TEST(LightPath, CountsThatAreNotThereAreZero) {
+    const LightPathCounts counts =
+        light_path_counts({{"gathers", 7}, {"photons_emitted", 5}, {"photons_stored", 3}});
+    EXPECT_EQ(counts.emitted, 5U);
+    EXPECT_EQ(counts.stored, 3U);
+    EXPECT_EQ(counts.aimed + counts.missed + counts.escaped + counts.misdirected + counts.dropped,
+              0U);
+}
+
+// Between a mirror and a ceiling that scatters three parts and mirrors one, each of 0.8, light is left at the ceiling again and
+// again: 1 + 0.2 + 0.2^2 + ... of what comes first, in one branch after another, each of which has its end.
+TEST(LightPath, SplitLightIsLeftAtEveryReceiverThatMirrors) {
+    Bsdf blend = support::diffuse(0.8F);
+    blend.mirror = MirrorPart{0.25F, Spectrum(Spectrum::Constant(0.8F))};
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("mirror", 0, 1, true, support::mirror()),
+                   support::horizontal("ceiling", 2, 1, false, blend)};
+    const Scene scene(std::move(desc));
+    const LightParticle particle{{Vec3(0.1F, 0.2F, 1), -Vec3::UnitZ()}, Spectrum(1, 2, 3)};
+    support::Moments flux;
+    LightPathCounts counts;
+    std::vector<Deposit> deposits;
+    for (std::uint64_t path = 0; path < paths; ++path) {
+        Rng rng(1, Stage::test, path);
+        deposits.clear();
+        trace_split_path(scene, particle, {100, Interaction::split}, rng, counts, deposits);
+        double sum = 0;
+        for (const Deposit& deposit : deposits) sum += static_cast<double>(deposit.flux[2]) / 3;
+        flux.add(sum);
+    }
+    EXPECT_NEAR(flux.mean(), 1.25, 4 * flux.standard_error());
+    EXPECT_EQ(counts.stored, paths + counts.branched);
+    EXPECT_GT(counts.branched, paths);
+    EXPECT_EQ(counts.absorbed + counts.misdirected + counts.depth_limited, 0U)
+        << "light branches end where they have left a deposit";
 }
 
 TEST(LightPath, TellsBlackSidesFromBlackWater) {

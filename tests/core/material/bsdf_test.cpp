@@ -13,8 +13,10 @@
 #include "core/math/frame.h"
 #include "core/math/rng.h"
 #include "core/math/sampling.h"
+#include "core/render/film.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/statistics.h"
+#include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {
@@ -246,6 +248,22 @@ TEST(Phong, SendsAsMuchToItsLobeAsItsBrightestPlacesSay) {
         << "1.1 where the board is brightest";
 }
 
+TEST(Phong, SendsAsMuchToItsLobeAsTheBrightestTexelSays) {
+    const support::TemporaryFolder folder;
+    const auto read = [&](const std::string& picture, unsigned char dark, unsigned char bright) {
+        write_png(2, 1, {dark, dark, dark, dark, bright, dark}, folder / picture);
+        const std::string text = R"({"type": "phong", "specular_reflectance": 0.2,
+            "diffuse_reflectance": {"type": "bitmap", "raw": true, "filename": ")" +
+                                 picture + "\"}}";
+        scene_file::Assets assets;
+        return Phong::read(JsonNode::parse_text(text, "test", folder / "scene.json"), assets);
+    };
+    // 51 and 153 of 255 are 0.2 and 0.6.
+    EXPECT_FLOAT_EQ(read("a.png", 51, 153).lobe_share, 0.25F);
+    EXPECT_FLOAT_EQ(read("b.png", 51, 51).lobe_share, 0.5F);
+    EXPECT_THROW(read("c.png", 51, 255), InputError) << "1.2 at one texel";
+}
+
 TEST(Phong, AHighlightForPovRayIsOfTheOldModelAndOfOneStrength) {
     Phong phong{.specular_reflectance = Spectrum(Spectrum::Constant(0.2F)), .exponent = 40};
     EXPECT_NE(phong.to_povray().refused.reason.find("\"classic\""), std::string::npos);
@@ -256,6 +274,38 @@ TEST(Phong, AHighlightForPovRayIsOfTheOldModelAndOfOneStrength) {
         phong.specular_reflectance = texture;
         EXPECT_NE(phong.to_povray().refused.reason.find("one strength"), std::string::npos);
     }
+}
+
+// Mitsuba has no medium in its dielectric, POV-Ray none outside and no share that is lost at the surface.
+TEST(Dielectric, SaysWhatOtherProgramsDoNotTake) {
+    Dielectric glass{.int_ior = 1.5F, .ext_ior = 1.0F};
+    EXPECT_EQ(glass.to_mitsuba().refused.reason, "");
+    EXPECT_EQ(glass.to_povray().refused.reason, "");
+    EXPECT_FLOAT_EQ(static_cast<float>(glass.to_povray().interior->ior), 1.5F);
+    const auto changed = [&](auto Dielectric::* member) {
+        Dielectric other = glass;
+        other.*member = Spectrum(1, 0.5F, 1);
+        return other;
+    };
+    const Dielectric inside = changed(&Dielectric::absorption);
+    EXPECT_NE(inside.to_mitsuba().refused.reason.find("does not absorb"), std::string::npos);
+    EXPECT_EQ(inside.to_povray().refused.reason, "");
+    const Dielectric outside = changed(&Dielectric::ext_absorption);
+    EXPECT_NE(outside.to_mitsuba().refused.reason.find("does not absorb"), std::string::npos);
+    EXPECT_NE(outside.to_povray().refused.reason.find("no absorption outside"), std::string::npos);
+    for (const Dielectric& lossy : {changed(&Dielectric::specular_reflectance),
+                                    changed(&Dielectric::specular_transmittance)}) {
+        EXPECT_EQ(lossy.to_mitsuba().refused.reason, "");
+        EXPECT_NE(lossy.to_povray().refused.reason.find("leave them 1"), std::string::npos);
+    }
+}
+
+// POV-Ray's dispersion is the index of violet over that of red, at 400 and 700 nm here.
+TEST(Dielectric, ItsDispersionIsAQuotientForPovRayAndRefusedForMitsuba) {
+    const Dielectric glass{.int_ior = Ior::cauchy(1.5, 0.01), .ext_ior = 1.0F};
+    EXPECT_NEAR(glass.to_povray().interior->dispersion.value_or(0),
+                (1.5 + 0.01 / 0.16) / (1.5 + 0.01 / 0.49), 1e-7);
+    EXPECT_NE(glass.to_mitsuba().refused.reason.find("no dispersion"), std::string::npos);
 }
 
 // The angle at which cos^e is a half.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/geometry/tessellate.h"
 #include "core/scene_file/json_reader.h"
 #include "tests/support/build_scene.h"
 
@@ -97,6 +98,63 @@ TEST(GlobalPhotonMap, AccountsForEveryPath) {
     EXPECT_EQ(of("photons_missed") + of("photons_escaped"), 0U);  // a closed box
     EXPECT_EQ(of("photons_aimed"), of("photons_absorbed") + of("photons_depth_limited") +
                                        of("photons_on_black_side") + of("photons_misdirected"));
+}
+
+// A lamp's photons on the walls, straight through the ball: what is behind it is in shadow.
+TEST(GlobalPhotonMap, KnowsShadowsWhereItHasPhotonsForThem) {
+    const Scene scene = box();
+    GlobalMapParams params{.photons = 1'000, .gather = 0};
+    const auto without = build(scene, params, {});
+    EXPECT_EQ(without->known_shadows(), nullptr);
+    params.shadow_photons = 20'000;
+    const auto with = build(scene, params, {});
+    const KnownShadows* const known = with->known_shadows();
+    ASSERT_NE(known, nullptr);
+    const auto context = with->make_context();
+    const auto sees = [&](std::size_t wall, const Vec3d& at) {
+        const Vec3d inwards = -scene.shapes()[wall].to_world.translation();
+        return known->sees(support::probe(scene, wall, at, inwards, 0), 0, *context);
+    };
+    using Seen = KnownShadows::Seen;
+    EXPECT_EQ(sees(0, {-1, 0, 0}), Seen::yes);
+    EXPECT_EQ(sees(1, {1, -0.15, -0.39}), Seen::no) << "behind the ball's middle";
+    // The map's own memory, and 20 bytes or a little more for each of them.
+    const BuildReport report = with->build_report();
+    const std::uint64_t stored = report.counters.at("shadow_photons_stored");
+    EXPECT_GE(report.bytes, without->build_report().bytes + 20 * stored);
+    EXPECT_LE(report.bytes, without->build_report().bytes + 24 * stored);
+}
+
+// Irradiance is known for surfaces that are lit as they look: under smooth normals that lean, photons are asked themselves.
+TEST(GlobalPhotonMap, LooksUpNoIrradianceUnderNormalsThatLean) {
+    const auto answer = [](bool smooth) {
+        SceneDesc desc;
+        TriangleMesh ball = tessellate_sphere(4);
+        if (!smooth) ball.normals.clear();
+        desc.shapes = support::emitting_room(2, 0, support::diffuse(0.5F));
+        for (Shape& wall : desc.shapes) wall.radiance.reset();
+        desc.shapes.push_back(
+            support::mesh("ball", ball, Transform::Identity(), support::diffuse(0.5F)));
+        desc.lights = {support::point_light({-1.5, 0.2, 1.5}, 1)};
+        const Scene scene(std::move(desc));
+        const auto map = build(scene, {.photons = 20'000, .gather = 400}, {});
+        const ReceiverPoint point = support::probe(scene, 0, {-2, 0, 0}, Vec3d::UnitX(), 0);
+        const auto context = map->make_context();
+        std::vector<Estimate> out(1);
+        map->irradiance({&point, 1}, out, *context);
+        Answer found{static_cast<double>(out[0].value.mean()), {}, {}};
+        context->add_to(found.counters);
+        return found;
+    };
+    const Answer flat = answer(false), smooth = answer(true);
+    EXPECT_EQ(flat.counters.at("gather_rays"), 400U);
+    EXPECT_EQ(smooth.counters.at("gather_rays"), 400U);
+    EXPECT_GE(flat.counters.at("irradiance_lookups"), 398U);
+    // The ball has about a tenth of the view.
+    EXPECT_LT(smooth.counters.at("irradiance_lookups"), 380U);
+    EXPECT_GT(smooth.counters.at("irradiance_lookups"), 300U);
+    // The same light, by other rays and photons: 400 rays whose ends scatter by a half agree to 4 sqrt(2) 2.5 %.
+    EXPECT_NEAR(smooth.irradiance / flat.irradiance, 1, 0.14);
 }
 
 std::string refusal(const std::string& params) {

@@ -107,6 +107,27 @@ TEST(GroupGather, BoundsNoSearchByThatOfAnotherSide) {
     EXPECT_GT(expect_as_scan(photons, points, {.nearest = 40, .max_radius = 0.5F}), 100U);
 }
 
+// Few photons, some of them from below, then a thousand times as many: what a group would collect, by the distance known from
+// before, is more than it has room for, also where sides are looked at.
+TEST(GroupGather, PartsAGroupThatCameToDenserPhotons) {
+    const DirectionCode from_below = encode_direction(-Vec3::UnitZ());
+    std::vector<Photon> photons = scattered(100, 7);
+    for (Photon& photon : scattered(20'000, 8)) {
+        photon.position[0] = 3 + photon.position[0] / 2;
+        photon.position[1] /= 2;
+        photons.push_back(photon);
+    }
+    for (std::size_t i = 0; i < photons.size(); i += 2) {
+        photons[i].theta = from_below.theta;
+        photons[i].phi = from_below.phi;
+    }
+    std::vector<ReceiverPoint> points;
+    for (int i = 0; i < 8; ++i) points.push_back(point_at({1e-3F * static_cast<float>(i), 0, 0}));
+    for (int i = 0; i < 16; ++i)
+        points.push_back(point_at({3 + 0.02F * static_cast<float>(i), 0, 0}));
+    EXPECT_LT(expect_as_scan(photons, points, {.nearest = 20, .max_radius = 1}), points.size());
+}
+
 // A cluster of photons aside of a group: the members on its other side are farther from it by their way to the centre.
 TEST(GroupGather, ReachesFromEveryMemberAsFarAsFromTheCentre) {
     for (const Vec3& towards : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0.8F, 0.6F)}) {
