@@ -305,6 +305,7 @@ std::vector<int> own_processors() {
 }
 
 void wait_for_any(const std::vector<ChildProcess*>& children) {
+    if (children.empty()) return;
     int patience = 1000;
     std::vector<pollfd> all;
     for (const ChildProcess* child : children) {

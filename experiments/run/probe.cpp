@@ -75,7 +75,6 @@ std::optional<SurfacePoint> find_receiver(const Scene& scene, const ProbePoint& 
     };
     std::optional<SurfacePoint> found = nearest_along({point.normal});
     if (!found) found = nearest_along({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()});
-    if (found && found->distance > tolerance) return {};
     return found;
 }
 

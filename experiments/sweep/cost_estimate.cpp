@@ -22,9 +22,8 @@ std::optional<double> work_of(const Trial& trial) {
     if (method.configured == nullptr) return {};
     const WorkParameter& work = method.facts().work;
     for (const auto& [key, value] : method.configured->values())
-        if (const auto* number = std::get_if<std::int64_t>(&value);
-            key == work.parameter && number != nullptr)
-            return std::pow(static_cast<double>(*number), work.power);
+        if (key == work.parameter)
+            return std::pow(static_cast<double>(std::get<std::int64_t>(value)), work.power);
     return {};
 }
 

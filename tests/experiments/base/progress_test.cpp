@@ -1,60 +1,15 @@
 #include "experiments/base/progress.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <poll.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdlib>
 #include <thread>
 
 #include "experiments/base/step_progress.h"
 #include "experiments/run/run_progress.h"
+#include "tests/experiments/terminal.h"
 
 namespace caustics::experiments {
 namespace {
-
-/// While it lives, stderr is a terminal of so many columns.
-class Terminal {
-public:
-    explicit Terminal(unsigned short columns) : master_(posix_openpt(O_RDWR | O_NOCTTY)) {
-        grantpt(master_);
-        unlockpt(master_);
-        const int end = open(ptsname(master_), O_RDWR | O_NOCTTY);
-        const winsize size{24, columns, 0, 0};
-        ioctl(end, TIOCSWINSZ, &size);
-        std::fflush(stderr);
-        dup2(end, STDERR_FILENO);
-        close(end);
-    }
-    ~Terminal() { text(); }
-    /// All that was written; stderr is what it was.
-    std::string text() {
-        if (kept_ < 0) return {};
-        std::fflush(stderr);
-        // A terminal hands over what was written when the system finds time.
-        constexpr int patience = 300;  // [ms]
-        std::string all;
-        std::array<char, 4096> part;
-        pollfd waiting{master_, POLLIN, 0};
-        while (poll(&waiting, 1, patience) > 0) {
-            const ssize_t count = read(master_, part.data(), part.size());
-            if (count <= 0) break;
-            all.append(part.data(), static_cast<std::size_t>(count));
-        }
-        dup2(kept_, STDERR_FILENO);
-        close(kept_);
-        close(master_);
-        kept_ = -1;
-        return all;
-    }
-
-private:
-    int kept_ = dup(STDERR_FILENO);
-    int master_;
-};
 
 /// The longest stretch of characters between returns and line ends, escape sequences apart.
 std::size_t widest_line(const std::string& written) {
@@ -113,6 +68,16 @@ TEST(RunEta, IsThatOfTheWholeRunOnceItRenders) {
     EXPECT_DOUBLE_EQ(eta.at(0.25, 9)->seconds, 6);
 }
 
+TEST(RunEta, CountsAPassOnceWhoseRenderingHasSeveralStretches) {
+    RunEta eta(2);
+    eta.begin("trace", 0);
+    eta.begin("render", 2);
+    eta.begin("render", 4);
+    EXPECT_EQ(eta.pass(), 1);
+    // 3 s of rendering were half of it, and the second pass builds for 2 s.
+    EXPECT_DOUBLE_EQ(eta.at(0.5, 5)->seconds, 3 + 2);
+}
+
 TEST(RunEta, CountsTheLaterPassesByWhatTheFirstOnesTook) {
     // Four passes, each 2 s of build and 3 s of render.
     RunEta eta(4);
@@ -144,6 +109,18 @@ TEST(Progress, ARunShowsItsPhasesOnATerminalAndLeavesNothingThere) {
     EXPECT_NE(written.find("trace ..."), std::string::npos) << written;
     EXPECT_LT(written.find("trace ..."), written.find("render ...")) << written;
     EXPECT_EQ(written.substr(written.size() - 4), "\r\033[K");
+}
+
+TEST(Progress, ARunOfSeveralPassesNamesTheOneAtWork) {
+    Terminal terminal(80);
+    {
+        RunOptions options;
+        const RunProgress progress(options, 2);
+        for (const char* phase : {"trace", "render", "balance"}) options.phase(phase);
+    }
+    const std::string written = terminal.text();
+    for (const char* shown : {"1/2 trace ...", "1/2 render ...", "2/2 balance ..."})
+        EXPECT_NE(written.find(shown), std::string::npos) << written;
 }
 
 TEST(Progress, AnyThreadMayTellTheShareOfARun) {

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "core/base/error.h"
+#include "tests/experiments/refusal.h"
 
 namespace caustics::experiments {
 namespace {
@@ -19,15 +19,6 @@ Film grey_film(const std::string& layer, const std::vector<float>& values) {
 }
 
 const PixelMask all(4, true);
-
-std::string refusal_of(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "taken";
-}
 
 TEST(Metrics, FollowTheirFormulasByHand) {
     const Film x = grey_film("caustic", {1, 3, 2, 1});

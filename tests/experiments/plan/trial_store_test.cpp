@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "experiments/base/file_io.h"
+#include "tests/experiments/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics::experiments {
@@ -130,6 +131,27 @@ TEST_F(JobStores, TakeNothingElseForARecord) {
 TEST_F(JobStores, NeedAFolderTheyCanWrite) {
     write_atomic_file(folder_ / "file", "");
     EXPECT_THROW(TrialStore(folder_ / "file").prepare(), InputError);
+}
+
+TEST_F(JobStores, NameTheFolderThatCannotBeWritten) {
+    const std::string too_long(300, 'a');
+    const std::string why = ": cannot be written (File name too long)";
+    EXPECT_EQ(refusal_of([&] { store_.begin(too_long); }),
+              store_.temporary_of(too_long).string() + why);
+    EXPECT_EQ(refusal_of([&] { store_.remove(too_long); }),
+              store_.folder_of(too_long).string() + why);
+    const TrialStore nowhere(folder_ / "nowhere");
+    EXPECT_EQ(
+        refusal_of([&] { nowhere.begin("a-1"); }),
+        nowhere.temporary_of("a-1").string() + ": cannot be written (No such file or directory)");
+}
+
+TEST_F(JobStores, CountNothingThatIsUnfinishedAmongTheTrials) {
+    add(store_, "a-1", "done");
+    store_.begin("b-2");
+    fs::create_directories(folder_ / "trials/.old-c-3");
+    write_atomic_file(folder_ / "trials/notes.txt", "mine");
+    EXPECT_EQ(store_.trials(), std::vector<std::string>{"a-1"});
 }
 
 }  // namespace

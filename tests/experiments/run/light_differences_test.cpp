@@ -37,6 +37,7 @@ TEST(LightDifferences, NameFilesThatChanged) {
 TEST(LightDifferences, AreNotGuessed) {
     const Film a = film_with(R"({"max_bounces": 3})", R"({"a": 1})");
     EXPECT_EQ(light_differences(a, Film(1, 1), "caustic"), Lines()) << "another program's picture";
+    EXPECT_EQ(light_differences(Film(1, 1), a, "caustic"), Lines()) << "the other way round";
     EXPECT_EQ(light_differences(a, film_with("no JSON", "[1]"), "caustic"),
               Lines{"/a: 1 against absent"});
     EXPECT_EQ(light_differences(a, film_with("{}", R"({"a": 1})"), "caustic"), Lines())

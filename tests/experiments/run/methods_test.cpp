@@ -193,7 +193,9 @@ TEST(Methods, NameTheAlternatives) {
     const std::string unknown = error("photonmap", {"photns=10"});
     EXPECT_NE(unknown.find("photns"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("photons"), std::string::npos) << unknown;
-    EXPECT_EQ(error("none", {"photons"}), "--param \"photons\": expected key=value");
+    for (const std::string assignment : {"photons", "=5", "="})
+        EXPECT_EQ(error("none", {assignment}),
+                  "--param \"" + assignment + "\": expected key=value");
     EXPECT_NE(error("lighttrace", {"radius=2e12"}).find("out of range"), std::string::npos);
     EXPECT_EQ(error("lighttrace", {"paths=1", "paths=2"}), "--param \"paths\": given twice");
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/exact_shapes/rectangle.h"
@@ -10,6 +11,7 @@
 #include "core/math/rng.h"
 #include "core/mesh/vertex_normals.h"
 #include "experiments/run/method.h"
+#include "experiments/run/wide_triangles.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics::experiments {
@@ -39,6 +41,15 @@ std::vector<std::string> notes_of(const SceneDesc& desc, const std::string& name
     return notes(scene, method, build(scene, method, RunOptions{})->build_report());
 }
 
+/// Of a method that chose these values by itself.
+std::vector<std::string> notes_of_report(const SceneDesc& desc, const std::string& name,
+                                         const std::vector<std::string>& parameters,
+                                         const std::map<std::string, double>& resolved) {
+    BuildReport report;
+    report.resolved = resolved;
+    return notes(Scene(desc), parse_method(name, parameters_node(parameters)), report);
+}
+
 bool any_holds(const std::vector<std::string>& notes, const std::vector<std::string>& words) {
     return std::ranges::any_of(notes, [&](const std::string& note) {
         return std::ranges::all_of(
@@ -63,6 +74,8 @@ TEST(Notes, TellThatFlatPolygonsStandForACurvedReceiver) {
     desc.shapes.push_back(support::sphere("ball", {0, 0, 0.2}, 0.1, support::diffuse(0.5F)));
     EXPECT_TRUE(any_holds(notes_of(desc, "causticpolygons", {"receiver_resolution=5"}), words));
     EXPECT_FALSE(any_holds(notes_of(desc, "beamtree", {}), {"flat polygons"}));
+    desc.shapes.back().primitive = Primitive::cylinder;
+    EXPECT_TRUE(any_holds(notes_of(desc, "causticpolygons", {"receiver_resolution=5"}), words));
 }
 
 TEST(Notes, TellThatPhotonsKeepNoWavelengthsForGlassBeforeTheEye) {
@@ -74,6 +87,9 @@ TEST(Notes, TellThatPhotonsKeepNoWavelengthsForGlassBeforeTheEye) {
     desc.camera.to_world = Transform(Eigen::Translation3d(0, 0, -2));
     EXPECT_FALSE(any_holds(notes_of(desc, "photonmap", {"photons=100"}), words))
         << "the floor hides it";
+    desc.camera.to_world = Transform(Eigen::Translation3d(0, 0, 2));
+    EXPECT_FALSE(any_holds(notes_of(desc, "photonmap", {"photons=100"}), words))
+        << "the camera sees nothing at all";
     desc.camera.to_world = Transform(Eigen::Translation3d(0, 0, 0.1));
     EXPECT_TRUE(any_holds(notes_of(desc, "photonmap", {"photons=100"}), words));
     EXPECT_TRUE(any_holds(notes_of(desc, "illuminationmap", {"emitted=100"}), words));
@@ -104,6 +120,13 @@ TEST(Notes, TellThatPartsOfTheWavelengthsDrawSteps) {
                            {"parts of the wavelengths"}));
     EXPECT_TRUE(any_holds(notes_of_glass(false, "beamtree", {"dispersion=intervals"}),
                           {"dispersion=intervals makes no difference"}));
+    SceneDesc prism = flat_mirror();
+    Dielectric flint;
+    flint.int_ior = Ior::abbe(1.6, 30);
+    prism.shapes[0].bsdf = {flint, false};
+    EXPECT_EQ(notes_of_report(prism, "pathtrace", {}, {{"flux_share_captured", 1}}),
+              std::vector<std::string>{})
+        << "a method without that parameter";
 }
 
 TEST(Notes, NameLobesThatPhotonsBlur) {
@@ -120,19 +143,28 @@ TEST(Notes, NameLobesThatPhotonsBlur) {
 }
 
 TEST(Notes, NameAColourThatFewParticlesCarry) {
-    const auto notes_of_green = [](float green, const std::string& method) {
+    const auto notes_of_green = [](float green, const std::string& method,
+                                   const std::vector<std::string>& parameters = {}) {
         SceneDesc desc = flat_mirror();
         PointLight red = support::point_light({0, 0, 0.5}, 0);
         red.intensity[0] = 1;
         PointLight weak = red;
         weak.intensity = {0, green, 0};
         desc.lights = {red, weak};
-        return notes_of(desc, method, {});
+        return notes_of(desc, method, parameters);
     };
     EXPECT_TRUE(any_holds(notes_of_green(1e-4F, "photonmap"), {"one colour", "0.01 %"}));
     EXPECT_TRUE(any_holds(notes_of_green(1e-4F, "lighttrace"), {"one colour", "0.01 %"}));
+    EXPECT_TRUE(any_holds(notes_of_green(1e-4F, "illuminationmap", {"emitted=100"}),
+                          {"one colour", "0.01 %"}));
     EXPECT_TRUE(notes_of_green(0.1F, "photonmap").empty());
     EXPECT_TRUE(notes_of_green(1e-4F, "beamtree").empty());
+}
+
+TEST(Notes, NameAPhotonMapOfAnOldFile) {
+    EXPECT_TRUE(any_holds(
+        notes_of_report(flat_mirror(), "photonmap", {"photons=100"}, {{"photon_map_version", 2}}),
+        {"file has version 2", "trace and save it again"}));
 }
 
 TEST(Notes, NameACasterThatIsTooFarAway) {
@@ -222,34 +254,57 @@ TEST(Notes, SayThatLightFromAfarStartsAtTheBounds) {
     EXPECT_FALSE(lit_by(support::point_light({0, 0, 3}, 1)));
 }
 
+/// A pane of two meshes under a lamp, over a floor; `smooth`: bent by its normals.
+SceneDesc pane_of_triangles(int cells, double lamp, bool smooth) {
+    SceneDesc desc;
+    TriangleMesh top = tessellate_rectangle(cells), bottom = tessellate_rectangle(cells);
+    flip(bottom);
+    if (smooth)
+        for (std::size_t i = 0; i < top.positions.size(); ++i)
+            top.normals[i] = (Vec3(0, 0, 9) + top.positions[i]).normalized();
+    desc.shapes = {support::mesh("top", std::move(top), Transform(Eigen::Translation3d(0, 0, 1.2)),
+                                 support::glass(1.5F)),
+                   support::mesh("bottom", std::move(bottom),
+                                 Transform(Eigen::Translation3d(0, 0, 1)), support::glass(1.5F)),
+                   support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
+    desc.lights = {support::point_light({0, 0, lamp}, 1)};
+    return desc;
+}
+
 TEST(Notes, NameGlassOfTrianglesThatALightSeesWide) {
     const auto pane = [](int cells, double lamp, bool smooth, const std::string& intensity) {
-        SceneDesc desc;
-        TriangleMesh top = tessellate_rectangle(cells), bottom = tessellate_rectangle(cells);
-        flip(bottom);
-        if (smooth)
-            for (std::size_t i = 0; i < top.positions.size(); ++i)
-                top.normals[i] = (Vec3(0, 0, 9) + top.positions[i]).normalized();
-        desc.shapes = {
-            support::mesh("top", std::move(top), Transform(Eigen::Translation3d(0, 0, 1.2)),
-                          support::glass(1.5F)),
-            support::mesh("bottom", std::move(bottom), Transform(Eigen::Translation3d(0, 0, 1)),
-                          support::glass(1.5F)),
-            support::horizontal("floor", 0, 3, true, support::diffuse(0.5F))};
-        desc.lights = {support::point_light({0, 0, lamp}, 1)};
-        return notes_of(desc, "beamtree", {"light_samples=1", "intensity=" + intensity});
+        return notes_of(pane_of_triangles(cells, lamp, smooth), "beamtree",
+                        {"light_samples=1", "intensity=" + intensity});
     };
     const std::vector<std::string> words = {"a light sees top in triangles", "degrees wide"};
-    EXPECT_TRUE(any_holds(pane(1, 2.2, false, "area"), words));
+    const std::vector<std::string> remedy = {words[0], "intensity=refined"};
+    EXPECT_TRUE(any_holds(pane(1, 2.2, false, "area"), remedy));
     EXPECT_FALSE(any_holds(pane(1, 2.2, false, "refined"), words));
     EXPECT_TRUE(any_holds(pane(1, 2.2, true, "refined"), words));
     EXPECT_FALSE(any_holds(pane(64, 2.2, true, "area"), words));
     EXPECT_FALSE(any_holds(pane(1, 100, true, "area"), words));
+    const auto polygons =
+        notes_of(pane_of_triangles(1, 2.2, false), "causticpolygons", {"max_bounces=2"});
+    EXPECT_TRUE(any_holds(polygons, words));
+    EXPECT_FALSE(any_holds(polygons, remedy)) << "it has no such parameter";
+}
+
+TEST(WideTriangles, AreThoseThatALightSeesFromItsPlace) {
+    SceneDesc desc = pane_of_triangles(1, 2.2, true);
+    EXPECT_EQ(wide_triangles(Scene(desc), Triangles::of_changing_normals, 0.1)->shape, "top");
+    for (Shape& shape : desc.shapes) shape.mesh.normals.clear();
+    EXPECT_EQ(wide_triangles(Scene(desc), Triangles::all, 0.1)->shape, "top");
+    EXPECT_FALSE(wide_triangles(Scene(desc), Triangles::of_changing_normals, 0.1))
+        << "without normals each triangle is flat";
+    desc.lights = {ConstantLight(), support::directional_light({0, 0, -1}, 1)};
+    EXPECT_FALSE(wide_triangles(Scene(desc), Triangles::all, 0)) << "lights without a place";
 }
 
 TEST(Notes, NameAWallBetweenWhichLightMayGrow) {
     SceneDesc desc = flat_mirror();
     EXPECT_TRUE(notes_on_indirect(Scene(desc)).empty());
+    desc.shapes[1].bsdf = support::phong(0.1F, 1, 3);
+    EXPECT_TRUE(notes_on_indirect(Scene(desc)).empty()) << "normalised";
     desc.shapes[1].bsdf = support::phong(0.1F, 1, 3, Phong::Model::classic);
     EXPECT_TRUE(any_holds(notes_on_indirect(Scene(desc)), {"floor", "1975", "without end"}));
 }
@@ -261,6 +316,33 @@ TEST(Notes, NameDielectricsThatCross) {
     EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
     desc.shapes.push_back(support::sphere("middle", {0.25, 0, 3}, 0.2, support::glass(1.5F)));
     EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"left and middle", "1 pair more", "cross"}));
+    desc.shapes.push_back(support::sphere("last", {0.5, 0.35, 3}, 0.2, support::glass(1.5F)));
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"left and middle (and 2 pairs more) cross"}));
+}
+
+TEST(Notes, CountCrossingDielectricsUpToALimit) {
+    SceneDesc desc = flat_mirror();
+    for (int i = 0; i < 11; ++i) {
+        const double at = 0.1 * i;
+        desc.shapes.push_back(support::rectangle("along", {0.5, at, 3}, {0.6, 0, 0}, {0, 0, 0.5},
+                                                 support::glass(1.5F)));
+        desc.shapes.push_back(support::rectangle("across", {at, 0.5, 3}, {0, 0.6, 0}, {0, 0, 0.5},
+                                                 support::glass(1.5F)));
+    }
+    const std::vector<std::string> all = notes_on(Scene(desc));
+    EXPECT_TRUE(any_holds(all, {"(and 99 pairs more, at least) cross"})) << all.at(0);
+}
+
+TEST(Notes, NameACasterThatLiesOnAnotherShape) {
+    SceneDesc desc = flat_mirror();
+    const auto block = [&](double z) {
+        const Transform at(Eigen::Translation3d(0, 0, z + 0.25) * Eigen::Scaling(0.25));
+        desc.shapes.back() = support::mesh("block", tessellate_cube(1), at, support::glass(1.5F));
+        return notes_on(Scene(desc));
+    };
+    desc.shapes.emplace_back();
+    EXPECT_FALSE(any_holds(block(1e-3), {"lies with a face"}));
+    EXPECT_TRUE(any_holds(block(0), {"block lies with a face on floor: light", "leave a gap"}));
 }
 
 TEST(Notes, NameDielectricsThatDisagree) {
@@ -271,6 +353,9 @@ TEST(Notes, NameDielectricsThatDisagree) {
                           {"glass and water", "disagree", "n = 1.5 and 1", "ext_ior"}));
     std::get<Dielectric>(desc.shapes.back().bsdf.model).ext_ior = 1.5F;
     EXPECT_EQ(notes_on(Scene(desc)), std::vector<std::string>{});
+    std::get<Dielectric>(desc.shapes.back().bsdf.model).ext_absorption = Spectrum::Constant(5);
+    EXPECT_TRUE(any_holds(notes_on(Scene(desc)),
+                          {"glass and water disagree", "between them, what it absorbs: light"}));
     // Of those that cross another note tells.
     desc.shapes.back() = support::sphere("water", {0.2, 0, 3}, 0.2, support::glass(1.333F));
     EXPECT_EQ(notes_on(Scene(desc)).size(), 1U);
@@ -308,6 +393,19 @@ TEST(Notes, NameTheLightThatBeamsLose) {
     }
 }
 
+TEST(Notes, SayWhereTheLightThatBeamsLoseIs) {
+    const auto lost = [](double over_budget) {
+        return notes_of_report(ring(), "beamtree", {},
+                               {{"flux_share_captured", 0.75},
+                                {"flux_share_pruned", 0.125},
+                                {"flux_share_over_budget", over_budget}});
+    };
+    EXPECT_TRUE(any_holds(lost(0.1), {"loses 25.0 %", "12.5 % in paths too weak to be followed, ",
+                                      "10.0 % in beams that max_beams has no room for"}));
+    EXPECT_TRUE(any_holds(lost(0), {"loses 25.0 %", "12.5 % in paths"}));
+    EXPECT_FALSE(any_holds(lost(0), {"max_beams"}));
+}
+
 TEST(Notes, NameParametersThatMakeNoDifference) {
     const std::vector<std::string> given = {"polygons=quads", "light_samples=3",
                                             "mesh_resolution=9"};
@@ -340,6 +438,17 @@ TEST(Notes, SayWherePhotonsHaveNothingToCarry) {
     EXPECT_TRUE(any_holds(notes_of(ring(), "beamtree", {"rest=photons", "max_bounces=1"}), words));
     EXPECT_FALSE(any_holds(notes_of(panes(), "beamtree", pruned), words));
     EXPECT_FALSE(any_holds(notes_of(ring(), "beamtree", {"max_bounces=1"}), words));
+    // What beams leave out may be so little that no photon was of it.
+    const auto left_out = [](double too_weak, double over_budget) {
+        return notes_of_report(ring(), "beamtree", {"rest=photons"},
+                               {{"flux_share_captured", 1},
+                                {"flux_share_rest", 0},
+                                {"flux_share_pruned", too_weak},
+                                {"flux_share_over_budget", over_budget}});
+    };
+    EXPECT_TRUE(any_holds(left_out(0, 0), words));
+    EXPECT_FALSE(any_holds(left_out(1e-9, 0), words));
+    EXPECT_FALSE(any_holds(left_out(0, 1e-9), words));
 }
 
 std::vector<std::string> notes_of_picture(const std::string& method, const std::string& indirect,

@@ -8,7 +8,7 @@
 namespace caustics::experiments {
 namespace {
 
-using Cost = std::function<double(double work)>;
+using SecondsOf = std::function<double(double work)>;
 
 struct Outcome {
     std::int64_t work = 0;
@@ -17,7 +17,7 @@ struct Outcome {
     int trials = 0;
 };
 
-Outcome search(double seconds, const WorkParameter& work, const Cost& cost) {
+Outcome search(double seconds, const WorkParameter& work, const SecondsOf& cost) {
     TimeBudget budget(seconds, work);
     Outcome outcome;
     bool goes_on = true;

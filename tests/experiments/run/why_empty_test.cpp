@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/geometry/tessellate.h"
+#include "experiments/run/caustic_survey.h"
 #include "experiments/run/render_and_score.h"
 #include "tests/support/build_scene.h"
 
@@ -132,6 +134,33 @@ TEST(WhyEmpty, KnowsThatTheCameraSeesNothingOfTheLight) {
     SceneDesc black = pool();
     black.shapes[floor_shape].bsdf = support::diffuse(0);
     expect_from_all(black, "reflect none of it");
+
+    // All of the floor lies below the water, for an eye close above it.
+    SceneDesc through_water = pool();
+    through_water.camera = support::camera({0, 0, 1.9}, {0, 0, 0}, {0, 1, 0}, 120, 6, 4);
+    EXPECT_EQ(reason(through_water, "photonmap", {"emitted=3000", "radius=1e-7"})
+                  .find("the camera sees what light reaches through casters at most ("),
+              0U);
+}
+
+// A floor whose smooth normals lean away from the camera shows it nothing, although its triangles face it.
+TEST(WhyEmpty, KnowsThatSmoothNormalsTurnAReceiverAway) {
+    const auto surveyed = [](const Vec3& normal) {
+        TriangleMesh square = tessellate_rectangle(1);
+        for (Vec3& each : square.normals) each = normal.normalized();
+        SceneDesc desc = pool();
+        desc.shapes[floor_shape] = support::mesh(
+            "floor", std::move(square), Transform(Eigen::Scaling(3.0)), support::diffuse(0.5F));
+        desc.camera = support::camera({2.9, 0, 0.3}, {0, 0, 0}, {0, 0, 1}, 90, 6, 4);
+        return survey_caustic(Scene(std::move(desc)), 4);
+    };
+    EXPECT_EQ(surveyed({0, 0, 1}).turned_away, 0U);
+    const CausticSurvey leaning = surveyed({-1, 0, 1});
+    EXPECT_EQ(leaning.seen, 0U);
+    EXPECT_EQ(why_unseen(leaning).find("light reaches receivers on the side that the camera does "
+                                       "not see"),
+              0U)
+        << why_unseen(leaning);
 }
 
 TEST(WhyEmpty, KnowsWhatAMethodCannotDo) {
@@ -165,6 +194,49 @@ TEST(WhyEmpty, KnowsThatTheWorkWasTooLittle) {
     small.camera = support::camera({0, 0, 0.9}, {0, 0, 0}, {0, 1, 0}, 6, 6, 4);
     EXPECT_EQ(reason(small, "illuminationmap", {"emitted=1"}).find("1 light paths are too few"),
               0U);
+}
+
+/// What is said of a black picture by a method that counted and chose these.
+std::string told(const SceneDesc& desc, const std::string& method, const Words& params,
+                 const Counters& counters, const BuildReport& report = {}) {
+    Film film(4, 4);
+    film.set_rgb("caustic", 0, black());
+    return why_empty(Scene{SceneDesc(desc)}, parse_method(method, parameters_node(params)), film,
+                     report, counters)
+        .value_or("");
+}
+
+TEST(WhyEmpty, IsToldByWhatTheMethodCounted) {
+    const std::string more = "found none of the light that is there: give it more samples (";
+    EXPECT_EQ(told(pool(), "pathtrace", {}, {}).find("pathtrace " + more), 0U);
+    EXPECT_EQ(told(pool(), "photonmap", {"emitted=10"}, {}).find("photonmap " + more), 0U);
+    EXPECT_EQ(told(pool(), "beamtree", {}, {{"beams", 3}})
+                  .find("beamtree has no beam for it: the casters' polygons are too coarse"),
+              0U);
+    const Words within = {"emitted=10", "radius=0.1"};
+    EXPECT_EQ(
+        told(pool(), "photonmap", within, {{"gathers", 5}, {"empty_gathers", 5}}).find("no photon"),
+        0U);
+    EXPECT_EQ(told(pool(), "photonmap", within, {{"gathers", 5}, {"empty_gathers", 4}})
+                  .find("photonmap " + more),
+              0U);
+
+    // From far above, some of the lit floor is seen through the water and some beside it.
+    SceneDesc beside = pool();
+    beside.camera = support::camera({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 60, 6, 4);
+    EXPECT_EQ(told(beside, "lighttrace", {}, {{"photons_connected", 0}}).find("lighttrace " + more),
+              0U);
+}
+
+TEST(WhyEmpty, IsToldByTheLimitOfThePhotonsThatWereLoaded) {
+    SceneDesc two_sheets = pool_by_day({0, 0, -1}, support::glass(1.33F));
+    two_sheets.shapes.push_back(support::horizontal("ice", 1.2, 1, true, support::glass(1.2F)));
+    BuildReport loaded;
+    EXPECT_EQ(told(two_sheets, "photonmap", {"emitted=10"}, {}, loaded).find("max_bounces"),
+              std::string::npos);
+    loaded.resolved["max_bounces"] = 1;
+    EXPECT_NE(told(two_sheets, "photonmap", {"emitted=10"}, {}, loaded).find("max_bounces"),
+              std::string::npos);
 }
 
 TEST(WhyEmpty, IsToldWhenAskedForPhotonsThatCannotBeHad) {

@@ -50,6 +50,9 @@ TEST(CostEstimates, FollowTheWorkOfAMethod) {
     EXPECT_EQ(costs.of(of_photons(101'000))->bytes, 200);
     EXPECT_EQ(costs.of(of_photons(11'000))->seconds, 0.5) << "of its own cell";
     EXPECT_EQ(costs.of(trial("beams", "beamtree", "pool"))->seconds, 0.375);
+    Trial of_emitted = trial("emitted", "photonmap", "pool");
+    of_emitted.request.method = parse_method("photonmap", parameters_node({"emitted=101000"}));
+    EXPECT_EQ(costs.of(of_emitted)->seconds, 0.375) << "its photons are not known";
     Trial elsewhere = of_photons(101'000);
     elsewhere.scene_name = "ring";
     EXPECT_EQ(costs.of(elsewhere)->seconds, 0.375);

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "experiments/base/child_process.h"
 #include "experiments/base/file_io.h"
 #include "experiments/cli/explain.h"
 #include "experiments/plan/plan_file.h"
 #include "experiments/plan/trial_store.h"
 #include "experiments/sweep/merge.h"
 #include "experiments/sweep/sweep.h"
+#include "tests/experiments/sweep/plan_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics::experiments {
@@ -24,12 +24,6 @@ namespace fs = std::filesystem;
 /// A text that leaves its folder, its line, its word and its quotes where it can.
 const std::string hostile =
     "../../pwned\ntouch pwned\n$(touch pwned)`touch pwned`;touch pwned;'touch pwned'\"|touch pwned";
-
-SweepPlan plan_of(const fs::path& sweep) {
-    return read_plan({sweep}, [](const auto& work) {
-        return run_in_child([&](const ChildProcess::Tell&) { return work(); });
-    });
-}
 
 /// A copy of real results, in which one thing after the other is not as the program wrote it. What a
 /// verb says then is its own business; here it is none of a crash, of an error without a place, of

@@ -87,6 +87,42 @@ TEST_F(Merges, RefuseGaps) {
         << error();
 }
 
+TEST_F(Merges, NameAFewOfManyGaps) {
+    for (const char* id : {"e", "f", "g", "h", "i", "j", "k"})
+        plan_.trials.push_back({id, id, 1, true});
+    for (const fs::path& folder : {one_, two_}) write_plan(plan_, folder);
+    EXPECT_TRUE(
+        error().ends_with("7 of the plan's trials are in none of the folders: e, f, g, h, "
+                          "i and 2 more"))
+        << error();
+}
+
+TEST_F(Merges, TakeNothingButPicturesFromReferences) {
+    for (const fs::path& folder : {one_, two_}) {
+        fs::create_directories(folder / "references");
+        write_atomic_file(folder / "references/notes.txt", "notes of " + folder.string());
+    }
+    write_atomic_file(two_ / "references/key.exr", "picture");
+    EXPECT_TRUE(merge().empty());
+    EXPECT_TRUE(fs::exists(whole_ / "references/key.exr"));
+    EXPECT_FALSE(fs::exists(whole_ / "references/notes.txt"));
+}
+
+TEST_F(Merges, TakeOneFigureACell) {
+    plan_.trials[1].cell = plan_.trials[0].cell;
+    for (const auto& [folder, id] :
+         {std::pair(one_, "a"), std::pair(two_, "b"), std::pair(two_, "d")}) {
+        write_plan(plan_, folder);
+        fs::create_directories(folder / "report/figures");
+        write_atomic_file(folder / "report/figures" / (std::string(id) + ".png"), id);
+    }
+    EXPECT_TRUE(merge().empty());
+    const fs::path figures = whole_ / "report/figures";
+    EXPECT_TRUE(fs::exists(figures / "a.png"));
+    EXPECT_FALSE(fs::exists(figures / "b.png")) << "of the cell of a";
+    EXPECT_TRUE(fs::exists(figures / "d.png"));
+}
+
 TEST_F(Merges, LeaveOutWhatNoFilterChose) {
     plan_.trials[1].chosen = false;
     for (const fs::path& folder : {one_, two_}) write_plan(plan_, folder);
@@ -229,6 +265,11 @@ TEST_F(Merges, OverwriteNothing) {
     write_atomic_file(folder_ / "whole", "mine");
     EXPECT_THROW(merge(), InputError);
     EXPECT_EQ(read_whole_file(whole_), "mine");
+    fs::remove(whole_);
+    fs::create_directory(whole_);
+    write_atomic_file(whole_ / "notes.txt", "mine");
+    EXPECT_THROW(merge(), InputError);
+    EXPECT_FALSE(fs::exists(whole_ / "plan.json"));
 }
 
 }  // namespace
