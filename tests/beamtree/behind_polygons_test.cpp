@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "beamtree/beam_tree.h"
+#include "core/base/error.h"
 #include "tests/support/build_scene.h"
 
 namespace caustics::beamtree {
@@ -37,6 +41,41 @@ TEST(WallsBehindPolygons, AreNoneOnceTheyAreAsFineAsIsSaid) {
     EXPECT_GT(thin[0].finer, 2);
     EXPECT_LT(thin[0].finer, 10);
     EXPECT_EQ(walls_of(radius - 1e-3, static_cast<int>(16 * thin[0].finer) + 1)[0].share, 0);
+}
+
+// What is said of a lamp within a ball of glass by polygons so fine: on the way out through the middle of one, at its height in the
+// bulge above, 1 at the sphere; empty where it is served.
+std::string said_of_lamp(double height, int resolution, int its_resolution) {
+    SceneDesc desc;
+    desc.shapes = {support::sphere("ball", {0, 0, 0}, radius, support::glass(1.5F))};
+    const std::vector<CasterMesh> casters = caster_meshes(Scene(desc), its_resolution);
+    const TriangleMesh& mesh = casters[0].mesh;
+    Vec3d middle = Vec3d::Zero();
+    for (const std::uint32_t corner : mesh.triangles[mesh.triangles.size() / 2])
+        middle += mesh.positions[corner].cast<double>() / 3;
+    const double bulge = radius - middle.norm();
+    desc.lights = {support::point_light(middle.normalized() * (middle.norm() + height * bulge), 1)};
+    BeamTreeParams params;
+    params.mesh_resolution = resolution;
+    params.max_bounces = 1;
+    try {
+        build(Scene(desc), params, {});
+    } catch (const UnsupportedScene& refusal) {
+        return refusal.what();
+    }
+    return "";
+}
+
+TEST(LightBehindPolygons, IsRefusedUntilTheyAreAsFineAsIsSaid) {
+    EXPECT_EQ(said_of_lamp(-1, 16, 16), "") << "on the same side of polygon and surface";
+    const std::string said = said_of_lamp(0.5, 16, 16);
+    const std::string before = "take a mesh_resolution ";
+    const std::size_t place = said.find(before);
+    ASSERT_NE(place, std::string::npos) << said;
+    const int finer = std::stoi(said.substr(place + before.size()));
+    EXPECT_GE(finer, 2);
+    EXPECT_LE(finer, 4) << "a bulge falls with the square of the polygons' size";
+    EXPECT_EQ(said_of_lamp(0.5, 16 * finer, 16), "");
 }
 
 }  // namespace
