@@ -325,6 +325,12 @@ class Page(unittest.TestCase):
                                         (said | {"parameters": json.dumps(given)} | known).items()}
         page.require_own(texts({"nearest": 50, "tree": "packed"}), row, parameters)
         page.require_own({}, row, parameters)
+        pool = {"mesh_resolution": "128"}
+        water = "causticbench render pool.json --method photonmap --set /water/resolution=128 --param mesh_resolution=64"
+        page.require_own(texts({"mesh_resolution": 64}, command=water), row, pool)
+        for command in (water.replace("128", "256"), "causticbench render 'pool.json --set /water/resolution=128", ""):
+            with self.assertRaisesRegex(exr.PictureError, "of mesh_resolution 64 in place of 128"):
+                page.require_own(texts({"mesh_resolution": 64}, command=command), row, pool)
         for given, known, words in (({"nearest": 20}, {}, "of nearest 20 in place of 50"), ({}, {"seed": "1"}, "of seed 1 in place of 2"),
                                     ({"tree": "balanced"}, {}, "of tree balanced"), ({}, {"method": "beamtree"}, "of method beamtree"),
                                     ({}, {"parameters": "[1"}, "no JSON object"), ({}, {"parameters": "[1]"}, "no JSON object")):

@@ -235,11 +235,23 @@ def require_own(texts, row, parameters):
         said |= json.loads(texts.get("causticbench.parameters", "{}"))
     except (ValueError, TypeError) as error:
         raise exr.PictureError("its parameters are no JSON object") from error
-    own |= {name: value for name, value in parameters.items() if name in said}
+    # A key of the scene may be swept by the name of a parameter (the mesh_resolution of a pool's water).
+    of_scene = values_set(texts.get("causticbench.command", ""))
+    own |= {name: value for name, value in parameters.items()
+            if name in said and not any(same(value, given) for given in of_scene)}
     for name, value in own.items():
         theirs = said[name] if isinstance(said[name], str) or said[name] is None else json.dumps(said[name])
         if value and theirs and not same(value, theirs):
             raise exr.PictureError(f"it is another trial's, of {name} {theirs} in place of {value}")
+
+
+def values_set(command):
+    """What the picture's command sets of the scene, each value as text."""
+    try:
+        words = shlex.split(command)
+    except ValueError:  # an open quote
+        return []
+    return [given.partition("=")[2] for word, given in zip(words, words[1:]) if word == "--set"]
 
 
 def row_of(cell, seed):
