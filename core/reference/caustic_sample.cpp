@@ -15,8 +15,7 @@ Spectrum chain_radiance(const Scene& scene, BackwardChain chain, int max_bounces
         if (!hit) {
             if (chain.bounces > 0)
                 result += chain.weight * scene.background() *
-                          segment_transmittance(chain.start_absorption, nullptr,
-                                                scene.distance_out(chain.ray));
+                          scene.transmittance_along(chain.ray, chain.start_absorption);
             return result;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;

@@ -78,9 +78,7 @@ StraightWay straight_way(const Scene& scene, Ray ray) {
     for (int crossing = 0; crossing < most_crossings; ++crossing) {
         const std::optional<SurfacePoint> hit = scene.intersect(ray);
         if (!hit) {
-            const float left =
-                std::isfinite(ray.max_distance) ? ray.max_distance : scene.distance_out(ray);
-            way.left *= passed_surfaces.shares() * segment_transmittance(medium, nullptr, left);
+            way.left *= passed_surfaces.shares() * scene.transmittance_along(ray, medium);
             return way;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;

@@ -81,8 +81,7 @@ EyePath trace_eye_path(const Scene& scene, const Ray& camera_ray, const Spectrum
         const auto hit = scene.intersect(branch.ray);
         if (!hit) {
             path.emitted += branch.weight * scene.background() *
-                            segment_transmittance(branch.start_absorption, nullptr,
-                                                  scene.distance_out(branch.ray));
+                            scene.transmittance_along(branch.ray, branch.start_absorption);
             continue;
         }
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;

@@ -1,8 +1,10 @@
 #include "core/scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/material/optics.h"
 #include "core/scene/intersector.h"
 #include "core/scene/medium_finder.h"
 
@@ -72,8 +74,11 @@ const Spectrum* Scene::area_light_medium(std::uint32_t shape) const {
 
 float Scene::diameter() const { return bounds_.diagonal().norm(); }
 
-float Scene::distance_out(const Ray& ray) const {
-    return std::max(0.0F, -distance_to_entry(bounds_, ray.origin, -ray.direction));
+Spectrum Scene::transmittance_along(const Ray& ray, const Spectrum* absorption) const {
+    if (is_clear(absorption)) return Spectrum::Ones();
+    if (std::isfinite(ray.max_distance)) return transmittance(*absorption, ray.max_distance);
+    const float way_out = -distance_to_entry(bounds_, ray.origin, -ray.direction);
+    return transmittance(*absorption, std::max(0.0F, way_out));
 }
 
 bool disperses(const Scene& scene) {

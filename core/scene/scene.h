@@ -92,8 +92,9 @@ public:
     const Vec3d& origin() const { return origin_; }  ///< as SceneDesc::origin
     const Box& bounds() const { return bounds_; }    ///< of the surfaces
     float diameter() const;                          ///< of the bounds [m]
-    /// Along a ray that meets nothing, to where light from infinitely far away begins: the bounds [m]; 0 beyond them.
-    float distance_out(const Ray& ray) const;
+    /// What a medium (null: none) leaves of the light that comes along a ray which meets nothing: from the ray's end, or, where
+    /// it has none, from the bounds, at which light from infinitely far away begins.
+    Spectrum transmittance_along(const Ray& ray, const Spectrum* absorption) const;
 
 private:
     std::vector<Shape> shapes_;

@@ -43,12 +43,14 @@ TEST(WallsBehindPolygons, AreNoneOnceTheyAreAsFineAsIsSaid) {
     EXPECT_EQ(walls_of(radius - 1e-3, static_cast<int>(16 * thin[0].finer) + 1)[0].share, 0);
 }
 
-// What is said of a lamp within a ball of glass by polygons so fine: on the way out through the middle of one, at its height in the
-// bulge above, 1 at the sphere; empty where it is served.
-std::string said_of_lamp(double height, int resolution, int its_resolution) {
+constexpr int coarse = 16;
+
+// What is said, by polygons so fine, of a lamp within a ball of glass: on the way out through the middle of a coarse polygon, at
+// its height in the bulge above, 1 at the sphere; empty where it is served.
+std::string said_of_lamp(double height, int resolution) {
     SceneDesc desc;
     desc.shapes = {support::sphere("ball", {0, 0, 0}, radius, support::glass(1.5F))};
-    const std::vector<CasterMesh> casters = caster_meshes(Scene(desc), its_resolution);
+    const std::vector<CasterMesh> casters = caster_meshes(Scene(desc), coarse);
     const TriangleMesh& mesh = casters[0].mesh;
     Vec3d middle = Vec3d::Zero();
     for (const std::uint32_t corner : mesh.triangles[mesh.triangles.size() / 2])
@@ -67,15 +69,15 @@ std::string said_of_lamp(double height, int resolution, int its_resolution) {
 }
 
 TEST(LightBehindPolygons, IsRefusedUntilTheyAreAsFineAsIsSaid) {
-    EXPECT_EQ(said_of_lamp(-1, 16, 16), "") << "on the same side of polygon and surface";
-    const std::string said = said_of_lamp(0.5, 16, 16);
+    EXPECT_EQ(said_of_lamp(-1, coarse), "") << "on the same side of polygon and surface";
+    const std::string said = said_of_lamp(0.5, coarse);
     const std::string before = "take a mesh_resolution ";
     const std::size_t place = said.find(before);
     ASSERT_NE(place, std::string::npos) << said;
     const int finer = std::stoi(said.substr(place + before.size()));
     EXPECT_GE(finer, 2);
     EXPECT_LE(finer, 4) << "a bulge falls with the square of the polygons' size";
-    EXPECT_EQ(said_of_lamp(0.5, 16 * finer, 16), "");
+    EXPECT_EQ(said_of_lamp(0.5, coarse * finer), "");
 }
 
 }  // namespace

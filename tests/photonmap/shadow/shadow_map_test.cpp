@@ -17,13 +17,13 @@ namespace {
 using Seen = KnownShadows::Seen;
 
 /// A floor of 2 m a side in the sun, and a board a little above its left half.
-Scene sunny_floor() {
+SceneDesc sunny_floor() {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 1, true, support::diffuse(0.5F)),
                    support::rectangle("board", {-0.5, 0, 0.5}, {0.5, 0, 0}, {0, 1, 0},
                                       support::diffuse(0.5F))};
     desc.lights = {support::directional_light({0, 0, -1}, 1)};
-    return Scene(std::move(desc));
+    return desc;
 }
 
 Seen seen(const ShadowMap& map, const Scene& scene, double x) {
@@ -33,7 +33,7 @@ Seen seen(const ShadowMap& map, const Scene& scene, double x) {
 }
 
 TEST(ShadowMap, TellsLightFromShadowAndNotAtTheEdge) {
-    const Scene scene = sunny_floor();
+    const Scene scene(sunny_floor());
     const ShadowMap map(scene, 20'000, {});
     for (const double x : {0.2, 0.5, 0.8}) {
         EXPECT_EQ(seen(map, scene, x), Seen::yes) << x;
@@ -45,7 +45,7 @@ TEST(ShadowMap, TellsLightFromShadowAndNotAtTheEdge) {
 
 // Of fewer photons than have to agree nothing is concluded.
 TEST(ShadowMap, KnowsNothingWhereItHasFewPhotons) {
-    const Scene scene = sunny_floor();
+    const Scene scene(sunny_floor());
     const ShadowMap few(scene, 15, {});
     EXPECT_GT(few.size(), 0U);
     for (const double x : {-0.5, 0.5}) EXPECT_EQ(seen(few, scene, x), Seen::unknown) << x;
@@ -53,12 +53,8 @@ TEST(ShadowMap, KnowsNothingWhereItHasFewPhotons) {
 
 // Each light has photons of its own: the first shines below the board, the sun above it.
 TEST(ShadowMap, AsksForEachLightByItself) {
-    SceneDesc desc;
-    desc.shapes = {support::horizontal("floor", 0, 1, true, support::diffuse(0.5F)),
-                   support::rectangle("board", {-0.5, 0, 0.5}, {0.5, 0, 0}, {0, 1, 0},
-                                      support::diffuse(0.5F))};
-    desc.lights = {support::point_light({-0.5, 0, 0.25}, 1),
-                   support::directional_light({0, 0, -1}, 1)};
+    SceneDesc desc = sunny_floor();
+    desc.lights.insert(desc.lights.begin(), support::point_light({-0.5, 0, 0.25}, 1));
     const Scene scene(std::move(desc));
     const ShadowMap map(scene, 20'000, {});
     const ReceiverPoint below = support::probe(scene, 0, {-0.5, 0, 0}, Vec3d::UnitZ(), 0);
@@ -70,7 +66,7 @@ TEST(ShadowMap, AsksForEachLightByItself) {
 // A ray leaves a photon on each receiver that faces it: on 4 m^2 of the floor and 2 m^2 of the board, of the disc round the
 // whole scene; what lies below the board is in shadow.
 TEST(ShadowPhotons, LieOnEveryReceiverInTheRaysWay) {
-    const Scene scene = sunny_floor();
+    const Scene scene(sunny_floor());
     constexpr std::uint64_t paths = 40'000;
     const PhotonStore photons = trace_shadows(scene, 0, paths, {});
     std::array<double, 2> of_board{}, of_floor{};  // in shadow, in light
