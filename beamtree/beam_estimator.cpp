@@ -6,7 +6,8 @@ namespace caustics::beamtree {
 
 void BeamSearch::add_to(Counters& counters) const {
     counters["beam_point_tests"] += counts.beam_point_tests;
-    counters["beam_point_hits"] += counts.beam_point_hits;
+    counters["beam_point_hits"] += counts.beam_point_hits + roots.found;
+    counters["roots_unsettled"] += roots.unsettled;
 }
 
 BeamEstimator::BeamEstimator(const Scene& scene, TracedScene traced, std::uint32_t rest_nearest,
@@ -43,7 +44,7 @@ void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Esti
         find(points.subspan(first, count), search);
         for (std::size_t i = 0; i < count; ++i) {
             const ReceiverPoint& point = points[first + i];
-            out[first + i] = {(light_.*query)(point, search.hits[i]), black()};
+            out[first + i] = {(light_.*query)(point, search.hits[i], search.roots), black()};
             if (!rest_.is_empty())
                 out[first + i].value += (rest_.*of_rest)(point, search.disc_stack);
         }

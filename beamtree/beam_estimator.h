@@ -17,6 +17,7 @@ public:
     std::vector<std::uint32_t> stack;
     std::vector<std::uint32_t> disc_stack;
     SearchCounts counts;
+    RootScratch roots;
 };
 
 /// What `beamtree` and `causticpolygons` share: the beams of a scene, and the light that those
@@ -44,7 +45,8 @@ private:
     /// that the method's make_context() makes.
     virtual void find(std::span<const ReceiverPoint> points, BeamSearch& search) const = 0;
 
-    using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&) const;
+    using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&,
+                                          RootScratch&) const;
     using RestQuery = Spectrum (PhotonDiscs::*)(const ReceiverPoint&,
                                                 std::vector<std::uint32_t>&) const;
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,

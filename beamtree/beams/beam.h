@@ -68,6 +68,9 @@ struct SpecularEvent {
     bool refracted = false;   ///< or reflected
 };
 
+/// The rays that leave from the middles of a triangle's edges, (0, 1), (1, 2) and (2, 0).
+using EdgeMiddles = std::array<VertexRay, 3>;
+
 /// The beams of one light sample that have met the same casters, with the same events.
 struct BeamSet {
     LightSample light;
@@ -83,6 +86,11 @@ struct BeamSet {
     /// One a ray where the light drifts (LightSample::drifts), else none: the ray at the shortest wavelength of
     /// the bin, and at the longest. Between them rays move linearly.
     std::array<std::vector<VertexRay>, 2> ends;
+    /// One a triangle of a beam where roots are searched (RootSearch), else none; `triangle_room` a beam.
+    std::vector<EdgeMiddles> middles;
+    std::size_t triangle_room = 1;
+    /// One a ray with `middles` after several events: where its light met the first surface.
+    std::vector<Vec3> origins;
     /// One a beam with `spreads`: the other beam of its pair of triangles, or Beam::none.
     std::vector<std::uint32_t> partners;
 
@@ -90,6 +98,14 @@ struct BeamSet {
     std::array<const VertexRay*, 3> triangle(const Beam& beam, std::size_t which) const {
         const auto [a, b, c] = beam.triangle_corners(which);
         return {&rays[a], &rays[b], &rays[c]};
+    }
+    /// Where the light of a ray met the first surface.
+    const Vec3& origin(std::uint32_t ray) const {
+        return origins.empty() ? rays[ray].position : origins[ray];
+    }
+    bool has_roots() const { return !middles.empty(); }
+    const EdgeMiddles& middles_of(std::size_t beam, std::size_t which) const {
+        return middles[beam * triangle_room + which];
     }
     bool drifts() const { return !ends[0].empty(); }
     /// Places in the bin between which are all of its rays.
@@ -113,6 +129,7 @@ struct BeamSet {
     std::uint64_t bytes() const {
         return (rays.size() + 2 * ends[0].size()) * sizeof(VertexRay) +
                beams.size() * sizeof(Beam) + spreads.size() * sizeof(RaySpread) +
+               middles.size() * sizeof(EdgeMiddles) + origins.size() * sizeof(Vec3) +
                partners.size() * sizeof(std::uint32_t);
     }
 };

@@ -20,12 +20,16 @@ SpecularVertex LightBender::along(const Vec3& normal, const Vec3& to_light, floa
     SpecularVertex bent;
     bent.front = normal.dot(to_light) > 0;
     const SpecularSplit split = split_specular(bsdf_, normal, normal, to_light, light_.bin.nm);
-    const Spectrum* const medium = medium_absorption(bsdf_, normal, to_light);
-    const Spectrum arriving =
-        strength_along(light_, to_light) * segment_transmittance(light_.medium, medium, distance);
+    const Spectrum strength = arriving(normal, to_light, distance);
     bent.direction = {split.reflected, split.refracted};
-    bent.weight = {split.reflected_weight * arriving, split.refracted_weight * arriving};
+    bent.weight = {split.reflected_weight * strength, split.refracted_weight * strength};
     return bent;
+}
+
+Spectrum LightBender::arriving(const Vec3& normal, const Vec3& to_light, float distance) const {
+    const Spectrum* const medium = medium_absorption(bsdf_, normal, to_light);
+    return strength_along(light_, to_light) *
+           segment_transmittance(light_.medium, medium, distance);
 }
 
 const Spectrum* LightBender::medium_after(const Vec3& normal, const Vec3& direction) const {

@@ -43,6 +43,8 @@ public:
     /// What the surface does with light that has gone `distance` [m] to it, where the unit normal
     /// is this and the light lies along the unit direction `to_light`.
     SpecularVertex along(const Vec3& normal, const Vec3& to_light, float distance) const;
+    /// Strength of the light that arrives there.
+    Spectrum arriving(const Vec3& normal, const Vec3& to_light, float distance) const;
     /// The medium [1/m] that the light is in as it leaves the surface along a direction; null: none is known.
     const Spectrum* medium_after(const Vec3& normal, const Vec3& direction) const;
     /// (1 - t) a + t b; the same bits for (b, a, 1 - t) where t is 1/2.

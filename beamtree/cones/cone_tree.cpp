@@ -9,6 +9,31 @@
 
 namespace caustics::beamtree {
 
+namespace {
+
+// The light of a beam with roots lies beside its straight-sided polygons: within the Bezier points of its edges.
+void add_bulges(const BeamSet& set, std::uint32_t index, NodeRays& rays) {
+    constexpr double over_middles = 2.1;  // 2 for a quadratic
+    const Beam& beam = set.beams[index];
+    for (std::size_t which = 0; which < beam.triangle_count(); ++which) {
+        const auto corners = set.triangle(beam, which);
+        const EdgeMiddles& middles = set.middles_of(index, which);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const VertexRay& a = *corners[i];
+            const VertexRay& b = *corners[(i + 1) % 3];
+            const auto beyond = [&](const Vec3& from, const Vec3& to, const Vec3& middle) {
+                const Vec3d mean = (from.cast<double>() + to.cast<double>()) / 2;
+                return Vec3d(mean + over_middles * (middle.cast<double>() - mean));
+            };
+            rays.positions.push_back(beyond(a.position, b.position, middles[i].position));
+            rays.directions.push_back(
+                beyond(a.direction, b.direction, middles[i].direction).normalized());
+        }
+    }
+}
+
+}  // namespace
+
 NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
     NodeRays rays;
     const auto add_beams = [&](double place) {
@@ -33,6 +58,8 @@ NodeRays rays_of(const BeamSet& set, std::span<const std::uint32_t> beams) {
     };
     // What moves from one end to the other stays between the two.
     for (const double place : set.places()) add_beams(place);
+    if (set.has_roots())
+        for (const std::uint32_t index : beams) add_bulges(set, index, rays);
     return rays;
 }
 
@@ -185,7 +212,7 @@ bool ConeTree::may_hold(const Node& node, const BeamSet& set, const TestPlane& p
 
 bool ConeTree::single_holds(const Node& node, const BeamSet& set, const Vec3d& p) const {
     const SingleCone& cone = singles_[node.bound];
-    if (node.child_count > 0 || set.drifts()) return cone.holds(p);
+    if (node.child_count > 0 || set.drifts() || set.has_roots()) return cone.holds(p);
     const Beam& beam = set.beams[node.beam];
     std::array<Vec3d, 4> corners;
     const std::size_t count = 2 + beam.triangle_count();

@@ -88,78 +88,117 @@ bool meets_receiver(const Scene& scene, const ReceiverPoint& point, const BeamHi
            std::abs(met->geometric_normal.dot(point.geometric_normal)) >= same_surface_cosine;
 }
 
+// Both polygons of an edge find what lies on it.
+bool was_found_before(const Root& root, RootScratch& scratch) {
+    if (root.edge_room == 0) return false;
+    constexpr float same_direction = 1e-3F;
+    for (const Root& other : scratch.on_edge)
+        if ((other.first - root.first).norm() <= std::max(root.edge_room, other.edge_room) &&
+            (other.direction - root.direction).norm() < same_direction)
+            return true;
+    scratch.on_edge.push_back(root);
+    return false;
+}
+
 }  // namespace
 
 BeamLight::BeamLight(const Scene& scene, const std::vector<BeamSet>& sets)
     : scene_(scene), sets_(sets), searches_(sets.size()) {
     for (std::size_t i = 0; i < sets.size(); ++i)
-        if (!sets[i].spreads.empty() && !sets[i].drifts() && sets[i].path.size() <= 1)
-            searches_[i].emplace(scene, sets[i]);
+        if (sets[i].has_roots()) searches_[i].emplace(scene, sets[i]);
 }
 
-std::optional<SpecularPoint> BeamLight::specular_point(const BeamHit& hit, const VertexRay& guess,
-                                                       const Vec3& point) const {
-    // Of a cell round the point its middle is not what is asked for.
-    if (!searches_[hit.set] || hit.is_part_of_cell()) return {};
-    return searches_[hit.set]->find(sets_[hit.set].beams[hit.beam], hit.triangle, guess, point);
+template <typename Weight>
+SpectrumSum BeamLight::of_root(const ReceiverPoint& point, const BeamHit& hit, const Root& root,
+                               const Spectrum& share, const Weight& weight) const {
+    const float slant = -point.geometric_normal.dot(root.direction);
+    if (!(slant > 0)) return SpectrumSum::Zero();
+    const Spectrum factor = share * weight(Vec3(-root.direction));
+    if (is_black(factor)) return SpectrumSum::Zero();
+    if (scene_.occluded({point.position, point.geometric_normal, point.offset}, root.start))
+        return SpectrumSum::Zero();
+    const BeamSet& set = sets_[hit.set];
+    const Spectrum left = transmittance(set.absorption[set.beams[hit.beam].inside ? 1 : 0],
+                                        (point.position - root.start.position).norm());
+    return (factor * root.weight * left).template cast<double>() * root.density *
+           static_cast<double>(slant);
+}
+
+template <typename Weight>
+SpectrumSum BeamLight::of_polygon(const ReceiverPoint& point, const BeamHit& hit,
+                                  const Spectrum& share, const Weight& weight) const {
+    const BeamSet& set = sets_[hit.set];
+    const Beam& beam = set.beams[hit.beam];
+    const ArrivingRay ray = arriving_ray(set, hit);
+    if (!(point.geometric_normal.dot(ray.direction) < 0)) return SpectrumSum::Zero();
+    const Spectrum factor = share * weight(Vec3(-ray.direction));
+    if (is_black(factor)) return SpectrumSum::Zero();
+    const SegmentEnd receiver{point.position, point.geometric_normal, point.offset};
+    const auto is_free = [&](const SegmentEnd& start) {
+        if (hit.cell_radius > 0 ? !meets_receiver(scene_, point, hit, start)
+                                : scene_.occluded(receiver, start))
+            return false;
+        // Of light after several events the earlier legs were seen to be free when it was traced.
+        return set.path.size() > 1 || sees(scene_, start, set.light);
+    };
+    if (!is_free(ray.start) && !(ray.other_start && is_free(*ray.other_start)))
+        return SpectrumSum::Zero();
+    const double cosine = std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction)));
+    const Spectrum left = transmittance(set.absorption[beam.inside ? 1 : 0],
+                                        (point.position - ray.start.position).norm());
+    // Of a small polygon in a cell no more than the cell's area counts.
+    const double area =
+        hit.is_part_of_cell() ? hit.area : std::max(hit.area, resolvable_area(point.position));
+    double density =
+        refined_density(set, hit, point.position).value_or(hit.flux_share / area);  // [CC95 (11)]
+    density *= hit.coverage;
+    // The caustic polygon lies on the test's plane; the receiver's is turned against it.
+    density *= cosine / std::abs(static_cast<double>(hit.plane_normal.dot(ray.direction)));
+    return (factor * beam.flux * left).template cast<double>() * density;
 }
 
 template <typename Weight>
 Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
-                        const Weight& weight) const {
+                        RootScratch& scratch, const Weight& weight) const {
     std::sort(hits.begin(), hits.end(), [](const BeamHit& a, const BeamHit& b) {
         return std::tie(a.set, a.beam, a.triangle, a.from) <
                std::tie(b.set, b.beam, b.triangle, b.from);
     });
-    const SegmentEnd receiver{point.position, point.geometric_normal, point.offset};
-    const double least_area = resolvable_area(point.position);
     SpectrumSum sum = SpectrumSum::Zero();
+    std::uint32_t set = ~0U;
     for (const BeamHit& hit : hits) {
-        const BeamSet& set = sets_[hit.set];
-        const Spectrum share = share_of_wavelengths(set.light, hit.from, hit.to, point.nm);
+        const Spectrum share =
+            share_of_wavelengths(sets_[hit.set].light, hit.from, hit.to, point.nm);
         if (is_black(share)) continue;
-        const Beam& beam = set.beams[hit.beam];
-        ArrivingRay ray = arriving_ray(set, hit);
-        const auto exact = specular_point(hit, {ray.start.position, ray.direction}, point.position);
-        if (exact) ray = {{exact->position, exact->normal, beam.offset}, exact->direction};
-        if (!(point.geometric_normal.dot(ray.direction) < 0)) continue;
-        const Spectrum factor = share * weight(Vec3(-ray.direction));
-        if (is_black(factor)) continue;
-        const auto is_free = [&](const SegmentEnd& start) {
-            if (hit.cell_radius > 0 ? !meets_receiver(scene_, point, hit, start)
-                                    : scene_.occluded(receiver, start))
-                return false;
-            // Of light after several events the earlier legs were seen to be free when it was traced.
-            return set.path.size() > 1 || sees(scene_, start, set.light);
-        };
-        if (!is_free(ray.start) && !(ray.other_start && is_free(*ray.other_start))) continue;
-        const double cosine =
-            std::abs(static_cast<double>(point.geometric_normal.dot(ray.direction)));
-        const Spectrum left = transmittance(set.absorption[beam.inside ? 1 : 0],
-                                            (point.position - ray.start.position).norm());
-        if (exact) {
-            sum +=
-                (factor * exact->weight * left).template cast<double>() * exact->density * cosine;
+        if (!hit.has_roots) {
+            sum += of_polygon(point, hit, share, weight);
             continue;
         }
-        // Of a small polygon in a cell no more than the cell's area counts.
-        const double area = hit.is_part_of_cell() ? hit.area : std::max(hit.area, least_area);
-        double density = refined_density(set, hit, point.position)
-                             .value_or(hit.flux_share / area);  // [CC95 (11)]
-        density *= hit.coverage;
-        // The caustic polygon lies on the test's plane; the receiver's is turned against it.
-        density *= cosine / std::abs(static_cast<double>(hit.plane_normal.dot(ray.direction)));
-        sum += (factor * beam.flux * left).template cast<double>() * density;
+        if (hit.set != set) scratch.on_edge.clear();
+        set = hit.set;
+        scratch.roots.clear();
+        const bool settled =
+            searches_[set]->find(hit.beam, hit.triangle, point.position, scratch.roots);
+        for (const Root& root : scratch.roots) {
+            if (was_found_before(root, scratch)) continue;
+            ++scratch.found;
+            sum += of_root(point, hit, root, share, weight);
+        }
+        if (settled || hit.winding == 0) continue;
+        ++scratch.unsettled;
+        sum += of_polygon(point, hit, share, weight);
     }
     return sum.cast<float>();
 }
 
-Spectrum BeamLight::irradiance(const ReceiverPoint& point, std::vector<BeamHit>& hits) const {
-    return sum(point, hits, [](const Vec3&) { return Spectrum(Spectrum::Ones()); });
+Spectrum BeamLight::irradiance(const ReceiverPoint& point, std::vector<BeamHit>& hits,
+                               RootScratch& scratch) const {
+    return sum(point, hits, scratch, [](const Vec3&) { return Spectrum(Spectrum::Ones()); });
 }
 
-Spectrum BeamLight::radiance(const ReceiverPoint& point, std::vector<BeamHit>& hits) const {
-    return sum(point, hits, [&point](const Vec3& wi) {
+Spectrum BeamLight::radiance(const ReceiverPoint& point, std::vector<BeamHit>& hits,
+                             RootScratch& scratch) const {
+    return sum(point, hits, scratch, [&point](const Vec3& wi) {
         return evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo, wi);
     });
 }

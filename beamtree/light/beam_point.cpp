@@ -274,10 +274,14 @@ int test_quad(const std::array<const VertexRay*, 4>& rays, const Beam& beam, con
 int test_beam(const std::array<const VertexRay*, 4>& rays, const Beam& beam, const TestPlane& plane,
               std::vector<BeamHit>& hits) {
     if (rays[3] != nullptr) return test_quad(rays, beam, plane, hits);
-    const Tested only = test_triangle(Corners{rays[0], rays[1], rays[2]}, plane);
-    if (!only.is_hit()) return 0;
-    write_hit(only.found, 0, plane, hits.emplace_back());
-    return 1;
+    return test_triangle(Corners{rays[0], rays[1], rays[2]}, 0, plane, hits) ? 1 : 0;
+}
+
+bool test_triangle(const std::array<const VertexRay*, 3>& rays, std::size_t number,
+                   const TestPlane& plane, std::vector<BeamHit>& hits) {
+    const Tested tested = test_triangle(rays, plane);
+    if (tested.is_hit()) write_hit(tested.found, number, plane, hits.emplace_back());
+    return tested.is_hit();
 }
 
 int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,

@@ -15,12 +15,15 @@ struct BeamHit {
     std::uint32_t set = 0;
     std::uint32_t beam = 0;
     std::uint8_t triangle = 0;
-    std::int8_t winding = 1;  ///< -1 or 1: has the beam passed through its caustic or not
-    Vec3 plane_normal;        ///< of the plane of the caustic polygon
-    Vec3 weights;             ///< barycentric, of the triangle's corners: where the light left
-    double area = 0;          ///< of the caustic polygon [m^2], see test_beam
-    double flux_share = 1;    ///< of the beam's flux that falls on it
-    double coverage = 1;      ///< of a cell round the point; 1 where the point itself is asked
+    /// -1 or 1: has the beam passed through its caustic or not; 0 where roots are searched and its straight-sided image
+    /// does not hold the point.
+    std::int8_t winding = 1;
+    bool has_roots = false;  ///< the light is that of all its roots (RootSearch)
+    Vec3 plane_normal;       ///< of the plane of the caustic polygon
+    Vec3 weights;            ///< barycentric, of the triangle's corners: where the light left
+    double area = 0;         ///< of the caustic polygon [m^2], see test_beam
+    double flux_share = 1;   ///< of the beam's flux that falls on it
+    double coverage = 1;     ///< of a cell round the point; 1 where the point itself is asked
     /// Covariances of the weights (1, 2), (2, 0) and (0, 1) over the part of the cell that is covered; 0 where the
     /// point itself is asked.
     Vec3 covariances = Vec3::Zero();
@@ -51,6 +54,10 @@ int test_beam(const BeamSet& set, const Beam& beam, const TestPlane& plane,
 /// The same for copies of the beam's rays, the last of which is null where it has three corners; appends the hits.
 int test_beam(const std::array<const VertexRay*, 4>& rays, const Beam& beam, const TestPlane& plane,
               std::vector<BeamHit>& hits);
+
+/// The same of one triangle by its three rays; whether it was appended.
+bool test_triangle(const std::array<const VertexRay*, 3>& rays, std::size_t number,
+                   const TestPlane& plane, std::vector<BeamHit>& hits);
 
 /// One triangle of three rays at the point that the plane goes through; `number` is the triangle's.
 std::optional<BeamHit> test_triangle(const std::array<VertexRay, 3>& corners, std::size_t number,

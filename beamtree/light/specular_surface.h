@@ -8,47 +8,62 @@
 
 namespace caustics::beamtree {
 
-/// A surface that is known to rounding where it bends light, in a frame of its own: an exact shape in its local
-/// frame, or the plane of a mesh's flat triangle in the world's.
+/// A surface that bends light, in double: an exact shape in its local frame, or the plane of a mesh's triangle in
+/// the scene's frame, with the normals that the mesh interpolates. Light of a mesh goes by these normals, as it does
+/// for every method.
 class SpecularSurface {
 public:
-    /// The first derivatives of place and unit normal, in the world, by two coordinates of the frame.
-    struct Tangents {
-        std::array<Vec3d, 2> position;
-        std::array<Vec3d, 2> normal;
+    /// A point of the surface.
+    struct Place {
+        Vec3d local;     ///< in the surface's frame
+        Vec3d position;  ///< in the scene's frame
+        Vec3d across;    ///< unit geometric normal, front side
+        Vec3d normal;    ///< unit shading normal, front side
     };
-
-    /// Of an exact shape, which outlives this.
-    explicit SpecularSurface(const Shape& shape);
-    /// Of a triangle with area; empty where it is not flat: the normals of its corners differ from each other,
-    /// or visibly from the triangle's.
-    static std::optional<SpecularSurface> facet(const TriangleMesh& mesh, std::uint32_t triangle);
-
-    Vec3d world(const Vec3d& local) const { return to_world_ * local; }
-    Vec3d local(const Vec3d& world) const { return to_local_ * world; }
-    /// The point of the surface beside one near it.
-    Vec3d onto(const Vec3d& local) const;
-    /// Unit, in the frame, across the surface at one of its points.
-    Vec3d across(const Vec3d& on) const;
-    /// Unit, in the world, of the front side: bends the light.
-    Vec3d normal(const Vec3d& on) const;
-    /// Beside the place, by the way along two axes.
-    Tangents tangents(const Vec3d& place, const std::array<Vec3d, 2>& axes) const;
-
-private:
-    /// A plane, and the normal that its mesh gives it.
-    struct Plane {
-        Vec3d point;
-        Vec3d across;
+    /// How a place and its shading normal change, per step of a coordinate, in the scene's frame.
+    struct Change {
+        Vec3d position;
         Vec3d normal;
     };
-    explicit SpecularSurface(const Plane& plane) : plane_(plane) {}
+
+    /// The surface of an exact shape, which outlives this.
+    explicit SpecularSurface(const Shape& exact);
+    /// The plane of a triangle, which has area; the mesh outlives this.
+    SpecularSurface(const TriangleMesh& mesh, std::uint32_t triangle);
+
+    Vec3d local(const Vec3d& position) const { return to_local_ * position; }
+    Vec3d world(const Vec3d& local) const { return to_world_ * local; }
+    Vec3d local_way(const Vec3d& way) const { return to_local_.linear() * way; }
+    /// The place beside a point near the surface, which is given in the surface's frame.
+    Place beside(const Vec3d& local) const;
+    /// How that place changes as the point moves along a way of the surface's frame.
+    Change beside_change(const Vec3d& local, const Place& place, const Vec3d& way) const;
+    /// How the shading normal at a place changes along a way on the surface, in the scene's frame.
+    Vec3d normal_change(const Place& place, const Vec3d& way) const;
+    /// The place where a ray first meets the surface beyond `least` [m]; on a triangle, its plane.
+    std::optional<Place> first_along(const Vec3d& from, const Vec3d& direction, double least) const;
+
+private:
+    /// A triangle's plane, and the corners' normals by barycentric coordinates: at a + u (b - a) + v (c - a) the
+    /// shading normal goes along normal + u along_u + v along_v.
+    struct Plane {
+        Vec3d corner;
+        Vec3d across;
+        std::array<Vec3d, 2> gradient;  ///< of the barycentric coordinates [1/m]
+        Vec3d normal;
+        std::array<Vec3d, 2> along;
+        bool is_flat;  ///< shaded by one normal
+
+        Vec3d mean_normal(const Vec3d& at) const;
+        Vec3d normal_change(const Vec3d& way) const;
+    };
+    Place on_exact(const Vec3d& on) const;
+    Place on_plane(const Vec3d& on) const;
 
     const Shape* shape_ = nullptr;  ///< where there is no plane
-    std::optional<Plane> plane_;
+    Plane plane_;
     Transform to_world_ = Transform::Identity();
     Transform to_local_ = Transform::Identity();
-    double step_ = 0;  ///< of differences over an exact shape
 };
 
 }  // namespace caustics::beamtree

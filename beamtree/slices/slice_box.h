@@ -7,16 +7,16 @@
 
 namespace caustics::beamtree {
 
-/// How far a ray moves with the wavelength along both axes of the planes, to either side [m].
-using SliceDrift = std::array<float, 2>;
+/// How far beside a ray there may be light, to either side [m]: along (x, y) above and (x, y) below, as RaySlices.
+using SliceReach = std::array<float, 4>;
 
 /// The two boxes, on both planes of a slab, that hold some rays there; interpolated between the
 /// planes they hold them at every height, because the least of linear functions is concave.
 class SliceBox {
 public:
-    void extend(const RaySlices& ray, const SliceDrift& drift = {}) {
+    void extend(const RaySlices& ray, const SliceReach& reach = {}) {
         const Half at = Eigen::Map<const Half>(ray.data());
-        const Half far(drift[0], drift[1], drift[0], drift[1]);
+        const Half far = Eigen::Map<const Half>(reach.data());
         bounds_ << bounds_.head<4>().min(at - far), bounds_.tail<4>().min(-at - far);
     }
     void extend(const SliceBox& other) { bounds_ = bounds_.min(other.bounds_); }

@@ -20,8 +20,15 @@ constexpr std::uint32_t branch_size = 8192;
 
 SliceBox box_of(const SlicedTriangle& triangle) {
     SliceBox box;
-    for (const RaySlices& corner : triangle.corners) box.extend(corner, triangle.drift);
+    SliceReach reach;
+    for (std::size_t i = 0; i < reach.size(); ++i) reach[i] = triangle.drift[i] + triangle.bulge[i];
+    for (const RaySlices& corner : triangle.corners) box.extend(corner, reach);
     return box;
+}
+
+// Of both planes, along an axis.
+float most(const SliceReach& reach, std::size_t axis) {
+    return std::max(reach[axis], reach[2 + axis]);
 }
 
 float widest(const SliceBox& box, int axis) {
@@ -58,10 +65,9 @@ public:
         copy_branches(threads, all);
         all.leaf_width /= static_cast<float>(all.leaves.size());
         all.travel /= static_cast<float>(triangles_.size());
-        all.room = margin_;
-        for (const SlicedTriangle& triangle : triangles_)
-            all.room =
-                std::max({all.room, margin_ + triangle.drift[0], margin_ + triangle.drift[1]});
+        all.has_bulges = std::ranges::any_of(triangles_, [](const SlicedTriangle& triangle) {
+            return triangle.bulge != SliceReach{};
+        });
         return all;
     }
 
@@ -230,9 +236,16 @@ private:
             // Of a x b with |a|, |b| <= width, each coordinate of which may be off by the margin.
             leaf.slack[i] = margin_ * (5 * width + 4 * margin_);
             // Likewise for corners that move.
-            const auto& [along, across] = triangle.drift;
+            const float along = most(triangle.drift, 0);
+            const float across = most(triangle.drift, 1);
             leaf.slack[i] +=
                 2 * (along * widest(box, 1) + across * widest(box, 0) + along * across);
+            // A point beside the triangle is off an edge by the edge times its way.
+            leaf.slack[i] +=
+                most(triangle.bulge, 0) * widest(box, 1) + most(triangle.bulge, 1) * widest(box, 0);
+            for (std::size_t axis = 0; axis < 2; ++axis)
+                leaf.room[axis][i] =
+                    margin_ + most(triangle.drift, axis) + most(triangle.bulge, axis);
             leaf.begun_from[i] = triangle.begun_from;
             leaf.whole_from[i] = triangle.whole_from;
             made.begun_from = std::min(made.begun_from, triangle.begun_from);

@@ -12,7 +12,8 @@ namespace caustics::beamtree {
 /// A triangle of a beam as a leaf holds it.
 struct SlicedTriangle {
     std::array<RaySlices, 3> corners;
-    SliceDrift drift = {};   ///< of any of them
+    SliceReach drift = {};   ///< how far any of them moves with the wavelength
+    SliceReach bulge = {};   ///< how far its light may lie beside its straight-sided image
     float begun_from = 0;    ///< share of the way down from which one of its rays has begun
     float whole_from = 0;    ///< and from which all have
     std::uint32_t beam = 0;  ///< as the tree numbers them
@@ -26,7 +27,7 @@ struct SliceNodes {
     std::uint32_t height = 0;  ///< nodes on the longest way down
     float leaf_width = 0;      ///< mean, over both planes [m]
     float travel = 0;          ///< how far rays move from one plane to the other, mean [m]
-    float room = 0;            ///< by how much what is found may lie off a triangle's box [m]
+    bool has_bulges = false;
 };
 
 /// Makes a hierarchy eight wide by opening the child with most triangles again and again.

@@ -36,6 +36,8 @@ struct alignas(64) SliceLeaf {
     /// Twice an area: edges that pass the point on the wrong side by less may be rounding. Negative
     /// in places that are not taken.
     float slack[slice_width];
+    /// By how much points may lie off the box of the corners, along both axes [m].
+    float room[2][slice_width];
     /// The shares t from which on one of the three rays has begun, and all. Between the two the
     /// triangle is clipped, which this test leaves to the exact one.
     float begun_from[slice_width];
@@ -49,8 +51,8 @@ struct SliceView {
     /// What lies beside the leaves, beam by beam: fetched for those that are found.
     const char* beams;
     size_t beam_bytes;
-    /// By how much points may lie off a triangle's box.
-    float room;
+    /// Whether triangles hold points beside their straight-sided images: then their boxes are asked as well.
+    bool has_bulges;
 };
 
 /// A point of the slab.

@@ -83,8 +83,14 @@ public:
 
     SliceBox box(const BeamNumber& number) const {
         SliceBox box;
+        const BeamSet& set = from_.sets[number.set];
+        SliceReach bulge = {};
+        if (set.has_roots())
+            for (std::size_t i = 0; i < set.beams[number.beam].triangle_count(); ++i)
+                bulge = widest(bulge, bulge_of(number, i));
         for_each_ray(from_, number, [&](std::uint32_t ray) {
-            box.extend(slices_[number.set][ray], drifts_[number.set][ray]);
+            box.extend(slices_[number.set][ray],
+                       set.has_roots() ? bulge : drifts_[number.set][ray]);
         });
         return box;
     }
@@ -100,14 +106,18 @@ public:
             double lowest = frame_.top();
             for (std::size_t c = 0; c < 3; ++c) {
                 triangle.corners[c] = slices_[number.set][corners[c]];
-                for (std::size_t axis = 0; axis < 2; ++axis)
-                    triangle.drift[axis] =
-                        std::max(triangle.drift[axis], drifts_[number.set][corners[c]][axis]);
+                triangle.drift = widest(triangle.drift, drifts_[number.set][corners[c]]);
                 for (const double at : set.places()) {
                     const double height = frame_.height(set.ray(corners[c], at).position);
                     highest = std::max(highest, height);
                     lowest = std::min(lowest, height);
                 }
+            }
+            if (set.has_roots()) {
+                triangle.bulge = bulge_of(number, i);
+                for (const VertexRay& ray : set.middles_of(number.beam, i))
+                    highest = std::max(highest,
+                                       2 * frame_.height(ray.position) - std::min(highest, lowest));
             }
             triangle.begun_from = static_cast<float>(frame_.share(highest)) - share_rounding;
             triangle.whole_from = static_cast<float>(frame_.share(lowest)) + share_rounding;
@@ -116,8 +126,31 @@ public:
     }
 
 private:
+    static SliceReach widest(const SliceReach& a, const SliceReach& b) {
+        SliceReach reach;
+        for (std::size_t i = 0; i < reach.size(); ++i) reach[i] = std::max(a[i], b[i]);
+        return reach;
+    }
+    // A quadratic lies within 4/3 of what the middles of a triangle's edges are off their ends' means; what is not
+    // quadratic has the rest.
+    SliceReach bulge_of(const BeamNumber& number, std::size_t which) const {
+        constexpr float over_middles = 1.4F;
+        const BeamSet& set = from_.sets[number.set];
+        const std::array<std::uint32_t, 3> corners = set.beams[number.beam].triangle_corners(which);
+        const EdgeMiddles& middles = set.middles_of(number.beam, which);
+        SliceReach bulge = {};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const RaySlices& a = slices_[number.set][corners[i]];
+            const RaySlices& b = slices_[number.set][corners[(i + 1) % 3]];
+            const RaySlices middle = frame_.slices(middles[i]);
+            for (std::size_t k = 0; k < bulge.size(); ++k)
+                bulge[k] =
+                    std::max(bulge[k], over_middles * std::abs(middle[k] - (a[k] + b[k]) / 2));
+        }
+        return bulge;
+    }
     // Of a ray that moves, the middle of its way and half of it.
-    void slice(const BeamSet& set, std::uint32_t ray, RaySlices& middle, SliceDrift& drift) const {
+    void slice(const BeamSet& set, std::uint32_t ray, RaySlices& middle, SliceReach& drift) const {
         if (!set.drifts()) {
             middle = frame_.slices(set.rays[ray]);
             return;
@@ -126,14 +159,14 @@ private:
         const RaySlices last = frame_.slices(set.ends[1][ray]);
         for (std::size_t i = 0; i < middle.size(); ++i) {
             middle[i] = (first[i] + last[i]) / 2;
-            drift[i % 2] = std::max(drift[i % 2], std::abs(last[i] - first[i]) / 2);
+            drift[i] = std::abs(last[i] - first[i]) / 2;
         }
     }
 
     const SlicedBeams& from_;
     const SliceFrame& frame_;
     std::vector<std::vector<RaySlices>> slices_;  ///< of the beams' rays
-    std::vector<std::vector<SliceDrift>> drifts_;
+    std::vector<std::vector<SliceReach>> drifts_;
 };
 
 // Sorts the beams by the hierarchy.
@@ -191,7 +224,7 @@ SliceTree::SliceTree(SlicedBeams beams, const Hierarchy* given, Isa isa, int thr
     height_ = made.height;
     leaf_width_ = made.leaf_width;
     travel_ = made.travel;
-    room_ = made.room;
+    has_bulges_ = made.has_bulges;
     beams_ = std::move(beams.beams);
     keep_corners(beams.sets);
 }
@@ -328,7 +361,7 @@ void SliceTree::find(std::span<const Group> groups, const Asked& asked,
     }
     const SliceView view{nodes_.data(), leaves_.data(),
                          reinterpret_cast<const char*>(corners_.data()),
-                         corner_count_ * sizeof(VertexRay), room_};
+                         corner_count_ * sizeof(VertexRay), has_bulges_};
     for (bool more = true; more;) {
         walk_(view, walks.data(), groups.size());
         more = false;

@@ -77,7 +77,7 @@ private:
     std::uint32_t height_ = 0;
     float leaf_width_ = 0;
     float travel_ = 0;
-    float room_ = 0;
+    bool has_bulges_ = false;
 };
 
 }  // namespace caustics::beamtree

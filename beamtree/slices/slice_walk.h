@@ -38,7 +38,7 @@ inline void visit(const SliceView& tree, SliceWalk& walk) {
     const SliceLeaf& leaf = tree.leaves[next & slice_number_mask];
     walk.tests += static_cast<uint64_t>(taken) * walk.point_count;
     for (uint32_t point = 0; point < walk.point_count; ++point)
-        for (uint32_t held = Eight::may_hold(leaf, walk.points[point], tree.room); held != 0;
+        for (uint32_t held = Eight::may_hold(leaf, walk.points[point], tree.has_bulges); held != 0;
              held &= held - 1) {
             const uint32_t beam = leaf.beam[__builtin_ctz(held)];
             walk.found[walk.found_count++] = {point, beam};
@@ -69,8 +69,8 @@ void walk_alone(const SliceView& tree, SliceWalk& walk) {
         const SliceLeaf& leaf = tree.leaves[next & slice_number_mask];
         tests += static_cast<uint64_t>(taken) * walk.point_count;
         for (uint32_t point = 0; point < walk.point_count; ++point)
-            for (uint32_t held = Eight::may_hold(leaf, walk.points[point], tree.room); held != 0;
-                 held &= held - 1)
+            for (uint32_t held = Eight::may_hold(leaf, walk.points[point], tree.has_bulges);
+                 held != 0; held &= held - 1)
                 walk.found[count++] = {point, leaf.beam[__builtin_ctz(held)]};
     }
     walk.stacked = stacked;

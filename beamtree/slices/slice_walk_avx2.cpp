@@ -21,7 +21,7 @@ public:
         return bits(_mm256_and_ps(begun, _mm256_and_ps(meets(node, 0), meets(node, 1))));
     }
 
-    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
+    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, bool has_bulges) {
         const __m256 share = _mm256_set1_ps(point.share);
         __m256 x[3];
         __m256 y[3];
@@ -53,7 +53,7 @@ public:
                 _mm256_or_ps(cut, _mm256_or_ps(not_above(zero, least), not_above(most, zero)));
             const __m256 taken = _mm256_and_ps(begun, not_above(zero, slack));
             const uint32_t near = bits(_mm256_and_ps(taken, holds));
-            return near == 0 ? 0 : near & bits(box_holds(leaf, point, room));
+            return near == 0 ? 0 : near & bits(box_holds(leaf, point));
         }
         const __m256 minus = _mm256_xor_ps(slack, _mm256_set1_ps(-0.0F));
         const __m256 least = _mm256_min_ps(_mm256_min_ps(a, b), c);
@@ -61,8 +61,13 @@ public:
         const __m256 holds = _mm256_or_ps(not_above(minus, least), not_above(most, slack));
         const uint32_t held = bits(_mm256_and_ps(begun, holds));
         const uint32_t clipped = bits(_mm256_andnot_ps(holds, _mm256_and_ps(begun, cut)));
+        if (has_bulges) {
+            const uint32_t taken = bits(not_above(_mm256_setzero_ps(), slack));
+            const uint32_t near = (held | clipped) & taken;
+            return near == 0 ? 0 : near & bits(box_holds(leaf, point));
+        }
         if (clipped == 0) return held;
-        return held | (clipped & bits(box_holds(leaf, point, room)));
+        return held | (clipped & bits(box_holds(leaf, point)));
     }
 
 private:
@@ -75,11 +80,10 @@ private:
         return _mm256_add_ps(_mm256_mul_ps(dx, _mm256_set1_ps(point.reach[1])),
                              _mm256_mul_ps(dy, _mm256_set1_ps(point.reach[0])));
     }
-    static __m256 box_holds(const SliceLeaf& leaf, const SlicePoint& point, float room) {
-        return _mm256_and_ps(box_holds(leaf, 0, point, room), box_holds(leaf, 1, point, room));
+    static __m256 box_holds(const SliceLeaf& leaf, const SlicePoint& point) {
+        return _mm256_and_ps(box_holds(leaf, 0, point), box_holds(leaf, 1, point));
     }
-    static __m256 box_holds(const SliceLeaf& leaf, unsigned axis, const SlicePoint& point,
-                            float room) {
+    static __m256 box_holds(const SliceLeaf& leaf, unsigned axis, const SlicePoint& point) {
         __m256 top[3];
         __m256 bottom[3];
         for (unsigned c = 0; c < 3; ++c) {
@@ -95,9 +99,11 @@ private:
         const __m256 share = _mm256_set1_ps(point.share);
         const __m256 low_here = _mm256_add_ps(low, _mm256_mul_ps(share, low_growth));
         const __m256 high_here = _mm256_add_ps(high, _mm256_mul_ps(share, high_growth));
-        const float reach = point.reach[axis] + room;
-        return _mm256_and_ps(not_above(low_here, _mm256_set1_ps(point.at[axis] + reach)),
-                             not_above(_mm256_set1_ps(point.at[axis] - reach), high_here));
+        const __m256 here = _mm256_set1_ps(point.at[axis]);
+        const __m256 reach =
+            _mm256_add_ps(_mm256_set1_ps(point.reach[axis]), _mm256_load_ps(leaf.room[axis]));
+        return _mm256_and_ps(not_above(low_here, _mm256_add_ps(here, reach)),
+                             not_above(_mm256_sub_ps(here, reach), high_here));
     }
 
     __m256 meets(const SliceNode& node, unsigned axis) const {

@@ -32,8 +32,8 @@ public:
     }
 
     // The point is on one side of all three edges, but for rounding and its reach; or the triangle is cut there. Where it is cut, or
-    // the point reaches out, their boxes meet.
-    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, float room) {
+    // the point reaches out, or triangles have bulges, their boxes meet.
+    static uint32_t may_hold(const SliceLeaf& leaf, const SlicePoint& point, bool has_bulges) {
         const bool reaches = point.reach[0] > 0;
         uint32_t bits = 0;
         for (unsigned i = 0; i < slice_width; ++i) {
@@ -56,8 +56,9 @@ public:
                 holds = 0 <= least(least(a + by_a, b + by_b), c + by_c) ||
                         most(most(a - by_a, b - by_b), c - by_c) <= 0;
             }
-            if (reaches ? slack >= 0 && (holds || cut) : cut && !holds)
-                holds = box_holds(leaf, i, 0, point, room) && box_holds(leaf, i, 1, point, room);
+            const bool is_taken = slack >= 0;
+            if (reaches || has_bulges ? is_taken && (holds || cut) : cut && !holds)
+                holds = box_holds(leaf, i, 0, point) && box_holds(leaf, i, 1, point);
             const bool begun = leaf.begun_from[i] <= point.last_share;
             bits |= (begun && holds ? 1U : 0U) << i;
         }
@@ -71,8 +72,8 @@ private:
     }
 
     // As the boxes of nodes: between those on both planes.
-    static bool box_holds(const SliceLeaf& leaf, unsigned i, unsigned axis, const SlicePoint& point,
-                          float room) {
+    static bool box_holds(const SliceLeaf& leaf, unsigned i, unsigned axis,
+                          const SlicePoint& point) {
         float top[3];
         float bottom[3];
         for (unsigned c = 0; c < 3; ++c) {
@@ -83,7 +84,7 @@ private:
         const float high = most(most(top[0], top[1]), top[2]);
         const float low_growth = least(least(bottom[0], bottom[1]), bottom[2]) - low;
         const float high_growth = most(most(bottom[0], bottom[1]), bottom[2]) - high;
-        const float reach = point.reach[axis] + room;
+        const float reach = point.reach[axis] + leaf.room[axis][i];
         return low + point.share * low_growth <= point.at[axis] + reach &&
                point.at[axis] - reach <= high + point.share * high_growth;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "beamtree/beams/ray_spread.h"
+#include "beamtree/light/root_beams.h"
 #include "beamtree/tracing/kept_beams.h"
 #include "beamtree/tracing/next_bounce.h"
 #include "beamtree/tracing/path_spread.h"
@@ -85,6 +86,8 @@ public:
             spread_along_paths(scene_, surface_, level, kept, settings_.threads);
         }
         keep_only(set, kept);
+        if (settings_.intensity == Intensity::refined && !set.drifts())
+            prepare_roots(scene_, level.traced.origins, settings_.threads, set);
         traced_.sets[place] = std::move(set);
     }
 

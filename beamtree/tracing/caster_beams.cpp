@@ -8,6 +8,7 @@
 #include "beamtree/beams/lit_caster.h"
 #include "beamtree/beams/near_light.h"
 #include "beamtree/beams/ray_spread.h"
+#include "beamtree/light/root_beams.h"
 #include "beamtree/tracing/cut_piece.h"
 #include "beamtree/tracing/kept_beams.h"
 #include "beamtree/tracing/set_chunk.h"
@@ -321,6 +322,8 @@ TracedBeams trace_beams(const Scene& scene, const SceneBoxes& boxes, const Caste
             if (neighbours != nullptr)
                 refine(set, origins, *neighbours, kept, settings.threads, part.of(0.05));
             keep_only(set, kept);
+            if (settings.intensity == Intensity::refined)
+                prepare_roots(scene, origins, settings.threads, set);
             traced.sets.push_back(std::move(set));
         }
     }

@@ -14,10 +14,10 @@ namespace caustics::beamtree {
 namespace {
 
 // How often a polygon is quartered.
-constexpr int most_splits = 3;
+constexpr int most_quarterings = 3;
 // What is left of a polygon that is quartered because it is too large for what it meets: ten times.
 constexpr float least_share = 1.0F / (1 << 20);
-constexpr float widest_cosine = 0.5F;
+constexpr float widest_cosine_on = 0.5F;
 
 // What threads take at a time.
 constexpr std::size_t rays_together = 256;
@@ -138,7 +138,7 @@ private:
     static bool part_widely(const RayArrival& a, const RayArrival& b, const RayArrival& c,
                             Event event) {
         const auto far = [event](const RayArrival& p, const RayArrival& q) {
-            return p.direction[event].dot(q.direction[event]) < widest_cosine;
+            return p.direction[event].dot(q.direction[event]) < widest_cosine_on;
         };
         return !is_black(a.weight[event]) && !is_black(b.weight[event]) &&
                !is_black(c.weight[event]) && (far(a, b) || far(b, c) || far(c, a));
@@ -216,7 +216,7 @@ private:
 
     void cut_triangle(std::uint32_t beam, const std::array<std::uint32_t, 3>& rays) {
         cut(beam, Path(scene_, surface_, level_, beam), piece_of(rays), share_of(beam),
-            most_splits);
+            most_quarterings);
     }
     // With `up_to_third` none after one that hides a third thing is cut.
     std::array<CutEdge, 3> cut_edges(const Path& path, const Piece& piece, bool up_to_third) const {

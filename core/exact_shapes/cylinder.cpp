@@ -76,6 +76,18 @@ Vec3d Cylinder::onto(const Vec3d& p) const {
     return {xy.x(), xy.y(), p.z()};
 }
 
+Vec3d Cylinder::onto_change(const Vec3d& p, const Vec3d& way) const {
+    const Vec3d round = normal_change(p, way);
+    return {round.x(), round.y(), way.z()};
+}
+
+Vec3d Cylinder::normal_change(const Vec3d& on, const Vec3d& way) const {
+    const double r = on.head<2>().norm();
+    const Vec2d n = on.head<2>() / r;
+    const Vec2d turned = (way.head<2>() - n.dot(way.head<2>()) * n) / r;
+    return {turned.x(), turned.y(), 0};
+}
+
 Eigen::AlignedBox3d Cylinder::bounds() const { return {Vec3d(-1, -1, 0), Vec3d(1, 1, 1)}; }
 
 double Cylinder::area(const Eigen::Matrix3d& to_world) const {

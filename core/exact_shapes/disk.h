@@ -29,7 +29,8 @@ struct Disk {
     Vec2d uv(const Vec3d& p) const;
     std::pair<Vec3d, Vec3d> tangents(const Vec2d& uv) const;
     Vec3d onto(const Vec3d& p) const;
-    double feature_size() const { return 1; }
+    Vec3d onto_change(const Vec3d&, const Vec3d& way) const { return {way.x(), way.y(), 0}; }
+    Vec3d normal_change(const Vec3d&, const Vec3d&) const { return Vec3d::Zero(); }
     Eigen::AlignedBox3d bounds() const;
     double area(const Eigen::Matrix3d& to_world) const;
     std::pair<Vec3d, Vec3d> sample(float u0, float u1) const;

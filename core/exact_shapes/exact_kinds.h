@@ -23,7 +23,8 @@ inline constexpr std::array exact_primitives{Primitive::rectangle, Primitive::di
 /// - `intersect`: its first point along a ray o + t d (d need not be unit); `normal`: unit, of the front side;
 /// - `uv`: texture coordinates as Mitsuba's, `round_u`, `round_v` where their ends 0 and 1 are one place;
 ///   `tangents`: dP/du, dP/dv;
-/// - `onto`: the point of the shape beside one near it; `feature_size`: over what it changes;
+/// - `onto`: the point of the shape beside one near it; `onto_change`: its derivative along a way;
+///   `normal_change`: the derivative of `normal` along a way on the shape;
 /// - `bounds`; `area` in the world and `sample`, a point uniform by area with its normal, of those that may emit;
 /// - `piece`, the hull of those points of a flat one that come from a part of the unit square by `sample`;
 ///   `hulls` of parts that light is better aimed at one by one;

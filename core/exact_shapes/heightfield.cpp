@@ -21,6 +21,14 @@ Vec2d SineHeightfield::gradient(const Vec2d& xy) const {
     return sum;
 }
 
+Vec2d SineHeightfield::gradient_change(const Vec2d& xy, const Vec2d& way) const {
+    Vec2d sum = Vec2d::Zero();
+    for (const SineWave& wave : waves)
+        sum -= wave.amplitude * std::sin(wave.wave_vector.dot(xy) + wave.phase) *
+               wave.wave_vector.dot(way) * wave.wave_vector;
+    return sum;
+}
+
 Vec3d SineHeightfield::normal(const Vec2d& xy) const {
     const Vec2d slope = gradient(xy);
     return Vec3d(-slope.x(), -slope.y(), 1).normalized();
@@ -168,11 +176,18 @@ std::pair<Vec3d, Vec3d> Heightfield::tangents(const Vec2d& uv) const {
     return {2 * half.x() * Vec3d(1, 0, slope.x()), 2 * half.y() * Vec3d(0, 1, slope.y())};
 }
 
-double Heightfield::feature_size() const {
-    double size = field.half_size.minCoeff();
-    for (const SineWave& wave : field.waves)
-        size = std::min(size, 1 / std::max(wave.wave_vector.norm(), 1e-300));
-    return size;
+Vec3d Heightfield::onto_change(const Vec3d& p, const Vec3d& way) const {
+    return {way.x(), way.y(), field.gradient(p.head<2>()).dot(way.head<2>())};
+}
+
+Vec3d Heightfield::normal_change(const Vec3d& on, const Vec3d& way) const {
+    const Vec2d slope = field.gradient(on.head<2>());
+    const Vec2d turned = field.gradient_change(on.head<2>(), way.head<2>());
+    const Vec3d up(-slope.x(), -slope.y(), 1);
+    const double length = up.norm();
+    const Vec3d n = up / length;
+    const Vec3d change(-turned.x(), -turned.y(), 0);
+    return (change - n.dot(change) * n) / length;
 }
 
 Eigen::AlignedBox3d Heightfield::bounds() const {

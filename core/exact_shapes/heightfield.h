@@ -24,6 +24,8 @@ struct SineHeightfield {
 
     double height(const Vec2d& xy) const;
     Vec2d gradient(const Vec2d& xy) const;
+    /// Derivative of the gradient along a way.
+    Vec2d gradient_change(const Vec2d& xy, const Vec2d& way) const;
     /// Unit normal at (x, y, h(x, y)).
     Vec3d normal(const Vec2d& xy) const;
     /// Bound of |h|, the sum of the amplitudes.
@@ -52,7 +54,8 @@ struct Heightfield {
     Vec2d uv(const Vec3d& p) const;
     std::pair<Vec3d, Vec3d> tangents(const Vec2d& uv) const;
     Vec3d onto(const Vec3d& p) const { return {p.x(), p.y(), field.height(p.head<2>())}; }
-    double feature_size() const;
+    Vec3d onto_change(const Vec3d& p, const Vec3d& way) const;
+    Vec3d normal_change(const Vec3d& on, const Vec3d& way) const;
     Eigen::AlignedBox3d bounds() const;
     TriangleMesh tessellate(Cells n) const { return tessellate_heightfield(field, n); }
 };

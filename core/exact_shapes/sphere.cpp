@@ -61,6 +61,16 @@ std::pair<Vec3d, Vec3d> Sphere::tangents(const Vec2d& uv) const {
 
 Vec3d Sphere::onto(const Vec3d& p) const { return p.normalized(); }
 
+Vec3d Sphere::onto_change(const Vec3d& p, const Vec3d& way) const {
+    const double r = p.norm();
+    const Vec3d n = p / r;
+    return (way - n.dot(way) * n) / r;
+}
+
+Vec3d Sphere::normal_change(const Vec3d& on, const Vec3d& way) const {
+    return onto_change(on, way);
+}
+
 Eigen::AlignedBox3d Sphere::bounds() const { return {Vec3d(-1, -1, -1), Vec3d(1, 1, 1)}; }
 
 double Sphere::area(const Eigen::Matrix3d& to_world) const {

@@ -28,7 +28,8 @@ struct Sphere {
     Vec2d uv(const Vec3d& p) const;
     std::pair<Vec3d, Vec3d> tangents(const Vec2d& uv) const;
     Vec3d onto(const Vec3d& p) const;
-    double feature_size() const { return 1; }
+    Vec3d onto_change(const Vec3d& p, const Vec3d& way) const;
+    Vec3d normal_change(const Vec3d& on, const Vec3d& way) const;
     Eigen::AlignedBox3d bounds() const;
     double area(const Eigen::Matrix3d& to_world) const;
     std::pair<Vec3d, Vec3d> sample(float u0, float u1) const;

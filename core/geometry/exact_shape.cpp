@@ -22,6 +22,14 @@ Vec3d exact_onto(const Shape& shape, const Vec3d& local) {
     return ask_exact(shape, [&](const auto& kind) { return kind.onto(local); });
 }
 
+Vec3d exact_onto_change(const Shape& shape, const Vec3d& local, const Vec3d& way) {
+    return ask_exact(shape, [&](const auto& kind) { return kind.onto_change(local, way); });
+}
+
+Vec3d exact_normal_change(const Shape& shape, const Vec3d& on, const Vec3d& way) {
+    return ask_exact(shape, [&](const auto& kind) { return kind.normal_change(on, way); });
+}
+
 Vec2 exact_uv(const Shape& shape, const Vec3d& local) {
     return ask_exact(shape, [&](const auto& kind) { return kind.uv(local); }).cast<float>();
 }

@@ -17,6 +17,10 @@ bool exact_is_flat(const Shape& shape);
 Vec3d exact_normal(const Shape& shape, const Vec3d& local);
 /// The point of the shape beside one near it.
 Vec3d exact_onto(const Shape& shape, const Vec3d& local);
+/// Derivative of exact_onto() at a point near the shape along a way.
+Vec3d exact_onto_change(const Shape& shape, const Vec3d& local, const Vec3d& way);
+/// Derivative of exact_normal() at a point of the shape along a way on it.
+Vec3d exact_normal_change(const Shape& shape, const Vec3d& on, const Vec3d& way);
 /// Texture coordinates as Mitsuba's.
 Vec2 exact_uv(const Shape& shape, const Vec3d& local);
 /// World area of the surface per area of texture coordinates, |dP/du x dP/dv| [m^2].

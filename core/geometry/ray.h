@@ -23,9 +23,10 @@ struct SurfacePoint {
     Vec3 geometric_normal = Vec3::Zero();  ///< unit, front side of the surface
     Vec3 shading_normal = Vec3::Zero();    ///< unit, front side
     Vec2 uv = Vec2::Zero();
-    float distance = 0;       ///< from the ray's origin [m]
-    float offset = 0;         ///< how far off the surface a ray starts that leaves the point [m]
-    std::uint32_t shape = 0;  ///< index into Scene::shapes
+    float distance = 0;          ///< from the ray's origin [m]
+    float offset = 0;            ///< how far off the surface a ray starts that leaves the point [m]
+    std::uint32_t shape = 0;     ///< index into Scene::shapes
+    std::uint32_t triangle = 0;  ///< index into the shape's mesh; 0 on an exact shape
 };
 
 }  // namespace caustics

@@ -268,10 +268,13 @@ void Intersector::fill(const Arrival& arrival, SurfacePoint& point) const {
     point.shape = arrival.geometry;
     point.distance = arrival.distance;
     const auto& geometry = embree_->geometries[arrival.geometry];
-    if (const auto* mesh = std::get_if<PlacedMesh>(&geometry))
+    point.triangle = 0;
+    if (const auto* mesh = std::get_if<PlacedMesh>(&geometry)) {
+        point.triangle = arrival.primitive;
         mesh->fill(arrival.primitive, arrival.u, arrival.v, point);
-    else
+    } else {
         std::get<PlacedExact>(geometry).fill(arrival.exact.local, point);
+    }
 }
 
 std::optional<SurfacePoint> Intersector::intersect(const Ray& ray) const {

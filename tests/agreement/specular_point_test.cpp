@@ -1,4 +1,4 @@
-#include "beamtree/light/specular_point.h"
+#include "beamtree/light/root_search.h"
 
 #include <gtest/gtest.h>
 

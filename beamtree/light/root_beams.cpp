@@ -1,0 +1,266 @@
+#include "beamtree/light/root_beams.h"
+
+#include "beamtree/light/first_polygon.h"
+#include "core/base/parallel.h"
+
+namespace caustics::beamtree {
+namespace {
+
+constexpr int most_root_quarters = 3;
+// By how much an image may be off its quadratic where light has gone as far as the scene is wide, over the polygon's
+// size on the first surface: less does no harm. Directions may be off by this share of how far they part, whatever the
+// scene: a wave of two radians a polygon has 0.03, and half the polygon a quarter of that.
+constexpr double most_off_image = 0.1;
+constexpr double most_off_directions = 0.02;
+constexpr std::size_t root_beams_together = 256;  // that threads take at a time
+
+/// A place of a triangle, with its ray.
+struct Node {
+    Vec2d at;
+    Vec3 origin;  ///< in the polygon's plane
+    VertexRay ray;
+    bool is_lit = true;                 ///< light of it goes the set's way
+    std::uint32_t number = Beam::none;  ///< of the ray, where it is a corner
+};
+
+/// A beam, or a part of one, with its edges' middles.
+struct RootBeam {
+    Beam beam;
+    std::uint32_t from = 0;  ///< the beam of the set that it is, or is part of
+    bool is_part = false;
+    std::array<EdgeMiddles, 2> middles;
+};
+
+/// What becomes of some beams of a set. Rays of new corners are numbered from the set's last ray on.
+struct RootBeams {
+    std::vector<RootBeam> beams;
+    std::vector<VertexRay> rays;
+    std::vector<Vec3> origins;
+};
+
+/// Divides one triangle of a beam.
+class Divider {
+public:
+    /// New rays are numbered from `first_number` on.
+    Divider(const LightChain& chain, const FirstPolygon& polygon, double reach,
+            std::uint32_t first_number, RootBeams& out)
+        : chain_(chain), polygon_(polygon), reach_(reach), first_number_(first_number), out_(out) {}
+
+    void divide(const std::array<Node, 3>& corners, const RootBeam& beam, int quarters) {
+        const std::array<Node, 3> middles = {between(corners[0], corners[1]),
+                                             between(corners[1], corners[2]),
+                                             between(corners[2], corners[0])};
+        if (quarters == 0 || !is_rough(corners, middles)) {
+            add(corners, middles, beam);
+            return;
+        }
+        std::array<Node, 3> m = middles;
+        for (Node& node : m) number(node);
+        const auto& [a, b, c] = corners;
+        const std::array<std::array<Node, 3>, 4> parts = {
+            {{a, m[0], m[2]}, {m[0], b, m[1]}, {m[2], m[1], c}, {m[0], m[1], m[2]}}};
+        std::array<double, 4> area;
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            area[i] = light_area(parts[i]);
+            sum += area[i];
+        }
+        for (std::size_t i = 0; i < 4; ++i) {
+            RootBeam part = beam;
+            part.is_part = true;
+            part.beam.flux *= sum > 0 ? static_cast<float>(area[i] / sum) : 0.25F;
+            divide(parts[i], part, quarters - 1);
+        }
+    }
+
+private:
+    Node node(const Vec2d& at) const {
+        Node node{at, polygon_.position(at).cast<float>(), {}};
+        const auto ray = chain_.ray(polygon_.start(at));
+        node.is_lit = ray.has_value();
+        if (ray) node.ray = {ray->position.cast<float>(), ray->direction.cast<float>()};
+        return node;
+    }
+    Node between(const Node& a, const Node& b) const {
+        Node middle = node((a.at + b.at) / 2);
+        if (!middle.is_lit)
+            middle.ray = {(a.ray.position + b.ray.position) / 2,
+                          (a.ray.direction + b.ray.direction).normalized()};
+        return middle;
+    }
+    double light_area(const std::array<Node, 3>& corners) const {
+        const auto ray =
+            chain_.ray(polygon_.start((corners[0].at + corners[1].at + corners[2].at) / 3));
+        return ray ? ray->light_area : 0;
+    }
+    // At a quarter of each edge, where a cubic is off its quadratic most.
+    bool is_rough(const std::array<Node, 3>& corners, const std::array<Node, 3>& middles) const {
+        double off_image = 0;
+        double off_directions = 0;
+        double apart = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Node& a = corners[i];
+            const Node& b = corners[(i + 1) % 3];
+            const Node& middle = middles[i];
+            const Node here = node(0.75 * a.at + 0.25 * b.at);
+            if (!here.is_lit || !middle.is_lit) return false;
+            const auto off = [&](Vec3 VertexRay::* part) {
+                const Vec3 quadratic =
+                    0.375F * a.ray.*part + 0.75F * middle.ray.*part - 0.125F * b.ray.*part;
+                return static_cast<double>((here.ray.*part - quadratic).norm());
+            };
+            const double direction = off(&VertexRay::direction);
+            const double size = static_cast<double>((b.origin - a.origin).norm());
+            off_directions = std::max(off_directions, direction);
+            off_image =
+                std::max(off_image, (off(&VertexRay::position) + reach_ * direction) / size);
+            for (const Node* other : {&b, &middle})
+                apart = std::max(
+                    apart, static_cast<double>((other->ray.direction - a.ray.direction).norm()));
+        }
+        return off_image > most_off_image && off_directions > most_off_directions * apart;
+    }
+    void number(Node& node) {
+        node.number = first_number_ + static_cast<std::uint32_t>(out_.rays.size());
+        out_.rays.push_back(node.ray);
+        out_.origins.push_back(node.origin);
+    }
+    void add(const std::array<Node, 3>& corners, const std::array<Node, 3>& middles,
+             const RootBeam& beam) {
+        RootBeam& added = out_.beams.emplace_back(beam);
+        for (std::size_t i = 0; i < 3; ++i) added.beam.corners[i] = corners[i].number;
+        added.middles[0] = {middles[0].ray, middles[1].ray, middles[2].ray};
+    }
+
+    const LightChain& chain_;
+    const FirstPolygon& polygon_;
+    double reach_;
+    std::uint32_t first_number_;
+    RootBeams& out_;
+};
+
+/// Prepares the beams of a set.
+class RootPreparation {
+public:
+    RootPreparation(const Scene& scene, const BeamSet& set)
+        : scene_(scene),
+          set_(set),
+          chain_(scene, set),
+          exact_(first_exact_surface(scene, set)),
+          reach_(static_cast<double>(scene.diameter())) {}
+
+    RootBeams run(const Chunk& beams) const {
+        RootBeams out;
+        for (auto i = static_cast<std::uint32_t>(beams.first); i < beams.end; ++i) prepare(i, out);
+        return out;
+    }
+
+private:
+    void prepare(std::uint32_t number, RootBeams& out) const {
+        const Beam& beam = set_.beams[number];
+        const std::size_t count = beam.triangle_count();
+        const std::size_t before = out.beams.size();
+        for (std::size_t which = 0; which < count; ++which) divide(number, which, out);
+        if (count == 1 || out.beams.size() - before > count) return;
+        // A cell that need not be divided stays one.
+        RootBeam cell{beam, number, false, {}};
+        for (std::size_t which = 0; which < count; ++which)
+            cell.middles[which] = out.beams[before + which].middles[0];
+        out.beams.resize(before);
+        out.beams.push_back(cell);
+    }
+
+    void divide(std::uint32_t number, std::size_t which, RootBeams& out) const {
+        const Beam& beam = set_.beams[number];
+        static const std::array<Vec2d, 3> at = {Vec2d(0, 0), Vec2d(1, 0), Vec2d(0, 1)};
+        const std::array<std::uint32_t, 3> rays = beam.triangle_corners(which);
+        std::array<Node, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i)
+            corners[i] = {at[i], set_.origin(rays[i]), set_.rays[rays[i]], true, rays[i]};
+        RootBeam whole{beam, number, beam.triangle_count() > 1, {}};
+        whole.beam.flux *= static_cast<float>(beam.share_of(which));
+        whole.beam.first_share = 1;
+        whole.beam.triangle = beam.mesh_triangle(which);
+        whole.beam.is_cell = false;
+        whole.beam.corners[3] = Beam::none;
+        const FirstPolygon polygon(scene_, set_, exact_, beam, which);
+        Divider(chain_, polygon, reach_, static_cast<std::uint32_t>(set_.rays.size()), out)
+            .divide(corners, whole, most_root_quarters);
+    }
+
+    const Scene& scene_;
+    const BeamSet& set_;
+    LightChain chain_;
+    std::optional<SpecularSurface> exact_;
+    double reach_;
+};
+
+/// Puts prepared beams in the place of a set's.
+class RootJoin {
+public:
+    explicit RootJoin(BeamSet& set) : set_(set), new_number_(set.beams.size(), Beam::none) {
+        set_.beams.clear();
+        set_.middles.clear();
+    }
+
+    void add(const RootBeams& some, std::size_t old_rays) {
+        const auto moved = static_cast<std::uint32_t>(set_.rays.size() - old_rays);
+        for (const RootBeam& each : some.beams) {
+            if (!each.is_part)
+                new_number_[each.from] = static_cast<std::uint32_t>(set_.beams.size());
+            from_.push_back(each.is_part ? Beam::none : each.from);
+            Beam& beam = set_.beams.emplace_back(each.beam);
+            for (std::uint32_t& corner : beam.corners)
+                if (corner != Beam::none && corner >= old_rays) corner += moved;
+            for (std::size_t i = 0; i < set_.triangle_room; ++i)
+                set_.middles.push_back(each.middles[i]);
+        }
+        set_.rays.insert(set_.rays.end(), some.rays.begin(), some.rays.end());
+        if (!set_.origins.empty())
+            set_.origins.insert(set_.origins.end(), some.origins.begin(), some.origins.end());
+    }
+
+    // Parts have no partners, and new rays no spreads.
+    void finish() {
+        if (!set_.spreads.empty()) set_.spreads.resize(set_.rays.size());
+        if (set_.partners.empty()) return;
+        std::vector<std::uint32_t> partners(set_.beams.size(), Beam::none);
+        for (std::size_t i = 0; i < partners.size(); ++i) {
+            if (from_[i] == Beam::none) continue;
+            const std::uint32_t partner = set_.partners[from_[i]];
+            if (partner != Beam::none) partners[i] = new_number_[partner];
+        }
+        set_.partners = std::move(partners);
+    }
+
+private:
+    BeamSet& set_;
+    std::vector<std::uint32_t> new_number_;  ///< one an old beam; none where it was divided
+    std::vector<std::uint32_t> from_;        ///< one a beam: the old one, unless it is a part
+};
+
+}  // namespace
+
+void prepare_roots(const Scene& scene, const std::vector<RayOrigin>& origins, int threads,
+                   BeamSet& set) {
+    if (set.beams.empty()) return;
+    if (set.path.size() > 1)
+        for (const RayOrigin& origin : origins) set.origins.push_back(origin.position);
+    std::vector<RootBeams> chunks(chunk_count(set.beams.size(), root_beams_together));
+    const RootPreparation preparation(scene, set);
+    parallel_chunks(threads, set.beams.size(), root_beams_together,
+                    [&](const Chunk& chunk) { chunks[chunk.index] = preparation.run(chunk); });
+    const bool divides =
+        std::ranges::any_of(chunks, [](const RootBeams& some) { return !some.rays.empty(); });
+    if (divides && set.origins.empty())
+        for (const VertexRay& ray : set.rays) set.origins.push_back(ray.position);
+    const bool has_cells =
+        std::ranges::any_of(set.beams, [](const Beam& beam) { return beam.triangle_count() > 1; });
+    set.triangle_room = has_cells ? 2 : 1;
+    const std::size_t old_rays = set.rays.size();
+    RootJoin join(set);
+    for (const RootBeams& some : chunks) join.add(some, old_rays);
+    join.finish();
+}
+
+}  // namespace caustics::beamtree

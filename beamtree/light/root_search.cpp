@@ -1,0 +1,86 @@
+#include "beamtree/light/root_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace caustics::beamtree {
+namespace {
+
+constexpr int most_steps = 14;
+constexpr double longest_step = 0.5;  // of the polygon's sides
+constexpr double farthest_out = -1;   // barycentric, of a step
+// How near to the point a ray has to come, for the length of its way.
+constexpr double miss_tolerance = 1e-10;
+constexpr double double_rounding = 4 * std::numeric_limits<double>::epsilon();
+// Barycentric coordinates beyond an edge that still count: vertices are rounded to float, and an edge may be shared by
+// polygons that are divided differently. Both neighbours find such a root, and BeamLight counts it once.
+constexpr double edge_width = 1e-6;
+constexpr double same_root = 1e-5;  // barycentric distance
+
+}  // namespace
+
+RootSearch::RootSearch(const Scene& scene, const BeamSet& set)
+    : scene_(scene), set_(set), chain_(scene, set), exact_(first_exact_surface(scene, set)) {}
+
+bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& point,
+                      std::vector<Root>& roots) const {
+    const auto corners = set_.triangle(set_.beams[beam], triangle);
+    const auto plane = ArrivalPlane::at(point, corners);
+    if (!plane) return true;
+    const auto model = ImageModel::of(*plane, corners, set_.middles_of(beam, triangle));
+    if (!model) return true;
+    const FirstPolygon polygon(scene_, set_, exact_, set_.beams[beam], triangle);
+    ImageModel::Solutions known;
+    for (const Vec2d& from : model->solutions()) {
+        const auto found = polish(polygon, *plane, from);
+        if (!found) continue;
+        const bool is_known = std::any_of(known.begin(), known.end(), [&](const Vec2d& other) {
+            return (other - found->at).norm() <= same_root;
+        });
+        if (is_known) continue;
+        known.at[known.count++] = found->at;
+        add(polygon, *found, roots);
+    }
+    return known.count > 0 || !model->surely_holds();
+}
+
+std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
+                                                    const ArrivalPlane& plane, Vec2d at) const {
+    for (int step = 0; step < most_steps && least_weight(at) >= farthest_out; ++step) {
+        const auto ray = chain_.ray(polygon.start(at));
+        if (!ray || !(plane.steepness(ray->direction) > 0)) return {};
+        const Vec2d miss = plane.miss(ray->position, ray->direction);
+        const Eigen::Matrix2d change = plane.miss_change(*ray);
+        const double way = plane.way(ray->position, ray->direction);
+        // Rounding of the first place, as far as the miss moves with it.
+        const double rounding = double_rounding *
+                                (ray->first.position.norm() + plane.point().norm()) *
+                                (1 + change.norm() / polygon.size());
+        if (miss.norm() <= miss_tolerance * std::abs(way) + rounding) {
+            if (!(least_weight(at) >= -edge_width) || !(way > 0)) return {};
+            const double area = std::abs(change.determinant()) * plane.steepness(ray->direction);
+            return Found{at, *ray, ray->light_area / area};
+        }
+        const Vec2d by = change.inverse() * miss;
+        const double length = by.norm();
+        if (!(length < std::numeric_limits<double>::infinity())) return {};
+        at -= std::min(1.0, longest_step / length) * by;
+    }
+    return {};
+}
+
+void RootSearch::add(const FirstPolygon& polygon, const Found& found,
+                     std::vector<Root>& roots) const {
+    Root root;
+    root.first = found.ray.first.position;
+    if (least_weight(found.at) <= edge_width) root.edge_room = 4 * edge_width * polygon.size();
+    root.start = {found.ray.position.cast<float>(), found.ray.across.cast<float>(),
+                  found.ray.offset};
+    root.direction = found.ray.direction.cast<float>();
+    root.weight = chain_.weight(polygon.start(found.at));
+    root.density = found.density;
+    if (!is_black(root.weight)) roots.push_back(root);
+}
+
+}  // namespace caustics::beamtree
