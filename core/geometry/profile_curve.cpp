@@ -16,11 +16,15 @@ constexpr std::size_t most_pieces = 4096;
 
 std::string place_text(const Vec2d& p) { return fmt::format("[{:g}, {:g}]", p.x(), p.y()); }
 
-// The points with their neighbours, which lie across the axis at a pole and across the seam of a ring.
+// The points with their neighbours. Those of a pole lie across the axis, unless it is a cone's tip, which is a crease
+// in any case; those of a ring's ends lie across its seam.
 class Curve {
 public:
     explicit Curve(const LatheProfile& profile)
-        : profile_(profile), ring_(at(0) == at(spans()) && at(0).x() > 0) {}
+        : profile_(profile),
+          ring_(at(0) == at(spans()) && at(0).x() > 0),
+          first_is_tip_(meets_axis_aslant(0, 1, 2)),
+          last_is_tip_(meets_axis_aslant(spans(), spans() - 1, spans() - 2)) {}
 
     std::size_t spans() const { return profile_.points.size() - 1; }
     bool is_ring() const { return ring_; }
@@ -33,13 +37,15 @@ private:
     std::optional<Vec2d> before(std::size_t i) const {
         if (i > 0) return at(i - 1);
         if (ring_) return at(spans() - 1);
-        return at(0).x() == 0 ? std::optional<Vec2d>({-at(1).x(), at(1).y()}) : std::nullopt;
+        if (at(0).x() > 0 || first_is_tip_) return {};
+        return Vec2d(-at(1).x(), at(1).y());
     }
     std::optional<Vec2d> after(std::size_t i) const {
         if (i < spans()) return at(i + 1);
         if (ring_) return at(1);
+        if (at(i).x() > 0 || last_is_tip_) return {};
         const Vec2d& last = at(spans() - 1);
-        return at(i).x() == 0 ? std::optional<Vec2d>({-last.x(), last.y()}) : std::nullopt;
+        return Vec2d(-last.x(), last.y());
     }
     double knots(const Vec2d& a, const Vec2d& b) const {
         const double length = (b - a).norm();
@@ -50,12 +56,35 @@ private:
                (ring_ && (i == 0 || i == spans()) &&
                 (profile_.points.front().crease || profile_.points.back().crease));
     }
+    bool meets_axis_aslant(std::size_t pole, std::size_t next, std::size_t second) const;
     std::optional<Vec2d> smooth_slope(std::size_t i) const;
     std::pair<Vec2d, Vec2d> slopes(std::size_t span) const;
 
     const LatheProfile& profile_;
     bool ring_;
+    bool first_is_tip_, last_is_tip_;  ///< of a cone
 };
+
+// Whether straight lines end on the axis at the tip of a cone. Points of a smooth cap (a sphere, a lens) have first
+// lines that are aslant as well: the tangent at the pole is that of the circle through the pole and the next two
+// points, and a cap's is nearer to the normal of the axis than to the first line. A crease, or a turn by more than a
+// right angle, ends what the first line is part of. A Catmull-Rom curve is mirrored by the axis before it is drawn:
+// its tangent there is never aslant, unless the pole is a crease.
+bool Curve::meets_axis_aslant(std::size_t pole, std::size_t next, std::size_t second) const {
+    if (profile_.catmull_rom || at(pole).x() > 0) return false;
+    const Vec2d line = at(next) - at(pole);
+    const double slope = std::atan2(std::abs(line.y()), line.x());
+    double tangent = slope;
+    if (second < profile_.points.size() && !profile_.points[next].crease) {
+        const Vec2d onwards = at(second) - at(next);
+        if (line.dot(onwards) > 0) {
+            const double turn =
+                std::copysign(1.0, line.y()) * std::atan2(cross(line, onwards), line.dot(onwards));
+            tangent -= turn * line.norm() / (line.norm() + onwards.norm());
+        }
+    }
+    return tangent > slope / 2;
+}
 
 // Derivative with respect to the knots at a point that is no crease, by the parabola through it and
 // its neighbours. For straight lines, whose knots are lengths, it has the tangent of their circle.

@@ -17,7 +17,8 @@ struct ProfilePoint {
 struct LatheProfile {
     std::vector<ProfilePoint> points;
     /// Centripetal Catmull-Rom curves from crease to crease [Yuksel et al. 2011], in place of
-    /// straight lines. Either is mirrored by the axis where it meets it.
+    /// straight lines. Either is mirrored by the axis where it meets it, but for straight lines that meet it aslant:
+    /// the tip of a cone is a crease, whatever its point says.
     bool catmull_rom = false;
     int segments = 1;   ///< straight pieces between two points
     bool open = false;  ///< may have ends off the axis

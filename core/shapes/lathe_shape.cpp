@@ -55,7 +55,10 @@ Objects lathe_keys() {
         {"profile point",
          "An element of profile, where the surface has an edge.",
          {{.key = "at", .meaning = "Its place.", .unit = "m", .type = "[r, z]"},
-          yes_or_no("crease", "Splits the normal; without, it is smooth.", "false")}}};
+          yes_or_no("crease",
+                    "Splits the normal. Without, it is smooth; a cone's tip, where straight lines "
+                    "meet the axis aslant, is a crease in any case.",
+                    "false")}}};
 }
 
 }  // namespace caustics::scene_file

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/tessellate.h"
+#include "core/mesh/mesh_rows.h"
 #include "tests/core/mesh/mesh_measures.h"
 
 namespace caustics {
@@ -86,6 +87,50 @@ TEST(Lathe, CreasesSplitNormals) {
     EXPECT_EQ(mesh.normals[13], Vec3(1, 0, 0));
     can.points[1].crease = can.points[2].crease = false;
     EXPECT_GT(largest_bend(tessellate_lathe(can, 12)), pi_d / 5);
+}
+
+// The largest angle between a triangle's normal and that of its corners, of a cone that may have a crease on the axis.
+double bend_of_cone(double slope, bool crease, int lines) {
+    LatheProfile cone;
+    for (int i = 0; i <= lines; ++i)
+        cone.points.push_back({{fraction(i, lines), slope * fraction(i, lines)}});
+    cone.points.front().crease = crease;
+    cone.points.back().crease = true;
+    cone.points.push_back({{0, slope}});
+    return largest_bend(tessellate_lathe(cone, 256));
+}
+
+TEST(Lathe, TipsOfConesAreCreases) {
+    for (const double slope : {-2.0, -0.2, 0.01, 0.2, 1.0, 5.0})
+        for (const int lines : {1, 2, 5})
+            for (const bool crease : {false, true})
+                EXPECT_LT(bend_of_cone(slope, crease, lines), pi_d / 256 + 1e-6)
+                    << slope << " " << lines << " " << crease;
+}
+
+// The caps of lenses, of as few straight lines as it may be, are no cones.
+TEST(Lathe, PolesOfSmoothCapsStaySmooth) {
+    for (const int spans : {4, 9, 40}) {
+        const TriangleMesh sphere = tessellate_lathe(semicircle(spans), 12);
+        EXPECT_NEAR(sphere.normals.back().z(), 1, 1e-6) << spans;
+    }
+    LatheProfile dish;
+    for (int i = 0; i <= 8; ++i) dish.points.push_back({{0.1 * i, 0.04 * i * i}});
+    dish.open = true;
+    for (const Vec3& n : tessellate_lathe(dish, 12).normals)
+        if (n.z() < -0.9999F) return;
+    FAIL() << "no normal along the axis";
+}
+
+TEST(Lathe, CurvesAreMirroredByTheAxisUnlessTheirPoleIsACrease) {
+    LatheProfile curve = profile({{0, 0}, {0.5, 0.5}, {1, 1}});
+    curve.open = curve.catmull_rom = true;
+    curve.segments = 64;
+    const auto lean = [&] { return std::abs(tessellate_lathe(curve, 16).normals.back().z()); };
+    curve.points = {curve.points.rbegin(), curve.points.rend()};
+    EXPECT_NEAR(lean(), 1, 1e-6);
+    curve.points.back().crease = true;
+    EXPECT_NEAR(lean(), std::sqrt(0.5), 1e-6);
 }
 
 TEST(Lathe, WindsTrianglesAroundTheirNormalsAndHasOneCellPatch) {
