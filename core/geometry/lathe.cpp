@@ -1,10 +1,12 @@
 #include "core/geometry/lathe.h"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/mesh/exact_positions.h"
 #include "core/mesh/mesh_rows.h"
 
 namespace caustics {
@@ -12,6 +14,13 @@ namespace {
 
 // As of the other shapes (tessellate.cpp).
 constexpr int most_sectors = 16384;
+
+// A vertex whose position is exact until the mesh is complete.
+std::uint32_t add_exact_vertex(TriangleMesh& mesh, const Vec3d& position, const Vec3d& normal,
+                               const Vec2d& uv) {
+    mesh.exact_positions.push_back(position);
+    return add_vertex(mesh, position, normal, uv);
+}
 
 bool on_axis(const ProfileStation& station) { return station.at.x() == 0; }
 
@@ -22,9 +31,9 @@ std::uint32_t add_ring(TriangleMesh& mesh, const ProfileStation& station, const 
     for (int sector = 0; sector <= sectors; ++sector) {
         const Vec2d way = on_circle(sector, sectors);
         const Vec2d xy = station.at.x() * way;
-        add_vertex(mesh, {xy.x(), xy.y(), station.at.y()},
-                   {normal.x() * way.x(), normal.x() * way.y(), normal.y()},
-                   {fraction(sector, sectors), station.v});
+        add_exact_vertex(mesh, {xy.x(), xy.y(), station.at.y()},
+                         {normal.x() * way.x(), normal.x() * way.y(), normal.y()},
+                         {fraction(sector, sectors), station.v});
     }
     return first;
 }
@@ -33,9 +42,9 @@ std::uint32_t add_ring(TriangleMesh& mesh, const ProfileStation& station, const 
 std::uint32_t add_pole(TriangleMesh& mesh, const ProfileStation& station, const Vec2d& normal,
                        double u) {
     const double angle = 2 * pi_d * u;
-    return add_vertex(mesh, {0, 0, station.at.y()},
-                      {normal.x() * std::cos(angle), normal.x() * std::sin(angle), normal.y()},
-                      {u, station.v});
+    return add_exact_vertex(
+        mesh, {0, 0, station.at.y()},
+        {normal.x() * std::cos(angle), normal.x() * std::sin(angle), normal.y()}, {u, station.v});
 }
 
 // The rings of the band that follows a station and of the one before it.
@@ -84,6 +93,7 @@ TriangleMesh tessellate_lathe(const LatheProfile& profile, int sectors) {
         add_fan(mesh, rings[stations.size() - 2].after, sectors, true, [&](double u) {
             return add_pole(mesh, stations.back(), stations.back().normal_before, u);
         });
+    set_positions(mesh, std::move(mesh.exact_positions));
     return mesh;
 }
 

@@ -8,6 +8,7 @@
 #include "core/geometry/along_normal.h"
 #include "core/geometry/surface_offset.h"
 #include "core/math/sampling.h"
+#include "core/mesh/exact_positions.h"
 
 namespace caustics {
 namespace {
@@ -63,9 +64,7 @@ AreaSampler::Sample sample_triangle(const TriangleMesh& mesh, std::size_t index,
 Eigen::AlignedBox3d local_bounds(const Shape& shape) {
     if (shape.primitive != Primitive::mesh)
         return ask_exact(shape, [](const auto& kind) { return kind.bounds(); });
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : shape.mesh.positions) box.extend(p.cast<double>());
-    return box;
+    return exact_bounds(shape.mesh);
 }
 
 std::span<const Vec3> hull_points(const Shape& shape, std::vector<Vec3>& corners) {

@@ -20,6 +20,8 @@ struct Shape {
     TriangleMesh mesh;      ///< of a mesh: the scene's frame, flips and to_world applied
     Transform to_world = Transform::Identity();  ///< of an exact shape: to the scene's frame
     bool flip_normals = false;                   ///< of an exact shape
+    bool is_of_file = false;                     ///< a mesh of an obj or ply file
+    bool is_oriented = false;  ///< such a mesh that `orient` turned (mesh_doctor.h)
     Bsdf bsdf;
     std::optional<Spectrum> radiance;  ///< emitted from the front side [W m^-2 sr^-1]
 };

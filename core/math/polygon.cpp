@@ -15,11 +15,11 @@ double turn(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
 }
 
 /// The corners in the plane that sees the polygon's sum of areas [Newell] largest, turning left.
-std::vector<Vec2d> project(const std::vector<Vec3>& corners) {
+std::vector<Vec2d> project(const std::vector<Vec3d>& corners) {
     Vec3d normal = Vec3d::Zero();
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Vec3d a = (corners[i] - corners[0]).cast<double>();
-        const Vec3d b = (corners[(i + 1) % corners.size()] - corners[0]).cast<double>();
+        const Vec3d a = corners[i] - corners[0];
+        const Vec3d b = corners[(i + 1) % corners.size()] - corners[0];
         normal += a.cross(b);
     }
     Vec3d::Index dropped = 0;
@@ -27,14 +27,13 @@ std::vector<Vec2d> project(const std::vector<Vec3>& corners) {
     const Vec3d::Index u = (dropped + 1) % 3, v = (dropped + 2) % 3;
     const double side = normal[dropped] < 0 ? -1 : 1;
     std::vector<Vec2d> flat;
-    for (const Vec3& corner : corners)
-        flat.emplace_back(side * static_cast<double>(corner[u]), static_cast<double>(corner[v]));
+    for (const Vec3d& corner : corners) flat.emplace_back(side * corner[u], corner[v]);
     return flat;
 }
 
 class EarClipping {
 public:
-    explicit EarClipping(const std::vector<Vec3>& corners)
+    explicit EarClipping(const std::vector<Vec3d>& corners)
         : flat_(project(corners)), left_(corners.size()) {
         std::iota(left_.begin(), left_.end(), 0U);
     }
@@ -100,7 +99,7 @@ private:
 
 }  // namespace
 
-std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<Vec3>& corners) {
+std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<Vec3d>& corners) {
     if (corners.size() == 3) return {{0, 1, 2}};
     return EarClipping(corners).run();
 }

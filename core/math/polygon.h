@@ -12,6 +12,6 @@ namespace caustics {
 /// many as corners less two, by cutting off ears (Meisters 1975); a convex polygon becomes a fan
 /// about its first corner. Corners on a line and corners that coincide are taken; what crosses
 /// itself is cut somehow. Throws InputError for what would take too long: more than some 4,000 corners.
-std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<Vec3>& corners);
+std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<Vec3d>& corners);
 
 }  // namespace caustics

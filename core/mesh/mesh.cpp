@@ -46,10 +46,14 @@ void transform(TriangleMesh& mesh, const Transform& to_world) {
     if (determinant == 0 || !to_world.matrix().allFinite())
         throw InputError("the transform of a mesh must be finite and invertible");
     const Eigen::Matrix3d to_normal = std::copysign(1.0, determinant) * cofactors(linear);
-    visit_all(mesh.positions, [&](Vec3& position) {
-        const Vec3d moved = to_world * position.cast<double>();
-        position = moved.cast<float>();
-    });
+    for (std::size_t i = 0; i < mesh.exact_positions.size(); ++i)
+        mesh.positions[i] = Vec3d(to_world * mesh.exact_positions[i]).cast<float>();
+    if (mesh.exact_positions.empty())
+        visit_all(mesh.positions, [&](Vec3& position) {
+            const Vec3d moved = to_world * position.cast<double>();
+            position = moved.cast<float>();
+        });
+    mesh.exact_positions = {};
     visit_all(mesh.normals, [&](Vec3& normal) {
         const Vec3d turned = to_normal * normal.cast<double>();
         // stableNormalized: cofactors are squares of scales, whose squares may leave double.

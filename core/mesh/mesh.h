@@ -24,6 +24,9 @@ struct TriangleMesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< unit; empty = shade with the geometric normal
     std::vector<Vec2> uvs;
+    /// Positions before rounding, of a mesh that is not yet placed; empty where `positions` are exact enough
+    /// (exact_positions.h).
+    std::vector<Vec3d> exact_positions;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     /// How a tessellator divided its surface; empty for a mesh of any other origin.
     std::vector<GridPatch> patches;
@@ -33,8 +36,8 @@ struct TriangleMesh {
 void flip(TriangleMesh& mesh);
 
 /// Applies an affine map to positions and, by the inverse transpose, to normals (kept unit);
-/// reverses the winding when the map mirrors, so that normals stay on their side. Throws
-/// InputError when the map is singular or not finite.
+/// reverses the winding when the map mirrors, so that normals stay on their side. The mesh has no
+/// exact positions any more. Throws InputError when the map is singular or not finite.
 void transform(TriangleMesh& mesh, const Transform& to_world);
 
 }  // namespace caustics

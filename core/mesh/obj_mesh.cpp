@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
 #include "core/math/polygon.h"
+#include "core/mesh/exact_positions.h"
 #include "core/mesh/quoted_word.h"
 #include "core/mesh/vertex_table.h"
 
@@ -61,11 +62,13 @@ public:
 
     TriangleMesh finish() {
         if (mesh_.triangles.empty()) throw InputError(name_ + ": no faces");
+        std::vector<Vec3d> positions;
         for (const VertexTable::Vertex& v : table_.vertices()) {
-            mesh_.positions.emplace_back(v[0], v[1], v[2]);
-            if (has_normals_) mesh_.normals.emplace_back(v[3], v[4], v[5]);
-            if (has_uvs_) mesh_.uvs.emplace_back(v[6], v[7]);
+            positions.emplace_back(v[0], v[1], v[2]);
+            if (has_normals_) mesh_.normals.emplace_back(Vec3d(v[3], v[4], v[5]).cast<float>());
+            if (has_uvs_) mesh_.uvs.emplace_back(Vec2d(v[6], v[7]).cast<float>());
         }
+        set_positions(mesh_, std::move(positions));
         return std::move(mesh_);
     }
 
@@ -103,12 +106,12 @@ private:
     }
 
     // The numbers of the line, the first three of which are wanted.
-    std::array<float, 3> numbers(bool right_length, const char* lengths) const {
+    std::array<double, 3> numbers(bool right_length, const char* lengths) const {
         if (!right_length) fail(std::string(words_[0]) + " needs " + lengths + " numbers");
-        std::array<float, 3> found{};
+        std::array<double, 3> found{};
         for (std::size_t i = 1; i < words_.size(); ++i) {
             const double value = number(words_[i]);
-            if (i <= found.size()) found[i - 1] = static_cast<float>(value);
+            if (i <= found.size()) found[i - 1] = value;
         }
         return found;
     }
@@ -124,13 +127,13 @@ private:
 
     // Turned as Mitsuba's `flip_tex_coords` has it.
     void take_uv() {
-        const std::array<float, 3> uv = numbers(words_.size() == 3 || words_.size() == 4, "2 or 3");
-        uvs_.emplace_back(uv[0], 1 - uv[1]);
+        const auto [u, v, w] = numbers(words_.size() == 3 || words_.size() == 4, "2 or 3");
+        uvs_.emplace_back(static_cast<float>(u), 1 - static_cast<float>(v));
     }
 
     void take_normal() {
         const auto [x, y, z] = numbers(words_.size() == 4, "3");
-        normals_.emplace_back(x, y, z);
+        normals_.emplace_back(Vec3d(x, y, z).cast<float>());
     }
 
     // An index counts from 1, or backwards from the last one (-1); all must stand before the face.
@@ -194,9 +197,10 @@ private:
     }
 
     std::uint32_t vertex(const Corner& corner) {
-        const Vec3& p = positions_[corner.position];
-        const Vec3 n = corner.normal ? normals_[*corner.normal] : Vec3(0, 0, 0);
-        const Vec2 t = corner.uv ? uvs_[*corner.uv] : Vec2(0, 1);
+        const Vec3d& p = positions_[corner.position];
+        const Vec3d n =
+            corner.normal ? Vec3d(normals_[*corner.normal].cast<double>()) : Vec3d(0, 0, 0);
+        const Vec2d t = corner.uv ? Vec2d(uvs_[*corner.uv].cast<double>()) : Vec2d(0, 1);
         return table_.index_of({p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), t.x(), t.y()});
     }
 
@@ -204,8 +208,8 @@ private:
     std::size_t line_ = 0;
     std::vector<std::string_view> words_;
     std::vector<Corner> corners_;  // of the face at work
-    std::vector<Vec3> polygon_;
-    std::vector<Vec3> positions_;
+    std::vector<Vec3d> polygon_;
+    std::vector<Vec3d> positions_;
     std::vector<Vec2> uvs_;
     std::vector<Vec3> normals_;
     bool has_uvs_ = false;

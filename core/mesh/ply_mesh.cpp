@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
 #include "core/math/polygon.h"
+#include "core/mesh/exact_positions.h"
 #include "core/mesh/ply_file.h"
 #include "core/mesh/quoted_word.h"
 
@@ -146,11 +147,13 @@ private:
             if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
                 fail(element, index,
                      names_[i] + " is " + number_text(value) + ", not a finite number");
-            kept_.push_back(static_cast<float>(value));
+            kept_.push_back(value);
         }
-        mesh_.positions.emplace_back(kept_[0], kept_[1], kept_[2]);
-        if (has_normals_) mesh_.normals.emplace_back(kept_[3], kept_[4], kept_[5]);
-        if (has_uvs_) mesh_.uvs.emplace_back(kept_[kept_.size() - 2], kept_.back());
+        mesh_.exact_positions.emplace_back(kept_[0], kept_[1], kept_[2]);
+        if (has_normals_)
+            mesh_.normals.emplace_back(Vec3d(kept_[3], kept_[4], kept_[5]).cast<float>());
+        if (has_uvs_)
+            mesh_.uvs.emplace_back(Vec2d(kept_[kept_.size() - 2], kept_.back()).cast<float>());
     }
 
     void read_face(const PlyElement& element, std::size_t index) {
@@ -178,7 +181,7 @@ private:
         if (!found) file_.fail("faces have no list 'vertex_indices' or 'vertex_index'");
     }
 
-    std::vector<std::array<std::uint32_t, 3>> cut_face(const std::vector<Vec3>& polygon,
+    std::vector<std::array<std::uint32_t, 3>> cut_face(const std::vector<Vec3d>& polygon,
                                                        std::size_t face) const {
         try {
             return triangulate_polygon(polygon);
@@ -189,12 +192,13 @@ private:
 
     // Faces may come before their vertices.
     void cut_polygons() {
-        std::vector<Vec3> polygon;
+        std::vector<Vec3d> polygon;
         const std::uint32_t* corners = corners_.data();
         for (std::size_t face = 0; face < polygon_sizes_.size(); ++face) {
             const std::uint32_t size = polygon_sizes_[face];
             polygon.clear();
-            for (std::uint32_t i = 0; i < size; ++i) polygon.push_back(mesh_.positions[corners[i]]);
+            for (std::uint32_t i = 0; i < size; ++i)
+                polygon.push_back(mesh_.exact_positions[corners[i]]);
             for (const auto& [a, b, c] : cut_face(polygon, face))
                 mesh_.triangles.push_back({corners[a], corners[b], corners[c]});
             corners += size;
@@ -209,7 +213,7 @@ private:
     bool has_uvs_ = false;
     std::vector<double> values_;
     std::vector<double> row_;
-    std::vector<float> kept_;
+    std::vector<double> kept_;
     std::vector<std::uint32_t> polygon_sizes_;
     std::vector<std::uint32_t> corners_;  // of all polygons, one after the other
     TriangleMesh mesh_;
@@ -218,18 +222,18 @@ private:
 // Vertices that no triangle has are no part of the surface, nor of its bounds.
 void drop_unused_vertices(TriangleMesh& mesh) {
     constexpr std::uint32_t unused = ~0U;
-    std::vector<std::uint32_t> place(mesh.positions.size(), unused);
+    std::vector<std::uint32_t> place(mesh.exact_positions.size(), unused);
     for (const auto& triangle : mesh.triangles)
         for (const std::uint32_t corner : triangle) place[corner] = 0;
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < place.size(); ++i) {
         if (place[i] == unused) continue;
-        mesh.positions[count] = mesh.positions[i];
+        mesh.exact_positions[count] = mesh.exact_positions[i];
         if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[i];
         if (!mesh.uvs.empty()) mesh.uvs[count] = mesh.uvs[i];
         place[i] = count++;
     }
-    mesh.positions.resize(count);
+    mesh.exact_positions.resize(count);
     if (!mesh.normals.empty()) mesh.normals.resize(count);
     if (!mesh.uvs.empty()) mesh.uvs.resize(count);
     for (auto& triangle : mesh.triangles)
@@ -241,6 +245,7 @@ void drop_unused_vertices(TriangleMesh& mesh) {
 TriangleMesh read_ply(const std::string& bytes, const std::string& name) {
     TriangleMesh mesh = PlyReader(bytes, name).run();
     drop_unused_vertices(mesh);
+    set_positions(mesh, std::move(mesh.exact_positions));
     return mesh;
 }
 

@@ -7,9 +7,9 @@ namespace {
 
 std::uint64_t hash_of(const VertexTable::Vertex& vertex) {
     std::uint64_t hash = 0;
-    for (const float value : vertex) {
+    for (const double value : vertex) {
         // -0 + 0 is 0.
-        hash = (hash ^ std::bit_cast<std::uint32_t>(value + 0.0F)) * 0x9E3779B97F4A7C15U;
+        hash = (hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) * 0x9E3779B97F4A7C15U;
         hash ^= hash >> 32U;
     }
     return hash;

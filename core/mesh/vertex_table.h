@@ -10,7 +10,7 @@ namespace caustics {
 class VertexTable {
 public:
     /// Position, normal, texture coordinates.
-    using Vertex = std::array<float, 8>;
+    using Vertex = std::array<double, 8>;
 
     /// The place of that vertex in vertices(), where it is put if it is new. NaN is not looked for.
     std::uint32_t index_of(const Vertex& vertex);

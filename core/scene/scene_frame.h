@@ -19,7 +19,8 @@ Vec3d frame_origin(const std::vector<Shape>& shapes, const std::vector<Eigen::Al
 /// from the frame's origin.
 bool is_resolved(const Eigen::AlignedBox3d& box, const Vec3d& origin);
 
-/// Puts a shape into the frame: its `to_world` goes there, or is applied to its mesh.
+/// Puts a shape into the frame: its `to_world` goes there, or is applied to its mesh. Throws InputError where floats
+/// are too coarse for the mesh's triangles.
 void place(Shape& shape, const Vec3d& origin);
 
 }  // namespace caustics::scene_file

@@ -13,6 +13,7 @@
 #include "core/lights/area_light.h"
 #include "core/material/bsdf_reader.h"
 #include "core/math/coordinate_limit.h"
+#include "core/mesh/exact_positions.h"
 #include "core/mesh/mesh_io.h"
 #include "core/shapes/cut_shape.h"
 #include "core/shapes/heightfield_shape.h"
@@ -72,6 +73,9 @@ void read_mesh_file(const JsonNode& node, const std::string& type, const CommonK
     MeshLoadOptions options;
     options.face_normals = keys.face_normals;
     options.flip_normals = keys.flip_normals;
+    if (const auto orient = node.find("orient")) options.orient = orient->as_bool();
+    shape.is_of_file = true;
+    shape.is_oriented = options.orient;
     const JsonNode name = node.at("filename");
     const std::filesystem::path file = read_file_name(name, assets);
     if (lower_case(file.extension().string()) != "." + type)
@@ -105,8 +109,21 @@ void read_exact(const JsonNode& node, Primitive primitive, CommonKeys keys, Shap
     keys.finish_mesh(shape.mesh);
 }
 
+// Fails where a mesh is made so far from its own origin that its floats are too coarse.
+void require_near_origin(const JsonNode& node, const TriangleMesh& mesh) {
+    constexpr double most_sizes = 1000;
+    const Eigen::AlignedBox3d box = exact_bounds(mesh);
+    const double sizes = box.center().norm() / box.diagonal().norm();
+    if (mesh.exact_positions.empty() && sizes > most_sizes)
+        node.fail(
+            fmt::format("lies {:.3g} times its size from its own origin, where floats are too "
+                        "coarse (at most {:g} times; to_world moves it exactly)",
+                        sizes, most_sizes));
+}
+
 // What is a mesh by its nature.
-void set_mesh(TriangleMesh mesh, const CommonKeys& keys, Shape& shape) {
+void set_mesh(const JsonNode& node, TriangleMesh mesh, const CommonKeys& keys, Shape& shape) {
+    require_near_origin(node, mesh);
     shape.primitive = Primitive::mesh;
     shape.to_world = keys.to_world;
     shape.mesh = std::move(mesh);
@@ -120,7 +137,7 @@ void read_heightfield(const JsonNode& node, const CommonKeys& keys, Shape& shape
         return read_exact(node, Primitive::heightfield, keys, shape);
     }
     if (keys.resolution) keys.resolution->fail("the heights have a resolution of their own");
-    set_mesh(tessellate_grid(std::get<HeightGrid>(heights)), keys, shape);
+    set_mesh(node, tessellate_grid(std::get<HeightGrid>(heights)), keys, shape);
 }
 
 template <class Kind>
@@ -194,6 +211,17 @@ void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
     }
 }
 
+Keys file_keys() {
+    return joined(
+        mesh_keys(),
+        {yes_or_no("orient",
+                   "Turns triangles so that neighbours agree and closed parts face outwards, or "
+                   "inwards if they lie inside an odd number of others. Open parts keep the side "
+                   "of most of their area. Normals of the file turn with their triangles; "
+                   "flip_normals is applied last.",
+                   "false")});
+}
+
 }  // namespace
 
 Objects shape_keys() {
@@ -203,9 +231,9 @@ Objects shape_keys() {
             ask_kind(primitive, {}, []<class Kind>(const Kind&) { return text_of<Kind>(); }));
     all.push_back({"cube", "A shape: the box from -1 to 1, a mesh.", parametric_keys("1")});
     all.push_back({"obj", "A shape: a mesh of a Wavefront file.",
-                   joined(mesh_keys(), {file("The .obj file, relative to the scene's.")})});
+                   joined(file_keys(), {file("The .obj file, relative to the scene's.")})});
     all.push_back({"ply", "A shape: a mesh of a PLY file.",
-                   joined(mesh_keys(), {file("The .ply file, relative to the scene's.")})});
+                   joined(file_keys(), {file("The .ply file, relative to the scene's.")})});
     for (Objects family : {heightfield_keys(), lathe_keys(), cut_keys()})
         for (ObjectText& object : family) all.push_back(std::move(object));
     return all;
@@ -242,11 +270,11 @@ Shape read_shape(const std::string& name, const JsonNode& node, Assets& assets) 
     if (type == "obj" || type == "ply")
         read_mesh_file(node, type, keys, shape, assets);
     else if (type == "cube")
-        set_mesh(tessellate_cube(keys.resolution ? keys.count(1) : 1), keys, shape);
+        set_mesh(node, tessellate_cube(keys.resolution ? keys.count(1) : 1), keys, shape);
     else if (type == "lathe")
-        set_mesh(read_lathe(node, keys.resolution ? keys.count(3) : 64), keys, shape);
+        set_mesh(node, read_lathe(node, keys.resolution ? keys.count(3) : 64), keys, shape);
     else if (type == "cut")
-        set_mesh(read_cut(node, keys.resolution), keys, shape);
+        set_mesh(node, read_cut(node, keys.resolution), keys, shape);
     else if (type == "heightfield")
         read_heightfield(node, keys, shape, assets);
     else

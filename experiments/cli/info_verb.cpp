@@ -66,7 +66,8 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     text += fmt::format("film     {} x {} pixels, {} samples a pixel, {}\n", scene.camera().width,
                         scene.camera().height, sampling.sample_count, sampling_name(sampling));
     text += "shapes\n";
-    for (const std::string& line : shape_lines(scene)) text += line;
+    const std::vector<ExaminedMesh> meshes = examine_meshes(scene);
+    for (const std::string& line : shape_lines(scene, meshes)) text += line;
     text += "lights\n";
     for (const Light& light : scene.lights())
         text += "  " + line_of(light, scene.surroundings(), scene.origin()) + "\n";
@@ -88,6 +89,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
             "  {:<16} {}\n", name,
             serving.why_not ? "no: " + *serving.why_not : "yes" + judged_by(serving.report));
     }
+    for (const std::string& note : mesh_notes(scene, meshes)) text += "note     " + note + "\n";
     for (const std::string& note : notes_on(scene)) text += "note     " + note + "\n";
     return text;
 }

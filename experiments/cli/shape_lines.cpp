@@ -36,32 +36,29 @@ std::string coincident(const Scene& scene, std::size_t index) {
     return text;
 }
 
-std::string flaws(const Scene& scene, std::size_t index) {
-    const Shape& shape = scene.shapes()[index];
-    if (shape.primitive != Primitive::mesh || !is_caster(shape.bsdf)) return "";
-    const std::size_t open = open_edge_count(shape.mesh);
+std::string flaws(const Scene& scene, std::size_t index, const std::vector<ExaminedMesh>& meshes) {
     std::string text;
-    if (open > 0) text += fmt::format(", {} open edges", open);
-    const bool glass = std::holds_alternative<Dielectric>(shape.bsdf.model);
-    if (open == 0 && glass && enclosed_volume(shape.mesh) < 0)
-        text += ", faces inwards (right for a cavity only)";
-    return text + coincident(scene, index);
+    for (const ExaminedMesh& mesh : meshes)
+        if (mesh.shape == index) text += listed(mesh.diagnosis);
+    const Shape& shape = scene.shapes()[index];
+    const bool is_mesh = shape.primitive == Primitive::mesh;
+    return is_mesh && is_caster(shape.bsdf) ? text + coincident(scene, index) : text;
 }
 
 }  // namespace
 
-std::vector<std::string> shape_lines(const Scene& scene) {
+std::vector<std::string> shape_lines(const Scene& scene, const std::vector<ExaminedMesh>& meshes) {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < scene.shapes().size(); ++i) {
         const Shape& shape = scene.shapes()[i];
         const bool caster = is_caster(shape.bsdf);
         const bool receiver = is_receiver(shape.bsdf);
-        lines.push_back(fmt::format(
-            "  {:<16} {:<28} {}{}\n", shape.name, kind_of(shape),
-            caster && receiver ? "caster and receiver"
-            : caster           ? "caster"
-                               : "receiver",
-            (shape.radiance ? ", area light" : "") + dispersion(shape.bsdf) + flaws(scene, i)));
+        lines.push_back(fmt::format("  {:<16} {:<28} {}{}\n", shape.name, kind_of(shape),
+                                    caster && receiver ? "caster and receiver"
+                                    : caster           ? "caster"
+                                                       : "receiver",
+                                    (shape.radiance ? ", area light" : "") +
+                                        dispersion(shape.bsdf) + flaws(scene, i, meshes)));
     }
     return lines;
 }

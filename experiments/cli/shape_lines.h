@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "experiments/run/mesh_notes.h"
 
 namespace caustics::experiments {
 
-/// What `info` says of each shape, a line each: its kind and use, and of a mesh that is a caster its
-/// open edges, whether glass faces inwards, and whether it lies on another caster.
-std::vector<std::string> shape_lines(const Scene& scene);
+/// What `info` says of each shape, a line each: its kind and use, the parts and flaws of a mesh, and whether a caster
+/// lies on another one.
+std::vector<std::string> shape_lines(const Scene& scene, const std::vector<ExaminedMesh>& meshes);
 
 }  // namespace caustics::experiments

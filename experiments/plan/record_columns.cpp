@@ -151,6 +151,10 @@ constexpr RecordColumn fixed_columns[] = {
     {"reference_indirect_stderr", "/reference/indirect_stderr", Kind::number, "1",
      "standard error of a pixel of that layer over its mean"},
     {"why_empty", "/why_empty", Kind::text, "", "why the caustic is black all over"},
+    {"mesh_flaws", "/scene/mesh_flaws", Kind::text, "",
+     "what is wrong with the scene's meshes: faces that point the wrong way, holes, double "
+     "triangles, "
+     "scale; as `info` says it"},
     {"message", "/message", Kind::text, "", "why the trial failed"},
 };
 

@@ -1,6 +1,7 @@
 #include "experiments/plan/trial.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
@@ -62,6 +63,8 @@ void record_report(json& record, const RunResult& result) {
     for (const auto& [name, value] : result.report.resolved)
         record["method"]["resolved"][name] = value;
     if (!result.notes.empty()) record["notes"] = result.notes;
+    if (!result.mesh_notes.empty())
+        record["scene"]["mesh_flaws"] = fmt::format("{}", fmt::join(result.mesh_notes, "; "));
     if (result.report.bytes > 0) record["memory"]["map_bytes"] = result.report.bytes;
     if (result.why_empty) record["why_empty"] = *result.why_empty;
 }

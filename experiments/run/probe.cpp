@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/coordinate_limit.h"
+#include "experiments/run/mesh_notes.h"
 #include "experiments/run/notes.h"
 
 namespace caustics::experiments {
@@ -225,6 +226,7 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
                 answers.notes = notes(scene, method, built->build_report());
             else
                 answers.notes = notes_on_indirect(scene);
+            std::ranges::copy(mesh_notes(scene), std::back_inserter(answers.notes));
             std::ranges::copy(notes_on(scene), std::back_inserter(answers.notes));
         }
         const Ask ask{*built, asked, method.facts().gathers_over_discs, options.threads};

@@ -8,6 +8,7 @@
 
 #include "experiments/base/environment.h"
 #include "experiments/base/shell_word.h"
+#include "experiments/run/mesh_notes.h"
 #include "experiments/run/notes.h"
 #include "experiments/run/why_empty.h"
 
@@ -128,7 +129,7 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
         render(scene, {pass_count(request.method), build_pass}, options, indirect.get());
     stopwatch.stop();
 
-    RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}};
+    RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}, {}};
     result.counters = result.report.counters;
     for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
     BuildReport all = result.report;
@@ -138,6 +139,8 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
                       std::back_inserter(result.notes));
     if (request.indirect)
         std::ranges::copy(notes_on_indirect(scene), std::back_inserter(result.notes));
+    result.mesh_notes = mesh_notes(scene);
+    std::ranges::copy(result.mesh_notes, std::back_inserter(result.notes));
     std::ranges::copy(notes_on(scene), std::back_inserter(result.notes));
     result.why_empty =
         why_empty(scene, request.method, result.film, result.report, result.counters);

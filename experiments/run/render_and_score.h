@@ -44,6 +44,7 @@ struct RunResult {
     Counters counters;                     ///< of build and queries
     std::optional<std::string> why_empty;  ///< of a caustic that is black all over
     std::vector<std::string> notes;        ///< what a user should know, one line each
+    std::vector<std::string> mesh_notes;   ///< those of the notes that are of meshes (mesh_notes.h)
 };
 
 /// Builds the method and renders, cutting the time into "precompute", "precompute/PHASE", "render"

@@ -16,6 +16,7 @@
 #include "experiments/base/stopwatch.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/run/caustic_survey.h"
+#include "experiments/run/mesh_notes.h"
 #include "experiments/run/method.h"
 #include "experiments/run/methods.h"
 #include "experiments/verify/cell_light.h"
@@ -90,6 +91,7 @@ public:
 
     SceneReport run() {
         StepProgress progress(2 * methods_.size() + 2);
+        for (const std::string& note : mesh_notes(scene_)) add("mesh", Verdict::told, note);
         progress.begin("account of the light");
         audit();
         look_for_the_caustic();

@@ -30,7 +30,7 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "indirect_relmse", "indirect_mean_ratio", "indirect_s", "indirect_cpu_s", "reference_indirect_mean",
             "reference_indirect_stderr")
 RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "other_cores", "jobs", "timeout_s",
-       "memory_limit_bytes", "message", "why_empty")  # of one run of a trial
+       "memory_limit_bytes", "message", "why_empty", "mesh_flaws")  # of one run of a trial
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN
 # Photons and light paths asked for: above 0 wherever they apply.
 ASKED_COUNTS = ("photons", "emitted", "paths")
