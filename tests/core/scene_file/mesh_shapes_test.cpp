@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,8 @@
 #include <string>
 
 #include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/mesh/mesh_doctor.h"
 #include "core/render/film.h"
 #include "core/scene/scene_reader.h"
 #include "tests/support/png_kinds.h"
@@ -25,8 +28,83 @@ protected:
         return load_scene(folder_ / "scene.json").desc.shapes.at(0);
     }
 
+    /// A cube of 0.2 m as an OBJ file, its middle anywhere; every other face turned.
+    static std::string cube(const Vec3d& middle, int first = 1, bool turned = false) {
+        std::string text;
+        for (int i = 0; i < 8; ++i)
+            text += fmt::format("v {:.4f} {:.4f} {:.4f}\n", middle.x() + (i % 2 == 0 ? -0.1 : 0.1),
+                                middle.y() + (i / 2 % 2 == 0 ? -0.1 : 0.1),
+                                middle.z() + (i / 4 == 0 ? -0.1 : 0.1));
+        const int faces[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
+                                 {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+        for (int i = 0; i < 6; ++i) {
+            const auto [a, b, c, d] = faces[i];
+            const int base = first - 1;
+            const bool back = turned && i % 2 == 0;
+            text += fmt::format("f {} {} {} {}\n", base + (back ? d : a), base + (back ? c : b),
+                                base + (back ? b : c), base + (back ? a : d));
+        }
+        return text;
+    }
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name) << text;
+    }
+    std::string refusal(const std::string& keys) const {
+        try {
+            read(keys);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
+    }
+
     support::TemporaryFolder folder_;
 };
+
+// Coordinates of maps: floats have half a metre there.
+TEST_F(MeshShapes, FilesFarFromTheOriginArePlacedExactly) {
+    write("far.obj", cube({512345, 5412345, 300}));
+    const std::string glass = R"("type": "obj", "filename": "far.obj", "face_normals": true,
+        "bsdf": {"type": "dielectric"})";
+    for (const char* const place :
+         {"", R"(, "to_world": [{"translate": [-512345, -5412345, -300]}])",
+          R"(, "to_world": [{"translate": [-512345, -5412345, -300]}, {"scale": 10},
+             {"translate": [1e6, 0, 0]}])"}) {
+        const Shape shape = read(glass + place);
+        const Box box = bounds(shape);
+        const float size =
+            *place != 0 && std::string(place).find("scale") != std::string::npos ? 2.0F : 0.2F;
+        EXPECT_LT((box.sizes() - Vec3::Constant(size)).norm(), 1e-6F * size) << place;
+        EXPECT_LT(box.center().norm(), 1e-5F) << place;
+    }
+}
+
+TEST_F(MeshShapes, PartsTooFarApartForFloatsAreRefused) {
+    write("two.obj", cube(Vec3d::Zero()) + cube({512345, 5412345, 300}, 9));
+    EXPECT_NE(refusal(R"("type": "obj", "filename": "two.obj", "bsdf": {"type": "dielectric"})")
+                  .find("floats are too coarse for its triangles"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"("type": "cut", "planes": [[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1],
+                         [0, -1, 0, 1], [0, 0, 1, 10001], [0, 0, -1, -9999]])")
+                  .find("from its own origin, where floats are too coarse"),
+              std::string::npos);
+}
+
+TEST_F(MeshShapes, OrientTurnsFacesOfFiles) {
+    write("mixed.obj", cube(Vec3d::Zero(), 1, true));
+    const std::string mesh = R"("type": "obj", "filename": "mixed.obj")";
+    EXPECT_EQ(diagnose(read(mesh).mesh).turned_triangles, 6U);
+    const Shape turned = read(mesh + R"(, "orient": true)");
+    EXPECT_EQ(diagnose(turned.mesh).turned_triangles, 0U);
+    EXPECT_EQ(diagnose(turned.mesh).inside_out_parts, 0U);
+    EXPECT_TRUE(turned.is_oriented);
+    for (std::size_t i = 0; i < turned.mesh.normals.size(); ++i)
+        EXPECT_GT(turned.mesh.normals[i].dot(turned.mesh.positions[i]), 0.1F);
+    EXPECT_EQ(
+        diagnose(read(mesh + R"(, "orient": true, "flip_normals": true)").mesh).inside_out_parts,
+        1U);
+    EXPECT_NE(refusal(R"("type": "cube", "orient": true)").find("orient"), std::string::npos);
+}
 
 TEST_F(MeshShapes, TwoResolutionsAreThoseAlongXAndY) {
     const Shape floor = read(R"("type": "rectangle", "resolution": [3, 2])");
