@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/mesh/mesh_doctor.h"
 #include "core/mesh/mesh_io.h"
 
 namespace caustics {
@@ -121,6 +122,49 @@ TEST(SharedMeshes, DolphinKeepsItsPositionsAndIsOpen) {
     EXPECT_EQ(used, given);
     EXPECT_GT(open_edges(mesh), 0U);
 }
+
+struct Anatomy {
+    const char* file;
+    std::size_t parts, closed, open_edges, holes, duplicates, crowded_edges, inside_out;
+};
+
+class SharedAnatomy : public testing::TestWithParam<Anatomy> {};
+
+// The numbers are those of a program of its own that follows edges from face to face.
+TEST_P(SharedAnatomy, IsDiagnosed) {
+    const Anatomy& known = GetParam();
+    TriangleMesh mesh = load(known.file);
+    const MeshDiagnosis found = diagnose(mesh);
+    EXPECT_EQ(found.parts, known.parts);
+    EXPECT_EQ(found.closed_parts, known.closed);
+    EXPECT_EQ(found.open_edges, known.open_edges);
+    EXPECT_EQ(found.holes, known.holes);
+    EXPECT_EQ(found.duplicates, known.duplicates);
+    EXPECT_EQ(found.crowded_edges, known.crowded_edges);
+    EXPECT_EQ(found.inside_out_parts, known.inside_out);
+    EXPECT_EQ(found.turned_triangles, 0U);
+    EXPECT_EQ(found.one_sided_parts, 0U);
+    // Every third face turned, and turned back.
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += 3)
+        std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    EXPECT_EQ(diagnose(mesh).open_edges, known.open_edges);
+    orient(mesh);
+    EXPECT_EQ(diagnose(mesh).turned_triangles, 0U);
+    EXPECT_EQ(diagnose(mesh).inside_out_parts, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SharedAnatomy,
+    testing::Values(Anatomy{"dolphin/dolphin_sgi.obj", 13, 3, 42, 8, 18, 4, 1},
+                    Anatomy{"tungsten/water.ply", 1, 0, 1954, 1, 0, 0, 0},
+                    Anatomy{"ignis/Diamond.ply", 1, 1, 0, 0, 0, 0, 0},
+                    Anatomy{"ignis/Gem.ply", 1, 1, 0, 0, 0, 0, 0},
+                    Anatomy{"gems/octahedron_diamond.obj", 1, 1, 0, 0, 0, 0, 0},
+                    Anatomy{"sms/pool_border.obj", 1, 0, 16, 2, 0, 0, 0},
+                    Anatomy{"sms/pool_inside.obj", 1, 0, 4, 1, 0, 0, 0},
+                    Anatomy{"sms/torus.obj", 1, 1, 0, 0, 0, 0, 0},
+                    Anatomy{"sms/slab18_plane_2.obj", 1, 0, 128, 1, 0, 0, 0},
+                    Anatomy{"sms/slab18_planes_border.obj", 1, 0, 2048, 2, 0, 0, 0}));
 
 }  // namespace
 }  // namespace caustics
