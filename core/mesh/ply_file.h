@@ -34,6 +34,8 @@ public:
     /// number. `element` and `index` name it when it is missing or misspelt.
     double read(PlyType type, const std::string& element, std::size_t index);
 
+    bool is_binary() const { return format_ != PlyFormat::ascii; }
+
     /// Fails when anything but white space (ASCII) is left.
     void expect_end();
 

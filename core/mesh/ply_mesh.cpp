@@ -59,6 +59,7 @@ public:
                         read_property(element, property, i);
             }
         file_.expect_end();
+        if (file_.is_binary() && has_float_positions(vertices)) require_fine_floats();
         cut_polygons();
         if (mesh_.triangles.empty()) file_.fail("no faces");
         return std::move(mesh_);
@@ -188,6 +189,27 @@ private:
         } catch (const InputError& error) {
             file_.fail("face " + std::to_string(face) + ": " + error.what());
         }
+    }
+
+    bool has_float_positions(const PlyElement& vertices) const {
+        return std::any_of(columns_.begin(), columns_.begin() + 3, [&](std::size_t column) {
+            return vertices.properties[column].type == PlyType::float32;
+        });
+    }
+
+    // What a file rounded far from its origin cannot be had back.
+    void require_fine_floats() const {
+        Eigen::AlignedBox3d box;
+        for (const Vec3d& p : mesh_.exact_positions) box.extend(p);
+        const double reach = box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff();
+        const double step = reach * double{std::numeric_limits<float>::epsilon()};
+        const double width = box.diagonal().norm();
+        constexpr double coarsest = 1e-3;
+        if (!box.isEmpty() && step > coarsest * width)
+            file_.fail(
+                "positions are floats, " + number_text(step) + " m apart at " + number_text(reach) +
+                " m from the origin, too coarse for a mesh " + number_text(width) +
+                " m wide (a file near its origin, or with doubles, and to_world place it exactly)");
     }
 
     // Faces may come before their vertices.

@@ -89,6 +89,24 @@ TEST_F(FarMeshes, KeepDoublesWherePartsLieFarApart) {
     EXPECT_FALSE(mesh.exact_positions.empty());
 }
 
+// The file itself has lost the mesh.
+TEST_F(FarMeshes, BinaryFloatsThatAreTooCoarseAreRefused) {
+    const auto binary = [](float x) {
+        std::string bytes =
+            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+            "property float y\nproperty float z\nelement face 1\n"
+            "property list uchar int vertex_indices\nend_header\n";
+        const std::array<float, 9> numbers = {x, 0, 0, x + 1, 0, 0, x, 1, 0};
+        bytes.append(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+        const std::array<std::int32_t, 3> corners = {0, 1, 2};
+        bytes += '\3';
+        bytes.append(reinterpret_cast<const char*>(corners.data()), sizeof corners);
+        return bytes;
+    };
+    EXPECT_EQ(load("near.ply", binary(1000)).triangles.size(), 1U);
+    expect_refused("far.ply", binary(5412345), "too coarse for a mesh");
+}
+
 TEST_F(FarMeshes, RoundingTurnsTriangles) {
     const TriangleMesh mesh = load("a.obj", obj(far_away));
     EXPECT_GT(rounding_turn(mesh.exact_positions, mesh), 0.5);
