@@ -12,26 +12,16 @@
 #include <vector>
 
 #include "tests/core/mesh/mesh_files.h"
+#include "tests/core/mesh/mesh_measures.h"
 
 namespace caustics {
 namespace {
 
+using test::area;
 using test::expect_same;
 using test::PlyContent;
 
 class MeshIo : public test::MeshFiles {};
-
-double area(const TriangleMesh& mesh) {
-    double sum = 0;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3d corner = mesh.positions[a].cast<double>();
-        sum += (mesh.positions[b].cast<double>() - corner)
-                   .cross(mesh.positions[c].cast<double>() - corner)
-                   .norm() /
-               2;
-    }
-    return sum;
-}
 
 const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
