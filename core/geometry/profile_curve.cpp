@@ -65,7 +65,7 @@ private:
     bool first_is_tip_, last_is_tip_;  ///< of a cone
 };
 
-// Whether straight lines end on the axis at the tip of a cone. Points of a smooth cap (a sphere, a lens) have first
+// True where straight lines end on the axis at the tip of a cone. Points of a smooth cap (a sphere, a lens) have first
 // lines that are aslant as well: the tangent at the pole is that of the circle through the pole and the next two
 // points, and a cap's is nearer to the normal of the axis than to the first line. A crease, or a turn by more than a
 // right angle, ends what the first line is part of. A Catmull-Rom curve is mirrored by the axis before it is drawn:

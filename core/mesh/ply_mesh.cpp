@@ -197,7 +197,7 @@ private:
         });
     }
 
-    // What a file rounded far from its origin cannot be had back.
+    // Digits that the file itself has lost cannot be restored.
     void require_fine_floats() const {
         Eigen::AlignedBox3d box;
         for (const Vec3d& p : mesh_.exact_positions) box.extend(p);

@@ -8,7 +8,7 @@
 
 namespace caustics::experiments {
 
-/// What `info` says of each shape, a line each: its kind and use, the parts and flaws of a mesh, and whether a caster
+/// The lines of `info` about shapes, one each: its kind and use, the parts and flaws of a mesh, and whether a caster
 /// lies on another one.
 std::vector<std::string> shape_lines(const Scene& scene, const std::vector<ExaminedMesh>& meshes);
 

@@ -14,7 +14,7 @@ const Dielectric* glass_of(const Shape& shape) {
     return std::get_if<Dielectric>(&shape.bsdf.model);
 }
 
-/// Whether its front and its back treat light in different ways.
+/// True if its front and its back treat light in different ways.
 bool has_two_sides(const Shape& shape) {
     return glass_of(shape) != nullptr || !shape.bsdf.twosided || shape.radiance;
 }
@@ -29,7 +29,7 @@ std::string how_to_orient(const Shape& shape) {
     return shape.is_oriented ? "" : "; \"orient\": true turns them";
 }
 
-/// Whether its fronts may well look inwards: of glass, in another dielectric or with the denser medium outside; of
+/// True if its fronts may well look inwards: of glass, in another dielectric or with the denser medium outside; of
 /// other surfaces, as the walls of a room that holds the camera.
 bool may_face_inwards(const Scene& scene, const Shape& shape) {
     const Box own = bounds(shape);
@@ -104,7 +104,7 @@ Box bounds_of_the_rest(const Scene& scene, std::uint32_t left_out) {
     return box;
 }
 
-/// Whether the camera sees all of a box within a pixel.
+/// True if the camera sees all of a box within a pixel.
 bool is_within_a_pixel(const Camera& camera, const Box& box) {
     const auto distance = static_cast<double>((box.center() - camera.position()).norm());
     const auto size = static_cast<double>(box.diagonal().norm());

@@ -16,7 +16,7 @@ struct ExaminedMesh {
 /// The casters that are meshes, and the receivers and lights among meshes that have one side only.
 std::vector<ExaminedMesh> examine_meshes(const Scene& scene);
 
-/// What a user should know of meshes, one line each: faces that point the wrong way, where that changes light (of
+/// Notes on meshes for the user, one line each: faces that point the wrong way, where that changes light (of
 /// dielectrics, and of what is black or dark from behind), holes and double triangles of dielectrics, parts that
 /// `orient` could not tell the outside of, and a caster whose size suggests that its file has another unit.
 std::vector<std::string> mesh_notes(const Scene& scene, const std::vector<ExaminedMesh>& meshes);

@@ -111,7 +111,7 @@ TEST(MeshDoctor, PartsInsideOthersAreCavities) {
     const MeshDiagnosis three = diagnose(joined(joined(cube, flipped(inner)), core));
     EXPECT_EQ(three.cavities, 1U);
     EXPECT_EQ(count(three.turned), 0U);
-    // What crosses a part lies not inside it.
+    // A part that crosses another one does not lie inside it.
     const MeshDiagnosis crossing = diagnose(joined(cube, moved(inner, {0.9, 0, 0})));
     EXPECT_EQ(crossing.cavities, 0U);
     EXPECT_EQ(count(crossing.turned), 0U);
