@@ -80,10 +80,12 @@ void note_facing(const Scene& scene, const Shape& shape, const MeshDiagnosis& fo
 
 void note_gaps(const Shape& shape, const MeshDiagnosis& found, std::vector<std::string>& all) {
     if (glass_of(shape) == nullptr) return;
-    if (found.hollow_parts > 0)
+    // Shapes of the scene file are open where they were asked to be.
+    if (shape.is_of_file && found.hollow_parts > 0)
         all.push_back(fmt::format(
             "mesh {}: {} of {} is closed but for holes ({} with {} in all): light that passes a "
-            "hole does not enter the medium, and goes on in the wrong one",
+            "hole does not enter the medium, and goes on in the wrong one, unless another shape "
+            "closes it",
             shape.name, found.hollow_parts, counted(found.parts, "part"),
             counted(found.holes, "hole"), counted(found.open_edges, "open edge")));
     if (found.duplicates > 0)
