@@ -54,7 +54,7 @@ void note_facing(const Scene& scene, const Shape& shape, const MeshDiagnosis& fo
             counted(found.mixed_parts, "part"), effect, how_to_orient(shape)));
     if (found.inside_out_parts > 0 && !may_face_inwards(scene, shape))
         all.push_back(fmt::format(
-            "mesh {}: {} of {} is inside out ({} triangles face inwards): {}{}", shape.name,
+            "mesh {}: {} of {} inside out ({} triangles face inwards): {}{}", shape.name,
             found.inside_out_parts, counted(found.parts, "part"), found.inside_out_triangles,
             effect,
             shape.is_of_file ? how_to_orient(shape) : "; flip_normals turns the whole mesh"));
@@ -68,7 +68,7 @@ void note_facing(const Scene& scene, const Shape& shape, const MeshDiagnosis& fo
             how_to_orient(shape)));
     if (found.one_sided_parts > 0)
         all.push_back(fmt::format(
-            "mesh {}: {} of {}, as a Moebius strip, has one side only: where its front lies cannot "
+            "mesh {}: {} of {} with one side only, as a Moebius strip: where the front lies cannot "
             "be told",
             shape.name, found.one_sided_parts, counted(found.parts, "part")));
     if (shape.is_oriented && found.parts_of_no_outside() > 0)
@@ -83,14 +83,14 @@ void note_gaps(const Shape& shape, const MeshDiagnosis& found, std::vector<std::
     // Shapes of the scene file are open where they were asked to be.
     if (shape.is_of_file && found.hollow_parts > 0)
         all.push_back(fmt::format(
-            "mesh {}: {} of {} is closed but for holes ({} with {} in all): light that passes a "
+            "mesh {}: {} of {} closed but for holes ({} with {} in all): light that passes a "
             "hole does not enter the medium, and goes on in the wrong one, unless another shape "
             "closes it",
             shape.name, found.hollow_parts, counted(found.parts, "part"),
             counted(found.holes, "hole"), counted(found.open_edges, "open edge")));
     if (found.duplicates > 0)
         all.push_back(fmt::format(
-            "mesh {}: {} of {} triangles lie on others with the same corners: which of the two "
+            "mesh {}: {} of {} triangles with the corners of another one: which of the two "
             "light meets is left to rounding",
             shape.name, found.duplicates, shape.mesh.triangles.size()));
 }

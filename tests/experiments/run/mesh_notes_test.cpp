@@ -67,8 +67,7 @@ TEST(MeshNotes, CountTurnedFacesWhereTheyChangeLight) {
 
 TEST(MeshNotes, NameThePartsThatAreInsideOut) {
     SceneDesc desc = scene_of_mesh(flipped_cube(), support::glass(1.5F));
-    EXPECT_TRUE(
-        has_words(mesh_note(desc), "1 of 1 part is inside out (12 triangles face inwards)"));
+    EXPECT_TRUE(has_words(mesh_note(desc), "1 of 1 part inside out (12 triangles face inwards)"));
     // A cavity in other glass, and a bubble of thinner stuff.
     desc.shapes.push_back(support::sphere("ball", {0, 0, 1}, 0.5, support::glass(1.5F)));
     EXPECT_EQ(mesh_note(desc), "");
