@@ -166,9 +166,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
                               "tree of boxes on two planes, or of the paper's cones",
                    .serves = "every light but `constant`; on coarse meshes beams lose light, "
                              "and the record says how much",
-                   .work = {.parameter = "mesh_resolution", .power = 2, .first = 8, .most = 4096},
-                   .effort = {"mesh_resolution=64"},
-                   .more_effort = {"mesh_resolution=128"}},
+                   .work = {.parameter = "mesh_resolution", .power = 2, .first = 8, .most = 4096}},
          .parameters = joined(tree_parameters(), beam_param_table<P>()),
          .settle =
              [](const JsonNode& node, P& params) {

@@ -136,9 +136,7 @@ const DescribedMethod<CausticPolygonsParams>& causticpolygons_method() {
         {.facts = {.name = "causticpolygons",
                    .summary = "Watt 1990: the same beams, kept by the polygons of the receivers",
                    .serves = "as `beamtree`",
-                   .work = {.parameter = "mesh_resolution", .power = 2, .first = 8, .most = 4096},
-                   .effort = {"mesh_resolution=32"},
-                   .more_effort = {"mesh_resolution=64"}},
+                   .work = {.parameter = "mesh_resolution", .power = 2, .first = 8, .most = 4096}},
          .parameters = joined(
              beam_param_table<P>(),
              {parameter::whole_number<P>(

@@ -227,9 +227,10 @@ const DescribedMethod<PhotonMapParams>& photonmap_method() {
                   "Jensen 1996: photons aimed at the casters, N nearest in a packed kd-tree, or "
                   "in the paper's balanced one",
               .serves = "every scene; without light on casters by `emitted` alone",
-              .work = {.parameter = "photons", .first = 1000, .most = 1'000'000'000},
-              .effort = {"photons=60000", "nearest=60"},
-              .more_effort = {"photons=480000", "nearest=60"}},
+              .work = {.parameter = "photons",
+                       .instead = "emitted",
+                       .first = 1000,
+                       .most = 1'000'000'000}},
          .parameters = joined(photon_parameters(), estimate_parameters()),
          .settle = settle,
          .take_least_work =

@@ -168,8 +168,7 @@ const DescribedMethod<IlluminationMapParams>& illuminationmap_method() {
                    .serves = "diffuse receivers without overlapping texture coordinates: any "
                              "exact shape, meshes with an atlas",
                    .work = {.parameter = "emitted", .first = 1000, .most = 1'000'000'000'000},
-                   .effort = {"emitted=1000000", "resolution=64"},
-                   .more_effort = {"emitted=4000000", "resolution=128"}},
+                   .refined_with = {{.parameter = "resolution", .power = 2, .most = 4096}}},
          .parameters = {parameter::whole_number<P>(
                             &P::emitted, 1, 1'000'000'000'000,
                             {.key = "emitted",

@@ -23,6 +23,7 @@ struct SampleCount {
 /// The whole number that a method's time grows with.
 struct WorkParameter {
     std::string parameter = {};  ///< empty: the method has no such number
+    std::string instead = {};    ///< another parameter, which a user may give in its place
     int power = 1;               ///< of it, in which time grows, but for a constant
     std::int64_t first = 1;      ///< that costs next to nothing
     std::int64_t most = 1;
@@ -38,9 +39,8 @@ struct MethodFacts {
     SampleCount samples = {};
     WorkParameter work = {};
     bool gathers_over_discs = false;  ///< answers a probe over a disc round each point, all at once
-    /// Parameters ("key=value") with which `verify SCENE` tries it, and where that does not do, once more.
-    std::vector<std::string> effort = {};
-    std::vector<std::string> more_effort = {};  ///< empty: there is no second try
+    /// Further numbers that must grow with the work for the method to converge.
+    std::vector<WorkParameter> refined_with = {};
 };
 
 /// A method with its parameters in place, whatever it estimates. Immutable.

@@ -280,8 +280,7 @@ MethodFacts facts(const std::string& summary) {
             .is_unbiased = true,
             .samples = {.parameter = "paths"},
             .work = {.parameter = "paths", .first = 1000, .most = 1'000'000'000'000},
-            .gathers_over_discs = true,
-            .effort = {"paths=400000"}};
+            .gathers_over_discs = true};
 }
 
 std::vector<Parameter<LightTraceParams>> caustic_parameters() {

@@ -55,8 +55,7 @@ const DescribedMethod<PathTraceParams>& pathtrace_method() {
                    .serves = "lights with area",
                    .is_unbiased = true,
                    .samples = {.parameter = "spp", .of_a_pixel = true},
-                   .work = {.parameter = "spp", .most = 1'000'000'000},
-                   .effort = {"spp=64"}},
+                   .work = {.parameter = "spp", .most = 1'000'000'000}},
          .parameters = {
              parameter::whole_number<P>(
                  &P::spp, 1, 1'000'000'000,

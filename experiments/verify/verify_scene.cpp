@@ -3,68 +3,74 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <span>
 
 #include "core/base/error.h"
 #include "core/light_path/empty_caustic.h"
-#include "core/render/renderer.h"
 #include "experiments/base/step_progress.h"
 #include "experiments/base/stopwatch.h"
 #include "experiments/picture/metrics.h"
 #include "experiments/run/caustic_survey.h"
 #include "experiments/run/mesh_notes.h"
-#include "experiments/run/method.h"
 #include "experiments/run/methods.h"
 #include "experiments/verify/cell_light.h"
 #include "experiments/verify/light_audit.h"
+#include "experiments/verify/picture_series.h"
 
 namespace caustics::experiments {
 
 namespace {
 
-using Verdict = Finding::Verdict;
-
 constexpr int max_bounces = 16;
-constexpr int width = 48;
-constexpr std::uint64_t seeds = 12;
-/// What a biased method may be off.
-constexpr BiasAllowed allowed = {.in_all = 0.02, .in_cells = 0.1};
-/// What it may be off in all, if more effort makes it less.
-constexpr double most_while_shrinking = 0.1;
+constexpr int most_width = 48;
+/// Pictures of one setting: for a method as given, and with more work.
+constexpr std::size_t least_seeds = 12;
+constexpr std::size_t least_seeds_with_more_work = 6;
+/// Seeds of the reference begin here, so that it shares no random numbers with a method.
+constexpr std::uint64_t reference_seeds = 1ULL << 32;
 
-Verdict verdict(bool holds) { return holds ? Verdict::holds : Verdict::fails; }
+Agreement verdict(bool holds) { return holds ? Agreement::holds : Agreement::fails; }
 
-Method with_effort(const MethodDescription& method, bool more = false) {
-    const MethodFacts& facts = method.facts();
-    return parse_method(facts.name, parameters_node(more ? facts.more_effort : facts.effort));
+MethodAsGiven with_defaults(const MethodDescription& method) { return {method.facts().name, {}}; }
+
+/// The first unbiased method that serves the scene, at its defaults.
+std::optional<MethodAsGiven> reference_for(const Scene& scene) {
+    for (const MethodDescription* each : all_methods()) {
+        if (!each->facts().is_unbiased) continue;
+        MethodAsGiven method = with_defaults(*each);
+        if (!why_unsupported(scene, method.method)) return method;
+    }
+    return {};
 }
 
-/// The first unbiased method that serves the scene; nullptr where there is none.
-const MethodDescription* reference_for(const Scene& scene) {
-    const auto serves = [&](const MethodDescription* each) {
-        return each->facts().is_unbiased && !why_unsupported(scene, with_effort(*each));
-    };
-    const auto found = std::ranges::find_if(all_methods(), serves);
-    return found == all_methods().end() ? nullptr : *found;
+std::vector<MethodAsGiven> methods_asked(const std::vector<MethodAsGiven>& named) {
+    for (const MethodAsGiven& each : named)
+        if (!each.method.facts().has_caustic)
+            throw InputError(fmt::format("--method {}: has no caustic to check", each.method.name));
+    if (!named.empty()) return named;
+    std::vector<MethodAsGiven> all;
+    for (const MethodDescription* each : all_methods())
+        if (each->facts().has_caustic) all.push_back(with_defaults(*each));
+    return all;
 }
 
-SceneDesc made_small(SceneDesc desc) {
+/// At most so wide; with strata in the pixel, since what is checked is the method and not the sampler.
+SceneDesc made_small(SceneDesc desc, int samples_per_pixel) {
     Camera& camera = desc.camera;
+    const int width = std::clamp(camera.width, CellLight::columns, most_width);
     camera.height = std::max(CellLight::rows, width * camera.height / camera.width);
     camera.width = width;
+    const int split_depth = desc.sampling.split_depth;
     desc.sampling = PixelSampling{};
+    desc.sampling.split_depth = split_depth;
+    desc.sampling.sample_count = samples_per_pixel;
+    const int across = static_cast<int>(std::lround(std::sqrt(samples_per_pixel)));
+    desc.sampling.stratified = across * across == samples_per_pixel;
     return desc;
-}
-
-Film picture(const Scene& scene, const Method& method, RunOptions options, std::uint64_t seed) {
-    options.seed = seed;
-    options.samples_per_pixel = scene.sampling().sample_count;
-    const auto build_pass = [&](int pass) { return build(scene, method, options, pass); };
-    return render(scene, {pass_count(method), build_pass}, options).film;
 }
 
 bool same_bits(const Film& a, const Film& b) {
@@ -73,32 +79,46 @@ bool same_bits(const Film& a, const Film& b) {
     });
 }
 
+bool same_light(const std::vector<Film>& a, const std::vector<Film>& b) {
+    return same_bits(a.front(), b.front());
+}
+
+/// What errors that are too large would take.
+std::string seeds_wanted(const CellGap& gap, std::uint64_t seeds, double excess_of_truth,
+                         std::uint64_t reference_seeds) {
+    const auto enough = [](std::uint64_t n, double excess) {
+        return static_cast<std::uint64_t>(std::ceil(static_cast<double>(n) * excess * excess));
+    };
+    return fmt::format(
+        "the standard error is above {:.1f} % (in cells {:.1f} %, here up to {:.1f} %): {} seeds "
+        "of the method and {} of the reference would do (--seconds, or more --spp)",
+        100 * whole_limit.largest_error(), 100 * cell_limit().largest_error(),
+        100 * gap.largest_cell_error, enough(seeds, gap.excess_of_found),
+        enough(reference_seeds, excess_of_truth));
+}
+
 class SceneVerifier {
 public:
-    SceneVerifier(SceneDesc desc, const std::vector<std::string>& methods,
-                  const RunOptions& options)
-        : desc_(made_small(std::move(desc))), scene_(desc_), options_(options) {
-        for (const MethodDescription* each : all_methods()) {
-            const bool is_named = std::ranges::count(methods, each->facts().name) > 0;
-            if (is_named && !each->facts().has_caustic)
-                throw InputError(
-                    fmt::format("--method {}: has no caustic to check", each->facts().name));
-            if (is_named || (methods.empty() && each->facts().has_caustic))
-                methods_.push_back(each);
-        }
-        if (!methods.empty()) require_served();
+    SceneVerifier(SceneDesc desc, const VerifySettings& settings)
+        : desc_(made_small(std::move(desc), settings.run.samples_per_pixel)),
+          scene_(desc_),
+          options_(settings.run),
+          seconds_(settings.seconds),
+          methods_(methods_asked(settings.methods)),
+          reference_(reference_for(scene_)) {
+        if (!settings.methods.empty()) require_served();
     }
 
     SceneReport run() {
-        StepProgress progress(2 * methods_.size() + 2);
+        StepProgress progress(2 + methods_.size() + 2 * compared_count());
         for (const std::string& note : mesh_notes(scene_)) add("mesh", Verdict::told, note);
         progress.begin("account of the light");
         audit();
         look_for_the_caustic();
         progress.end("done");
-        for (const MethodDescription* method : methods_) {
-            progress.begin(method->facts().name + " by threads");
-            check_threads(*method, progress);
+        for (const MethodAsGiven& method : methods_) {
+            progress.begin(method.method.name + " by threads");
+            check_threads(method, progress);
             progress.expect_later(Eta(comparing(served_).seconds, true));
             progress.end("done");
         }
@@ -111,19 +131,29 @@ private:
     /// light can make a caustic, the report says why.
     void require_served() const {
         if (why_nothing_is_aimed(scene_)) return;
-        for (const MethodDescription* each : methods_)
-            if (const auto reason = why_unsupported(scene_, with_effort(*each)))
+        for (const MethodAsGiven& each : methods_)
+            if (const auto reason = why_unsupported(scene_, each.method))
                 throw UnsupportedScene(*reason);
     }
 
-    void add(std::string what, Verdict result, std::string detail) {
+    bool is_compared(const MethodAsGiven& method) const {
+        return reference_ && reference_->method.name != method.method.name &&
+               !why_nothing_is_aimed(scene_) && !why_unsupported(scene_, method.method);
+    }
+
+    std::size_t compared_count() const {
+        return static_cast<std::size_t>(std::ranges::count_if(
+            methods_, [&](const MethodAsGiven& each) { return is_compared(each); }));
+    }
+
+    void add(std::string what, std::optional<Agreement> result, std::string detail) {
         report_.findings.push_back({std::move(what), result, std::move(detail)});
     }
 
     void audit() {
         for (const LightAccount& account : audit_lights(desc_, max_bounces)) {
             if (!account.nothing_aimed.empty()) {
-                add("light: " + account.light, Verdict::told, account.nothing_aimed);
+                add("light: " + account.light, {}, account.nothing_aimed);
                 continue;
             }
             add("light: " + account.light, verdict(account.holds()),
@@ -142,165 +172,215 @@ private:
         std::string casters;
         for (const std::uint32_t i : scene_.casters())
             casters += (casters.empty() ? "" : ", ") + scene_.shapes()[i].name;
-        add("caustic: casters", Verdict::told, casters.empty() ? "none" : casters);
+        add("caustic: casters", {}, casters.empty() ? "none" : casters);
         if (const auto reason = why_nothing_is_aimed(scene_)) {
-            add("caustic: light towards them", Verdict::told, "no caustic: " + *reason);
+            add("caustic: light towards them", {}, "no caustic: " + *reason);
             return;
         }
         const CausticSurvey survey = survey_caustic(scene_, max_bounces);
         if (survey.counts.stored == 0) {
-            add("caustic: light from them", Verdict::told,
+            add("caustic: light from them", {},
                 "no caustic: " + why_nothing_arrives(survey.counts));
             return;
         }
-        add("caustic: light from them", Verdict::told,
+        add("caustic: light from them", {},
             fmt::format("{} of {} light paths arrive on receivers", survey.counts.stored,
                         survey.counts.emitted));
-        add("caustic: seen", Verdict::told,
+        add("caustic: seen", {},
             survey.seen > 0
                 ? fmt::format("{} of them where the camera looks straight at", survey.seen)
                 : "not straight: " + why_unseen(survey));
     }
 
-    /// A picture, while the progress of its step stays up to date.
-    Film picture_of(const Method& method, RunOptions options, std::uint64_t seed,
-                    StepProgress& progress, double share) const {
-        options.progress = [&](double) { progress.share(share); };
-        return picture(scene_, method, options, seed);
-    }
-
-    void check_threads(const MethodDescription& method, StepProgress& progress) {
-        const std::string& name = method.facts().name;
-        const Method configured = with_effort(method);
-        if (const auto reason = why_unsupported(scene_, configured)) {
-            add("threads: " + name, Verdict::told, "cannot serve the scene: " + *reason);
+    void check_threads(const MethodAsGiven& given, StepProgress& progress) {
+        const Method& method = given.method;
+        if (const auto reason = why_unsupported(scene_, method)) {
+            add("threads: " + method.name, {}, "cannot serve the scene: " + *reason);
             return;
         }
         RunOptions options = options_;
         options.threads = 1;
+        options.progress = [&](double) { progress.share(0); };
         const Stopwatch watch;
-        const Film alone = picture_of(configured, options, 1, progress, 0);
-        seconds_of_picture_[name] = watch.total().wall;
+        const Film alone = picture_of(scene_, method, options);
+        seconds_of_picture_[method.name] = watch.total().wall;
+        options.progress = [&](double) { progress.share(0.5); };
         bool same = true;
         for (options.threads = 2; options.threads <= std::max(2, options_.threads);
              options.threads = std::max(options.threads + 1, options_.threads)) {
             const Stopwatch again;
-            const Film other = picture_of(configured, options, 1, progress, 0.5);
-            if (options_.threads > 1) seconds_of_picture_[name] = again.total().wall;
+            const Film other = picture_of(scene_, method, options);
+            if (options_.threads > 1) seconds_of_picture_[method.name] = again.total().wall;
             same = same && same_bits(alone, other);
         }
-        add("threads: " + name, verdict(same),
+        add("threads: " + method.name, verdict(same),
             same ? "the same picture with one and more" : "pictures with one and more differ");
-        served_.push_back(&method);
+        if (is_compared(given)) served_.push_back(given);
     }
 
-    std::vector<Film> films_of(const MethodDescription& method, bool more,
-                               StepProgress& progress) const {
-        std::vector<Film> films;
-        for (std::uint64_t seed = 1; seed <= seeds; ++seed)
-            films.push_back(picture_of(with_effort(method, more), options_, seed, progress,
-                                       static_cast<double>(seed - 1) / seeds));
-        return films;
-    }
-
-    /// Seconds that the pictures of a method's first effort take, as far as one was timed.
-    std::optional<double> seconds_of(const MethodDescription& method) const {
-        const auto found = seconds_of_picture_.find(method.facts().name);
+    /// Seconds that the least number of pictures of a method take, as far as one was timed.
+    std::optional<double> seconds_of(const MethodAsGiven& method) const {
+        const auto found = seconds_of_picture_.find(method.method.name);
         if (found == seconds_of_picture_.end()) return {};
-        return seeds * found->second;
+        return least_seeds * found->second;
     }
 
-    /// What comparing these methods takes, at least: which will want more effort is not known.
-    Eta comparing(std::span<const MethodDescription* const> methods) const {
-        Eta eta(0);
-        for (const MethodDescription* method : methods) {
-            eta.seconds += seconds_of(*method).value_or(0);
-            eta.at_least = eta.at_least || !method->facts().more_effort.empty();
-        }
+    /// What comparing these methods takes, at least: which will want more seeds or work is not known.
+    Eta comparing(std::span<const MethodAsGiven> methods) const {
+        Eta eta(0, true);
+        for (const MethodAsGiven& method : methods) eta.seconds += seconds_of(method).value_or(0);
         return eta;
     }
 
     void compare(StepProgress& progress) {
         if (why_nothing_is_aimed(scene_)) return;
-        const MethodDescription* const reference = reference_for(scene_);
-        if (reference == nullptr) {
-            add("reference", Verdict::told, "no unbiased method can serve the scene");
+        if (!reference_) {
+            add("reference", {}, "no unbiased method can serve the scene");
             return;
         }
-        std::erase(served_, reference);
         progress.expect_later(comparing(served_));
-        progress.begin("reference", seconds_of(*reference));
-        const std::vector<Film> truth = films_of(*reference, false, progress);
+        progress.begin("reference", seconds_of(*reference_));
+        RunOptions options = options_;
+        options.seed += reference_seeds;
+        PictureSeries truth(scene_, reference_->method, options);
+        const auto light = [&] {
+            return cell_light(truth.films(),
+                              reached_pixels(truth.films().front(), truth.films().front()));
+        };
+        truth.fill({least_seeds, seconds_}, [&] { return excess_of_truth(light()); }, progress);
         progress.end("done");
-        const PixelMask counted = reached_pixels(truth.front(), truth.front());
-        add("reference", Verdict::told,
-            fmt::format("{}, {} seeds, {:.0f} % of the pixels reached", reference->facts().name,
-                        seeds, 100 * fraction(counted)));
+        const PixelMask counted = reached_pixels(truth.films().front(), truth.films().front());
+        add("reference", {},
+            fmt::format("{}, {} seeds, {:.0f} % of the pixels reached", reference_->method.name,
+                        truth.count(), 100 * fraction(counted)));
         for (std::size_t i = 0; i < served_.size(); ++i) {
             progress.expect_later(comparing(std::span(served_).subspan(i + 1)));
-            progress.begin(served_[i]->facts().name, seconds_of(*served_[i]));
-            compare(*served_[i], truth, progress);
-            progress.end("done");
+            compare(served_[i], truth, progress);
         }
     }
 
-    void compare(const MethodDescription& method, const std::vector<Film>& truth,
-                 StepProgress& progress) {
-        const MethodFacts& facts = method.facts();
-        const std::string what = "against the reference: " + facts.name;
-        const std::vector<Film> films = films_of(method, false, progress);
-        const PixelMask counted = reached_pixels(films.front(), truth.front());
-        const CellLight known = cell_light(truth, counted);
-        const BiasAllowed room = facts.is_unbiased ? BiasAllowed{} : allowed;
-        const CellGap first = gap(cell_light(films, counted), known, room);
-        if (first.holds || facts.more_effort.empty()) {
-            add(what, verdict(first.holds), first.text);
-            return;
+    /// A series with its gap to the reference, as large as the standard error asks.
+    struct Compared {
+        PictureSeries series;
+        CellGap gap = {};
+    };
+    Compared compared(const MethodAsGiven& given, const PictureSeries& truth, std::size_t least,
+                      StepProgress& progress) const {
+        Compared found{PictureSeries(scene_, given.method, options_)};
+        const auto measure = [&] {
+            const PixelMask counted =
+                reached_pixels(found.series.films().front(), truth.films().front());
+            found.gap =
+                gap(cell_light(found.series.films(), counted), cell_light(truth.films(), counted));
+            return found.gap.excess_of_found;
+        };
+        found.series.fill({least, seconds_}, measure, progress);
+        measure();
+        return found;
+    }
+
+    void compare(const MethodAsGiven& given, const PictureSeries& truth, StepProgress& progress) {
+        const std::string& name = given.method.name;
+        const std::string what = "against the reference: " + name;
+        progress.begin(name, seconds_of(given));
+        const Compared first = compared(given, truth, least_seeds, progress);
+        progress.end("done");
+        progress.begin(name + " with more work");
+        std::string text = first.gap.text();
+        Agreement agreement = Agreement::holds;
+        if (!first.gap.can_judge()) {
+            agreement = Agreement::unsure;
+            text += "; " + seeds_wanted(first.gap, first.series.count(),
+                                        excess_of_truth(cell_light(
+                                            truth.films(), reached_pixels(first.series.films()[0],
+                                                                          truth.films()[0]))),
+                                        truth.count());
+        } else if (!first.gap.is_within()) {
+            agreement = with_more_work(given, first, truth, progress, text);
         }
-        progress.begin(facts.name + " with more effort");
-        const std::vector<Film> better = films_of(method, true, progress);
-        const CellGap second = gap(cell_light(better, counted), known, room);
-        const bool shrinks = second.whole <= most_while_shrinking &&
-                             1.3 * second.whole <= first.whole &&
-                             second.cells_off <= first.cells_off;
-        add(what, verdict(second.holds || shrinks),
-            first.text + "; with more effort " + second.text);
+        progress.end(word(agreement));
+        add(what, agreement, text);
+    }
+
+    /// Tries a method that is off with 4 and 16 times the work, and adds to `text` how that changes the light.
+    Agreement with_more_work(const MethodAsGiven& given, const Compared& first,
+                             const PictureSeries& truth, StepProgress& progress,
+                             std::string& text) const {
+        if (given.method.facts().is_unbiased || first.gap.is_black) return Agreement::fails;
+        std::array<Difference, work_steps> whole = {first.gap.whole};
+        std::array<Difference, work_steps> cells = {first.gap.worst_cell};
+        for (std::size_t step = 1; step < work_steps; ++step) {
+            const int factor = step == 1 ? work_factor : work_factor * work_factor;
+            try {
+                const MethodAsGiven more = given.with_more_work(factor);
+                const Compared found = compared(more, truth, least_seeds_with_more_work, progress);
+                text += fmt::format("; with {} {}", more.work_text(), found.gap.text());
+                if (same_light(found.series.films(), first.series.films())) {
+                    text += ", the same picture";
+                    return Agreement::fails;
+                }
+                whole[step] = found.gap.whole;
+                cells[step] = found.gap.worst_cell;
+            } catch (const InputError& refused) {
+                text += fmt::format("; {}", refused.what());
+                return Agreement::fails;
+            }
+        }
+        return judged(whole, cells, text);
+    }
+
+    static Agreement judged(const std::array<Difference, work_steps>& whole,
+                            const std::array<Difference, work_steps>& cells, std::string& text) {
+        const Convergence of_whole = convergence(whole, whole_limit);
+        const Convergence of_cells = convergence(cells, cell_limit());
+        const auto is_small = [](const auto& differences, const Limit& limit) {
+            return std::ranges::all_of(
+                differences, [&](const Difference& d) { return std::abs(d.value) <= limit.share; });
+        };
+        text += fmt::format("; whole picture: {}; worst cell: order {:.2f}", of_whole.text(),
+                            of_cells.order);
+        const bool converges = (of_whole.shrinks || is_small(whole, whole_limit)) &&
+                               (of_cells.shrinks || is_small(cells, cell_limit()));
+        return converges ? Agreement::converges : Agreement::fails;
     }
 
     SceneDesc desc_;
     Scene scene_;
     RunOptions options_;
-    std::vector<const MethodDescription*> methods_;
-    std::vector<const MethodDescription*> served_;
+    double seconds_;
+    std::vector<MethodAsGiven> methods_;
+    std::optional<MethodAsGiven> reference_;
+    std::vector<MethodAsGiven>
+        served_;  ///< methods that are compared, once their threads are checked
     std::map<std::string, double> seconds_of_picture_;  ///< with all threads
     SceneReport report_;
 };
 
-const char* word(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::holds: return "holds";
-        case Verdict::fails: return "FAILS";
-        default: return "-";
-    }
-}
-
 }  // namespace
 
-bool SceneReport::holds() const {
-    return std::ranges::none_of(findings,
-                                [](const Finding& each) { return each.verdict == Verdict::fails; });
+bool SceneReport::holds(bool allow_converging) const {
+    return std::ranges::all_of(findings, [&](const Finding& each) {
+        return !each.verdict || *each.verdict == Agreement::holds ||
+               (allow_converging && *each.verdict == Agreement::converges);
+    });
 }
 
 std::string SceneReport::text() const {
     std::string text;
     for (const Finding& each : findings)
-        text += fmt::format("{:<5} {:<38} {}\n", word(each.verdict), each.what, each.detail);
-    return text + (holds() ? "verify: all holds\n" : "verify: something does not hold\n");
+        text += fmt::format("{:<9} {:<38} {}\n", each.verdict ? word(*each.verdict) : "-",
+                            each.what, each.detail);
+    if (holds()) return text + "verify: all holds\n";
+    text += "verify: not all holds:";
+    for (const Agreement agreement : {Agreement::converges, Agreement::fails, Agreement::unsure}) {
+        const auto count = std::ranges::count(findings, agreement, &Finding::verdict);
+        if (count > 0) text += fmt::format(" {} {}", count, word(agreement));
+    }
+    return text + "\n";
 }
 
-SceneReport verify_scene(SceneFile file, const std::vector<std::string>& methods,
-                         const RunOptions& options) {
-    return SceneVerifier(std::move(file.desc), methods, options).run();
+SceneReport verify_scene(SceneFile file, const VerifySettings& settings) {
+    return SceneVerifier(std::move(file.desc), settings).run();
 }
 
 }  // namespace caustics::experiments

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "core/base/error.h"
@@ -19,19 +20,20 @@ std::filesystem::path write(const Json& scene, const std::filesystem::path& fold
     return folder / "scene.json";
 }
 
-// What a caustic's light is that there is none of needs no methods.
-std::string disagreement(const std::filesystem::path& file, const std::string& method,
-                         std::uint64_t seed) {
+using experiments::Agreement;
+
+// Where no light is sent towards casters there is nothing to compare.
+Verdict verdict(const std::filesystem::path& file, const std::string& method, std::uint64_t seed) {
     const Scene scene(load_scene(file).desc);
-    if (why_nothing_is_aimed(scene)) return "";
-    return LightCheck(scene, seed).verdict(method).disagreement;
+    if (why_nothing_is_aimed(scene)) return {};
+    return LightCheck(scene, seed).verdict(method);
 }
 
 Json shrunk_scene(const Json& scene, const std::filesystem::path& folder, const std::string& method,
                   std::uint64_t seed) {
     return shrunk(scene, [&](const Json& candidate) {
         try {
-            return !disagreement(write(candidate, folder), method, seed).empty();
+            return verdict(write(candidate, folder), method, seed).agreement == Agreement::fails;
         } catch (const std::exception&) {
             return false;  // without a floor, or no valid scene
         }
@@ -55,12 +57,12 @@ void check_light(const SceneRange& range, std::uint64_t seed) {
         if (!is_its_turn(method, seed)) continue;
         const Verdict found = check.verdict(method);
         if (found.served)
-            range.note("{}\t{}\t{}\t{}\t{}\t{}\t{}", seed, method, found.efforts, found.light.value,
-                       found.light.variance, found.of_particles.value, found.of_particles.variance);
-        if (found.disagreement.empty()) continue;
-        ADD_FAILURE() << "seed " << seed << ", " << method << ": " << found.disagreement;
-        // Many scenes are tried first and those that fail once more.
-        if (range.count == 1)
+            range.note("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{:.2f}\t{}", seed, method,
+                       word(found.agreement), found.efforts, found.light, found.whole.value,
+                       found.whole.error, found.cpu_seconds, found.text);
+        if (found.agreement != Agreement::fails) continue;
+        ADD_FAILURE() << "seed " << seed << ", " << method << ": " << found.text;
+        if (std::getenv("CAUSTICS_CRUEL_SHRINK") != nullptr)
             ADD_FAILURE() << shrunk_scene(made, folder.path(), method, seed).dump();
     }
 }
@@ -77,8 +79,10 @@ TEST(CruelLight, IsTheSameByEveryMethod) {
 TEST(CruelLight, AScenesFileIsAsked) {
     const char* const file = std::getenv("CAUSTICS_CRUEL_SCENE");
     if (file == nullptr) GTEST_SKIP() << "give a scene as CAUSTICS_CRUEL_SCENE";
-    for (const std::string& method : checked_methods())
-        EXPECT_EQ(disagreement(file, method, 1), "") << method;
+    for (const std::string& method : checked_methods()) {
+        const Verdict found = verdict(file, method, 1);
+        EXPECT_NE(found.agreement, Agreement::fails) << method << ": " << found.text;
+    }
 }
 
 }  // namespace

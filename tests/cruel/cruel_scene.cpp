@@ -157,14 +157,26 @@ private:
         if (has_water_ || (parts_.measured() && !rooms_.empty())) return;
         has_water_ = true;
         const double height = dice_.number(0.3, 1.2);
-        const Json wave = {{"amplitude", dice_.number(0, 0.04)},
-                           {"wave_vector", {dice_.number(-8, 8), dice_.number(-8, 8)}}};
+        const Json wave = parts_.measured() && dice_.chance(0.5)
+                              ? folding_wave(height)
+                              : Json{{"amplitude", dice_.number(0, 0.04)},
+                                     {"wave_vector", {dice_.number(-8, 8), dice_.number(-8, 8)}}};
         Json water = {{"type", "heightfield"}, {"half_size", {1.6, 1.6}}};
         water["waves"] = Json::array({wave});
         water["bsdf"] = {{"type", "dielectric"}, {"int_ior", "water"}, {"ext_ior", "air"}};
         place("water", water, {move_to({0, 0, height})});
         // What else there is would cross the surface; below it there is always room for something small.
         if (parts_.measured()) rooms_.push_back({{0, 0, 100}, 100 - std::max(height - 0.3, 0.12)});
+    }
+
+    /// A wave of wave number k whose light folds before the floor: its curvature, amplitude * k^2, times depth *
+    /// (1 - 1 / n) is 1.2 to 4.
+    Json folding_wave(double depth) {
+        constexpr double bends = 1 - 1 / 1.333;
+        const double number = dice_.number(10, 25), angle = dice_.number(0, 3.14);
+        const double folds = dice_.number(1.2, 4);
+        return {{"amplitude", folds / (number * number * depth * bends)},
+                {"wave_vector", {number * std::cos(angle), number * std::sin(angle)}}};
     }
 
     /// Something in the middle of a glass: glass, a bubble, a mirror, or a lamp.
@@ -200,7 +212,7 @@ private:
             case 3:
             case 4:
             case 5:
-                if (parts_.measured() && (low || dice_.chance(0.7))) break;
+                if (parts_.measured() && (low || dice_.chance(0.3))) break;
                 return add_area(aimed);
             default: break;
         }

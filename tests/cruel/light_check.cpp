@@ -5,27 +5,30 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
+#include <utility>
 
 #include "core/base/error.h"
-#include "core/light_path/aimed_emission.h"
+#include "experiments/base/stopwatch.h"
 
 namespace caustics::cruel {
 
 namespace {
 
-constexpr int efforts = 3;
-constexpr double most_sigmas = 5;
-// Of every method, so that all count the same paths; many more make beams slow.
+using experiments::Agreement;
+using experiments::Difference;
+using experiments::Limit;
+
+// The same for every method, so that all count the same paths; many more make beams slow.
 constexpr int max_bounces = 4;
-// Of a biased method: of the floor's light in all, and of a square's light and the mean in squares.
-constexpr double off_in_all = 0.02;
-constexpr double off_in_squares = 0.1;
-// Of beams, of the light on casters: what coarse polygons send elsewhere, of grazing light round in a ball for example.
-constexpr double misled_by_polygons = 0.005;
-constexpr double rounding = 1e-5;
-// What is surer than this share of the floor's light needs no second effort; at points the share is larger.
-constexpr double sure = 0.05;
-constexpr double sure_at_points = 0.15;
+constexpr Limit limit_in_all;
+// Noise of the particles, and of points that a method is asked at: together below what can be judged.
+constexpr double particles_error = 0.002;
+constexpr double points_error = 0.003;
+constexpr std::uint64_t most_particles = 1'200'000;
+constexpr std::size_t most_points = 400'000;
+// Floats, and photons that are kept in few bits.
+constexpr double rounding = 2e-4;
 
 /// A fault that is asked for, to see that it is seen: the method's light, times so much.
 double planted(const std::string& method) {
@@ -36,9 +39,11 @@ double planted(const std::string& method) {
     return text.substr(0, at) == method ? std::stod(text.substr(at + 1)) : 1;
 }
 
-void scale(FloorLight::Cells& cells, double factor) {
-    for (auto& cell : cells)
-        for (Measured& m : cell) m = {m.value * factor, m.variance * factor * factor};
+void plant(Comparison& found, double factor) {
+    if (factor == 1) return;
+    for (std::size_t cell = 0; cell < found.light.cells.size(); ++cell)
+        for (std::size_t c = 0; c < 3; ++c)
+            found.difference.at(cell, c).value += (factor - 1) * found.light.at(cell, c).value;
 }
 
 experiments::Method method_of(const std::string& name, std::vector<std::string> parameters) {
@@ -46,128 +51,128 @@ experiments::Method method_of(const std::string& name, std::vector<std::string> 
     return experiments::parse_method(name, experiments::parameters_node(parameters));
 }
 
-/// What one method says of the floor.
-struct Answer {
-    FloorLight::Cells cells = {};
-    bool over_discs = false;
-    bool in_all_only = false;
-    bool finds_by_chance = false;  ///< may have missed what is small and bright
-    double off_in_all = 0;
-    double off_in_squares = 0;
-    // Of the light on casters; any square may have it all.
-    double share_lost = 0;
-    double share_misled = 0;
-
-    double allowed(std::size_t cell, double value, double mean) const {
-        if (cell == FloorLight::squares) return (off_in_all + rounding) * mean;
-        return off_in_squares * (mean + value) + rounding * mean;
-    }
-};
-
-/// A gap between two methods, in standard errors.
+/// What a method's light is like beside the particles', in shares of these.
 struct Gap {
-    double sigmas = 0;
+    Difference whole;         ///< in the brightest channel
+    Difference worst_square;  ///< of all squares and channels that can be judged
+    bool is_within = true;
+    bool can_judge = true;
     std::string text;
 };
 
-// Asked at points, what was met by chance a few times says nothing of its own error.
-bool is_unsure(const Measured& found) { return found.variance >= std::pow(0.2 * found.value, 2); }
-
-Gap widest_gap(const Answer& answer, const FloorLight& particles) {
-    const FloorLight::Cells& truth = answer.over_discs ? particles.in_discs : particles.in_squares;
-    Gap widest;
-    for (std::size_t cell = answer.in_all_only ? FloorLight::squares : 0; cell < truth.size();
-         ++cell)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const Measured &a = answer.cells[cell][c], &b = truth[cell][c];
-            if (answer.finds_by_chance && is_unsure(a)) continue;
-            const double mean = truth[FloorLight::squares][c].value;
-            const double on_casters =
-                particles.on_casters[c] * (cell == FloorLight::squares ? 1 : FloorLight::squares);
-            const double off =
-                std::max(a.value - b.value, b.value - a.value - answer.share_lost * on_casters);
-            const double gap =
-                off - answer.share_misled * on_casters - answer.allowed(cell, b.value, mean);
-            const double sigmas = gap > 0 ? gap / std::sqrt(a.variance + b.variance + 1e-60) : 0;
-            if (!(sigmas > widest.sigmas)) continue;
-            widest = {sigmas,
-                      fmt::format("{:.1f} sigma in {} {}, channel {}: {:.4g} +- {:.1g} against "
-                                  "{:.4g} +- {:.1g}",
-                                  sigmas, answer.over_discs ? "disc" : "square", cell, c, a.value,
-                                  std::sqrt(a.variance), b.value, std::sqrt(b.variance))};
-        }
-    return widest;
+Limit limit_of(std::size_t cell) {
+    return cell == FloorCells::all ? limit_in_all
+                                   : experiments::limit_of_part(limit_in_all, FloorCells::squares);
 }
 
-/// A scene's floor, asked with one effort.
+/// As a share of the cell's light or of the floor's mean, whichever is more.
+Difference difference(const Comparison& found, std::size_t cell, std::size_t channel) {
+    const double unit = std::max({found.truth.at(cell, channel).value,
+                                  found.truth.at(FloorCells::all, channel).value, found.faint});
+    const Measured& m = found.difference.at(cell, channel);
+    if (!(unit > 0)) return {m.value > 0 ? 1.0 : 0.0, 0};
+    return {m.value / unit, std::sqrt(m.variance) / unit};
+}
+
+Gap gap(const Comparison& found, bool in_all_only) {
+    Gap gap;
+    const std::size_t brightest = found.truth.brightest();
+    gap.whole = difference(found, FloorCells::all, brightest);
+    gap.can_judge = limit_in_all.can_judge(gap.whole);
+    double worst = 0;
+    for (std::size_t cell = in_all_only ? FloorCells::all : 0; cell <= FloorCells::all; ++cell)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Limit limit = limit_of(cell);
+            const Difference d = difference(found, cell, c);
+            // A square or a channel with too much noise says something only where it is clearly off.
+            const bool is_off =
+                limit.can_judge(d) ? std::abs(d.value) > limit.share : limit.is_exceeded(d);
+            const bool is_noticed =
+                cell == FloorCells::all && std::abs(d.value) > Limit::errors * d.error + rounding;
+            if (is_off) gap.can_judge = true;
+            gap.is_within = gap.is_within && !is_off && !is_noticed;
+            if (cell != FloorCells::all && limit.can_judge(d) &&
+                std::abs(d.value) > std::abs(gap.worst_square.value))
+                gap.worst_square = d;
+            const double off = std::abs(d.value) / limit.share;
+            if ((!is_off && !is_noticed) || off <= worst) continue;
+            worst = off;
+            gap.text = fmt::format("{} {}, channel {}: {:.4f} +- {:.4f} of {:.4g}",
+                                   cell == FloorCells::all ? "all" : "square", cell, c, 1 + d.value,
+                                   d.error, found.truth.at(cell, c).value);
+        }
+    if (!gap.text.empty() && found.share_lost > 1e-3)
+        gap.text += fmt::format(", it reports {:.1f} % of the light on casters as lost",
+                                100 * found.share_lost);
+    return gap;
+}
+
+/// A scene's floor, asked with one effort (0, 1, 2: 1, 4 and 16 times the work).
 class Inquiry {
 public:
-    Inquiry(const Scene& scene, std::uint64_t seed, int effort)
-        : scene_(scene),
-          floor_(scene, 100 * seed + static_cast<std::uint64_t>(effort)),
-          effort_(effort),
-          paths_(24'000ULL << (2 * effort)),
-          points_(10 << effort) {}
+    using Particles = std::function<const ParticleLight&()>;
 
-    FloorLight particles() const {
-        const AimedEmission emission(scene_);
-        return floor_.by_particles(support::aimed(emission), paths_, max_bounces);
-    }
+    Inquiry(const FloorAsked& floor, Particles particles, int effort)
+        : floor_(floor), particles_(std::move(particles)), effort_(effort) {}
 
-    Answer answer(const std::string& name) const {
-        if (name == "photonmap") return over_discs(name, "emitted");
-        if (name == "lighttrace") return over_discs(name, "paths");
+    Comparison answer(const std::string& name) const {
+        if (name == "photonmap") return over_discs(name, "emitted", Stage::photons);
+        if (name == "lighttrace") return over_discs(name, "paths", Stage::light_trace);
         if (name == "pathtrace")
-            return {.cells = floor_.at_points(method_of(name, {"spp=16"}), points_).in_squares,
-                    .finds_by_chance = true};
-        if (name == "illuminationmap") {
-            const auto map = method_of(name, {"resolution=30", fmt::format("emitted={}", paths_)});
-            return {.cells = floor_.at_points(map, points_).in_squares,
-                    .in_all_only = true,
-                    .off_in_all = off_in_all};
-        }
+            return floor_.at_points(method_of(name, {"spp=16"}), particles_(), points_error,
+                                    most_points);
+        if (name == "illuminationmap")
+            return floor_.over_texels(
+                method_of(name, {"resolution=30", fmt::format("emitted={}", paths())}), 30,
+                paths());
         return by_beams(name);
     }
 
 private:
-    Answer over_discs(const std::string& name, const std::string& paths) const {
-        constexpr int seeds = 16;
-        const auto method = method_of(name, {fmt::format("radius={}", floor_.disc_radius()),
-                                             fmt::format("{}={}", paths, paths_ / seeds)});
-        return {.cells = floor_.over_discs(method, seeds).in_discs, .over_discs = true};
+    std::uint64_t paths() const { return 8000ULL << (2 * effort_); }
+
+    Comparison over_discs(const std::string& name, const std::string& paths_key,
+                          Stage stage) const {
+        const auto method =
+            method_of(name, {fmt::format("radius={}", floor_.disc_radius()), "emission=random",
+                             fmt::format("{}={}", paths_key, paths())});
+        return floor_.over_discs(method, stage, paths());
     }
 
-    Answer by_beams(const std::string& name) const {
-        std::vector<std::string> parameters = {fmt::format("mesh_resolution={}", 5 << effort_),
-                                               fmt::format("light_samples={}", 2 << (2 * effort_)),
-                                               fmt::format("max_beams={}", 20'000 << (2 * effort_)),
-                                               fmt::format("prune={}", 0.02 / (1 << (2 * effort_))),
-                                               fmt::format("wavelengths={}", 2 << effort_)};
+    Comparison by_beams(const std::string& name) const {
+        std::vector<std::string> parameters = {
+            fmt::format("mesh_resolution={}", 24 << effort_),
+            fmt::format("light_samples={}", 16 << (2 * effort_)),
+            fmt::format("max_beams={}", 500'000 << (2 * effort_)),
+            fmt::format("prune={}", 1e-3 / (1 << (2 * effort_))),
+            fmt::format("wavelengths={}", 4 << effort_)};
         const bool in_squares = name == "beamtree squares";
-        if (in_squares)
-            parameters.push_back(fmt::format("footprint={}", 2 * floor_.disc_radius() / points_));
+        if (in_squares) parameters.push_back(fmt::format("footprint={}", floor_.square()));
         if (name == "beamtree area") parameters.emplace_back("intensity=area");
         if (name == "beamtree refined") parameters.emplace_back("intensity=refined");
         if (name == "causticpolygons") parameters.emplace_back("receiver_resolution=3");
         const auto method = method_of(name.substr(0, name.find(' ')), parameters);
-        FloorLight light = floor_.at_points(method, points_, !in_squares);
-        if (in_squares)  // they lie side by side all over the floor
-            for (auto& cell : light.in_squares)
-                for (Measured& m : cell) m.variance = 0;
-        return {.cells = light.in_squares,
-                .finds_by_chance = !in_squares,
-                .off_in_all = off_in_all,
-                .off_in_squares = off_in_squares,
-                .share_lost = 1.5 * light.share_lost,
-                .share_misled = misled_by_polygons};
+        return in_squares ? floor_.over_squares(method, particles_())
+                          : floor_.at_points(method, particles_(), points_error, most_points);
     }
 
-    const Scene& scene_;
-    FloorAsked floor_;
+    const FloorAsked& floor_;
+    Particles particles_;
     int effort_;
-    std::uint64_t paths_;
-    int points_;  ///< along a side of a square
 };
+
+/// Whether more work brings a method that is off within the limits, and as its order says.
+Agreement with_more_work(const std::vector<Gap>& gaps, std::string& text) {
+    std::array<Difference, experiments::work_steps> whole;
+    for (std::size_t i = 0; i < gaps.size(); ++i) whole[i] = gaps[i].whole;
+    const experiments::Convergence found = experiments::convergence(whole, limit_in_all);
+    text += "; " + found.text();
+    const auto is_small = [](const Gap& gap) {
+        return std::abs(gap.whole.value) <= limit_in_all.share;
+    };
+    const bool shrinks = found.shrinks || std::ranges::all_of(gaps, is_small);
+    return gaps.back().is_within && shrinks ? Agreement::converges : Agreement::fails;
+}
 
 }  // namespace
 
@@ -178,42 +183,42 @@ const std::vector<std::string>& checked_methods() {
     return names;
 }
 
-const FloorLight& LightCheck::particles(int effort) {
-    while (particles_.size() <= static_cast<std::size_t>(effort))
-        particles_.push_back(
-            Inquiry(scene_, seed_, static_cast<int>(particles_.size())).particles());
-    return particles_[static_cast<std::size_t>(effort)];
+LightCheck::LightCheck(const Scene& scene, std::uint64_t seed) : floor_(scene, seed, max_bounces) {}
+
+const ParticleLight& LightCheck::particles() {
+    if (!particles_) particles_ = floor_.by_particles(particles_error, most_particles);
+    return *particles_;
 }
 
 Verdict LightCheck::verdict(const std::string& method) {
     Verdict found;
-    std::string text;
-    for (int effort = 0; effort < efforts; ++effort) {
-        Answer answer;
-        try {
-            answer = Inquiry(scene_, seed_, effort).answer(method);
-        } catch (const UnsupportedScene&) {
-            return found;
+    const experiments::Stopwatch watch;
+    std::vector<Gap> gaps;
+    try {
+        for (int effort = 0; effort < static_cast<int>(experiments::work_steps); ++effort) {
+            Comparison answer =
+                Inquiry(
+                    floor_, [this]() -> const ParticleLight& { return particles(); }, effort)
+                    .answer(method);
+            plant(answer, planted(method));
+            if (effort == 0)
+                found.light = answer.truth.at(FloorCells::all, answer.truth.brightest()).value;
+            gaps.push_back(gap(answer, method == "illuminationmap"));
+            if (!gaps.back().text.empty())
+                found.text += (found.text.empty() ? "" : "; ") + gaps.back().text;
+            if (effort == 0 && (gaps[0].is_within || !gaps[0].can_judge)) break;
         }
-        scale(answer.cells, planted(method));
-        const FloorLight& truth = particles(effort);
-        const Gap gap = widest_gap(answer, truth);
-        const auto& all = (answer.over_discs ? truth.in_discs : truth.in_squares).back();
-        const auto brightest = std::ranges::max_element(all, {}, &Measured::value) - all.begin();
-        found.served = true;
-        found.efforts = effort + 1;
-        found.light = answer.cells.back()[static_cast<std::size_t>(brightest)];
-        found.of_particles = all[static_cast<std::size_t>(brightest)];
-        if (gap.sigmas >= most_sigmas) {
-            text += (text.empty() ? "" : "; ") + gap.text;
-            continue;
-        }
-        const double error = std::sqrt(found.light.variance + found.of_particles.variance);
-        const double enough =
-            (answer.over_discs ? sure : sure_at_points) * found.of_particles.value;
-        if (effort > 0 || error <= enough) return found;
+    } catch (const UnsupportedScene&) {
+        return found;
     }
-    found.disagreement = text;
+    found.served = true;
+    found.efforts = static_cast<int>(gaps.size());
+    found.whole = gaps.front().whole;
+    if (!gaps.front().can_judge)
+        found.agreement = Agreement::unsure;
+    else if (!gaps.front().is_within)
+        found.agreement = with_more_work(gaps, found.text);
+    found.cpu_seconds = watch.total().cpu;
     return found;
 }
 

@@ -96,7 +96,7 @@ Json Parts::ior(double low, double high) {
 
 Json Parts::glass_bsdf(const Json& outer) {
     Json bsdf = {{"type", "dielectric"}};
-    bsdf["int_ior"] = ior(1.2, 2);
+    bsdf["int_ior"] = ior(1.2, measured() ? 2.42 : 2);
     bsdf["ext_ior"] = outer.contains("int_ior") ? outer["int_ior"] : Json(1);
     if (dice_.chance(0.3)) bsdf["absorption"] = colour(0, 2);
     if (outer.contains("absorption")) bsdf["ext_absorption"] = outer["absorption"];

@@ -49,6 +49,8 @@ private:
     Json exact_or_mesh(Json shape, int least, int most);
     Json mesh_file(bool closed);
     Json lathe(bool closed);
+    Json cone(bool closed);
+    Json smooth_lathe(bool closed);
     Json cut();
     Json waves();
     Json ground();

@@ -100,6 +100,36 @@ Json Parts::lathe(bool closed) {
     return shape;
 }
 
+/// A straight profile that meets the axis aslant, at a crease or not.
+Json Parts::cone(bool closed) {
+    const double radius = dice_.number(0.3, 0.8), bottom = dice_.number(-0.4, 0.2);
+    const Json apex = {0.0, 0.6};
+    Json profile = {apex, {{"at", {radius, bottom}}, {"crease", true}}};
+    if (dice_.chance(0.5)) profile[0] = {{"at", apex}, {"crease", true}};
+    if (closed) profile.push_back({0.0, bottom});
+    Json shape = {{"type", "lathe"},
+                  {"profile", profile},
+                  {"interpolation", "linear"},
+                  {"resolution", dice_.whole(24, 64)},
+                  {"segments", dice_.whole(4, 16)}};
+    if (!closed) shape["open"] = true;
+    return shape;
+}
+
+/// A curved profile without creases, with interpolated normals.
+Json Parts::smooth_lathe(bool closed) {
+    const double bulge = dice_.number(0.3, 0.7);
+    const Json profile = {
+        {closed ? 0.0 : 0.2, -0.6}, {bulge, dice_.number(-0.3, 0.3)}, {closed ? 0.0 : 0.3, 0.6}};
+    Json shape = {{"type", "lathe"},
+                  {"profile", profile},
+                  {"interpolation", "catmullrom"},
+                  {"resolution", dice_.whole(24, 64)},
+                  {"segments", dice_.whole(8, 16)}};
+    if (!closed) shape["open"] = true;
+    return shape;
+}
+
 Json Parts::cut() {
     Json rings = Json::array();
     for (const double angle : {-40.0, 0.0, 35.0}) {
@@ -123,6 +153,7 @@ Json Parts::cut() {
 }
 
 Json Parts::solid() {
+    if (measured() && dice_.chance(0.2)) return dice_.chance(0.5) ? cone(true) : smooth_lathe(true);
     switch (dice_.whole(0, 7)) {
         case 0: return cut();
         case 1: return lathe(true);
@@ -176,6 +207,8 @@ Json Parts::ground() {
 }
 
 Json Parts::sheet() {
+    if (measured() && dice_.chance(0.2))
+        return dice_.chance(0.5) ? cone(false) : smooth_lathe(false);
     switch (dice_.whole(0, 7)) {
         case 0: return waves();
         case 1: return ground();

@@ -14,35 +14,31 @@ def say_bits(rows):
     print(f"{len(rows)} scenes, {sum(int(row[1]) for row in rows)} comparisons")
 
 
+WORDS = ("holds", "converges", "fails", "unsure")
+
+
 def say_method(name, rows):
-    """One line: scenes, the efforts they took, how sure the floor's light is, and how far a method is off; medians."""
-    errors, offs = [], []
-    for _, _, _, light, variance, particles, of_particles in rows:
-        light, particles = float(light), float(particles)
-        if light + particles <= 0:
-            continue
-        mean = (light + particles) / 2
-        errors.append((float(variance) + float(of_particles)) ** 0.5 / mean)
-        offs.append((light - particles) / mean)
-    efforts = [sum(row[2] == str(effort) for row in rows) for effort in (1, 2, 3)]
-    line = f"{name:18}{len(rows):7}{len(errors):7}" + "".join(f"{n:7}" for n in efforts)
-    if offs:
-        offs.sort()
-        # So many places in order are one standard error of a median.
-        places, middle = len(offs) ** 0.5 / 2, (len(offs) - 1) / 2
-        low, high = offs[max(0, round(middle - places))], offs[min(len(offs) - 1, round(middle + places))]
-        line += f"{statistics.median(errors):10.2%}{statistics.median(offs):+10.3%} +- {(high - low) / 2:.3%}"
-    print(line)
+    """One line: scenes, those with light, the four answers among these, median error, CPU seconds a scene."""
+    lit = [row for row in rows if float(row[4]) > 0]
+    counts = "".join(f"{sum(row[2] == word for row in lit):10}" for word in WORDS)
+    error = statistics.median(float(row[6]) for row in lit) if lit else 0
+    seconds = sum(float(row[7]) for row in rows) / len(rows)
+    print(f"{name:18}{len(rows):7}{len(lit):7}{counts}{error:9.2%}{seconds:9.2f}")
 
 
 def say_light(rows):
     by_method = defaultdict(list)
     for row in rows:
         by_method[row[1]].append(row)
-    print(f"{len({row[0] for row in rows})} scenes")
-    print("method             scenes    lit   efforts: 1, 2, 3      error       off")
+    scenes = {row[0] for row in rows}
+    seconds = sum(float(row[7]) for row in rows)
+    print(f"{len(scenes)} scenes, {seconds / max(1, len(scenes)):.1f} CPU s each")
+    print("method             scenes    lit" + "".join(f"{word:>10}" for word in WORDS) + "    error  CPU s")
     for name, of_method in by_method.items():
         say_method(name, of_method)
+    for row in rows:
+        if row[2] in ("fails", "converges"):
+            print(f"seed {row[0]}, {row[1]} {row[2]}: {row[8]}")
 
 
 def main():
