@@ -31,7 +31,7 @@ constexpr int most_width = 48;
 constexpr std::size_t least_seeds = 12;
 constexpr std::size_t least_seeds_with_more_work = 6;
 /// Seeds of the reference begin here, so that it shares no random numbers with a method.
-constexpr std::uint64_t reference_seeds = 1ULL << 32;
+constexpr std::uint64_t first_reference_seed = 1ULL << 32;
 
 Agreement verdict(bool holds) { return holds ? Agreement::holds : Agreement::fails; }
 
@@ -241,7 +241,7 @@ private:
         progress.expect_later(comparing(served_));
         progress.begin("reference", seconds_of(*reference_));
         RunOptions options = options_;
-        options.seed += reference_seeds;
+        options.seed += first_reference_seed;
         PictureSeries truth(scene_, reference_->method, options);
         const auto light = [&] {
             return cell_light(truth.films(),

@@ -369,11 +369,46 @@ TEST(Verify, TheGalleryHolds) {
 
 TEST(Verify, ASceneHoldsAndSaysWhatWasChecked) {
     const ProgramResult result =
-        causticbench({"verify", scene_of_ball, "--method", "photonmap", "--set",
+        causticbench({"verify", scene_of_ball, "--method", "beamtree", "--set",
                       "/sensor/film/width=24", "--set", "/sensor/film/height=16"});
     EXPECT_EQ(result.exit_code, 0) << result.out;
-    for (const std::string what : {"holds light: ", "caustic: casters", "holds threads: photonmap",
-                                   "holds against the reference: photonmap", "verify: all holds"})
+    for (const std::string what :
+         {"holds     light: ", "caustic: casters", "holds     threads: beamtree",
+          "holds     against the reference: beamtree", "verify: all holds"})
+        EXPECT_NE(result.out.find(what), std::string::npos) << what << "\n" << result.out;
+}
+
+// By eq. 4 as printed five photons bring 5 / 4 of the light, however many there are in all.
+TEST(Verify, AMethodWithTheWrongSumFails) {
+    const ProgramResult result = causticbench(
+        {"verify", scene_of_ball, "--method", "photonmap", "--param", "estimator=raw", "--param",
+         "nearest=5", "--param", "photons=20000", "--allow-converging"});
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    for (const std::string what :
+         {"fails     against the reference: photonmap", "with photons=80000", "with photons=320000",
+          "whole picture: order", "verify: not all holds: 1 fails"})
+        EXPECT_NE(result.out.find(what), std::string::npos) << what << "\n" << result.out;
+}
+
+TEST(Verify, WhatConvergesIsAllowedWhereThatIsAskedFor) {
+    const std::vector<std::string> coarse = {"verify",  scene_of_ball, "--method",
+                                             "beamtree", "--param",     "mesh_resolution=6"};
+    const ProgramResult result = causticbench(coarse);
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    EXPECT_NE(result.out.find("converges against the reference: beamtree"), std::string::npos)
+        << result.out;
+    auto allowing = coarse;
+    allowing.emplace_back("--allow-converging");
+    EXPECT_EQ(causticbench(allowing).exit_code, 0);
+}
+
+TEST(Verify, IsUnsureWhereTheErrorIsTooLargeWhenTheTimeIsOver) {
+    const ProgramResult result =
+        causticbench({"verify", scene_of_ball, "--method", "photonmap", "--param", "photons=300",
+                      "--seconds", "0", "--allow-converging"});
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    for (const std::string what : {"unsure    against the reference: photonmap",
+                                   "the standard error is above 0.4 %", "seeds of the method"})
         EXPECT_NE(result.out.find(what), std::string::npos) << what << "\n" << result.out;
 }
 

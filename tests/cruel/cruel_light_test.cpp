@@ -42,6 +42,9 @@ Json shrunk_scene(const Json& scene, const std::filesystem::path& folder, const 
 
 // Slow ones, in few scenes.
 bool is_its_turn(const std::string& method, std::uint64_t seed) {
+    // With a planted fault the other methods say nothing new.
+    if (const char* const fault = std::getenv("CAUSTICS_CRUEL_FAULT"))
+        return std::string(fault).starts_with(method + "=");
     if (method == "causticpolygons") return seed % 16 == 0;
     if (method == "beamtree squares") return seed % 2 == 0;
     return true;

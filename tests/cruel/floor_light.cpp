@@ -246,7 +246,9 @@ Comparison FloorAsked::at_points(const experiments::Method& method, const Partic
         const PointSet set = points_for(particles, count, seed_ + 2 + asked_for);
         found.light = asked(*built, set);
         asked_for = set.points.size();
-        if (found.light.relative_error() <= wanted || 4 * asked_for > most) break;
+        const double error = found.light.relative_error();
+        const bool is_dark = error >= 1 && particles.light.relative_error() >= 1;
+        if (error <= wanted || 4 * asked_for > most || is_dark) break;
     }
     found.difference = minus(found.light, found.truth);
     found.share_lost = share_lost(*built);

@@ -142,8 +142,8 @@ private:
     Comparison by_beams(const std::string& name) const {
         std::vector<std::string> parameters = {
             fmt::format("mesh_resolution={}", 24 << effort_),
-            fmt::format("light_samples={}", 16 << (2 * effort_)),
-            fmt::format("max_beams={}", 500'000 << (2 * effort_)),
+            fmt::format("light_samples={}", 16 << effort_),
+            fmt::format("max_beams={}", 500'000 << effort_),
             fmt::format("prune={}", 1e-3 / (1 << (2 * effort_))),
             fmt::format("wavelengths={}", 4 << effort_)};
         const bool in_squares = name == "beamtree squares";

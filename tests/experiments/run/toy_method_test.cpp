@@ -127,9 +127,9 @@ TEST(ToyMethod, IsPlannedInSweeps) {
 TEST(ToyMethod, IsVerifiedOnAScene) {
     const Printed verified = run_program({"verify", scene, "--method", "toy", "--threads", "2"});
     EXPECT_EQ(verified.exit_code, 0) << verified.text;
-    EXPECT_TRUE(holds(verified.text, "holds threads: toy")) << verified.text;
+    EXPECT_TRUE(holds(verified.text, "holds     threads: toy")) << verified.text;
     EXPECT_TRUE(holds(verified.text, "reference                              truth, "));
-    EXPECT_TRUE(holds(verified.text, "holds against the reference: toy")) << verified.text;
+    EXPECT_TRUE(holds(verified.text, "holds     against the reference: toy")) << verified.text;
 }
 
 TEST(ToyMethod, IsTold) {
