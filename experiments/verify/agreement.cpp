@@ -59,6 +59,10 @@ bool Limit::is_exceeded(const Difference& d) const {
     return std::abs(d.value) > share + errors * d.error;
 }
 
+bool Limit::is_known(const Difference& d) const {
+    return can_judge(d) || std::abs(d.value) >= errors * d.error;
+}
+
 Limit limit_of_part(Limit whole, std::size_t parts) {
     return {whole.share * std::sqrt(static_cast<double>(parts))};
 }

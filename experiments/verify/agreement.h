@@ -30,6 +30,8 @@ struct Limit {
     bool can_judge(const Difference& d) const { return d.error <= largest_error(); }
     /// The difference is beyond the limit by more than its error explains.
     bool is_exceeded(const Difference& d) const;
+    /// The difference is known well enough to see how it changes: it can be judged, or is five standard errors large.
+    bool is_known(const Difference& d) const;
 };
 
 /// The limit of a part of a picture that is divided into `parts`. With the same samples the standard error of one

@@ -331,6 +331,11 @@ private:
 
     static Agreement judged(const std::array<Difference, work_steps>& whole,
                             const std::array<Difference, work_steps>& cells, std::string& text) {
+        if (!std::ranges::all_of(whole,
+                                 [](const Difference& d) { return whole_limit.is_known(d); })) {
+            text += "; the standard errors are too large to tell how the difference changes";
+            return Agreement::unsure;
+        }
         const Convergence of_whole = convergence(whole, whole_limit);
         const Convergence of_cells = convergence(cells, cell_limit());
         const auto is_small = [](const auto& differences, const Limit& limit) {

@@ -256,7 +256,9 @@ private:
         if (!parts_.measured() && dice_.chance(0.3)) shape = parts_.solid();
         shape["emitter"] = {{"type", "area"}, {"radiance", strength(5)}};
         if (!parts_.measured() && dice_.chance(0.3)) shape["bsdf"] = parts_.receiver_bsdf();
-        place("light", shape, {scale_by(dice_.number(0.02, parts_.measured() ? 0.6 : 0.2)), aimed});
+        place("light", shape,
+              {scale_by(parts_.measured() ? dice_.number(0.2, 0.6) : dice_.number(0.02, 0.2)),
+               aimed});
     }
 
     Parts parts_;

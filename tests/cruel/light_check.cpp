@@ -25,7 +25,7 @@ constexpr Limit limit_in_all;
 // Noise of the particles, and of points that a method is asked at: together below what can be judged.
 constexpr double particles_error = 0.002;
 constexpr double points_error = 0.003;
-constexpr std::uint64_t most_particles = 1'200'000;
+constexpr std::uint64_t most_particles = 4'500'000;
 constexpr std::size_t most_points = 400'000;
 // Floats, and photons that are kept in few bits.
 constexpr double rounding = 2e-4;
@@ -119,7 +119,7 @@ public:
         if (name == "photonmap") return over_discs(name, "emitted", Stage::photons);
         if (name == "lighttrace") return over_discs(name, "paths", Stage::light_trace);
         if (name == "pathtrace")
-            return floor_.at_points(method_of(name, {"spp=16"}), particles_(), points_error,
+            return floor_.at_points(method_of(name, {"spp=64"}), particles_(), points_error,
                                     most_points);
         if (name == "illuminationmap")
             return floor_.over_texels(
@@ -140,12 +140,11 @@ private:
     }
 
     Comparison by_beams(const std::string& name) const {
-        std::vector<std::string> parameters = {
-            fmt::format("mesh_resolution={}", 24 << effort_),
-            fmt::format("light_samples={}", 16 << effort_),
-            fmt::format("max_beams={}", 500'000 << effort_),
-            fmt::format("prune={}", 1e-3 / (1 << (2 * effort_))),
-            fmt::format("wavelengths={}", 4 << effort_)};
+        std::vector<std::string> parameters = {fmt::format("mesh_resolution={}", 16 << effort_),
+                                               fmt::format("light_samples={}", 8 << effort_),
+                                               fmt::format("max_beams={}", 200'000 << effort_),
+                                               fmt::format("prune={}", 2e-3 / (1 << (2 * effort_))),
+                                               fmt::format("wavelengths={}", 4 << effort_)};
         const bool in_squares = name == "beamtree squares";
         if (in_squares) parameters.push_back(fmt::format("footprint={}", floor_.square()));
         if (name == "beamtree area") parameters.emplace_back("intensity=area");

@@ -52,6 +52,8 @@ TEST(Agreement, LimitsFollowFromTwoPerCentAndFiveErrors) {
     EXPECT_TRUE(Limit{}.can_judge({0, 0.004}));
     EXPECT_FALSE(Limit{}.can_judge({0, 0.0041}));
     EXPECT_NEAR(cell_limit().share, 0.098, 1e-4);
+    EXPECT_TRUE(Limit{}.is_known({0.1, 0.02}));
+    EXPECT_FALSE(Limit{}.is_known({0.7, 0.2})) << "nobody knows how it changes";
 }
 
 /// A method's light: the same in all cells but for a factor in some, over the mean and a relative error.
