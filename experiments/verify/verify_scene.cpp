@@ -288,15 +288,16 @@ private:
         progress.begin(name + " with more work");
         std::string text = first.gap.text();
         Agreement agreement = Agreement::holds;
-        if (!first.gap.can_judge()) {
+        if (!first.gap.can_judge())
             agreement = Agreement::unsure;
-            text += "; " + seeds_wanted(first.gap, first.series.count(),
-                                        excess_of_truth(cell_light(
-                                            truth.films(), reached_pixels(first.series.films()[0],
-                                                                          truth.films()[0]))),
-                                        truth.count());
-        } else if (!first.gap.is_within()) {
+        else if (!first.gap.is_within())
             agreement = with_more_work(given, first, truth, progress, text);
+        if (agreement == Agreement::unsure) {
+            const PixelMask counted =
+                reached_pixels(first.series.films().front(), truth.films().front());
+            text += "; " + seeds_wanted(first.gap, first.series.count(),
+                                        excess_of_truth(cell_light(truth.films(), counted)),
+                                        truth.count());
         }
         progress.end(word(agreement));
         add(what, agreement, text);

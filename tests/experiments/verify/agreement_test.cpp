@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "experiments/verify/cell_light.h"
 #include "experiments/verify/more_work.h"
+#include "experiments/verify/verify_scene.h"
 
 namespace caustics::experiments {
 namespace {
@@ -98,6 +99,17 @@ TEST(Agreement, AsksForTheErrorThatIsMissing) {
     EXPECT_NEAR(excess_of_truth(light(1, 0.004)), 2, 1e-9);
     EXPECT_EQ(excess_of_truth(light(1, 0.001)), 1);
     EXPECT_NEAR(gap(light(1, 0.008), light(1, 0)).excess_of_found, 2, 1e-9);
+}
+
+TEST(Agreement, WhatConvergesIsAllowedWhereThatIsAskedFor) {
+    SceneReport report{{{"a method", Agreement::converges, ""}, {"a fact", {}, ""}}};
+    EXPECT_FALSE(report.holds());
+    EXPECT_TRUE(report.holds(true));
+    EXPECT_NE(report.text().find("verify: not all holds: 1 converges"), std::string::npos);
+    for (const Agreement other : {Agreement::fails, Agreement::unsure}) {
+        report.findings.front().verdict = other;
+        EXPECT_FALSE(report.holds(true));
+    }
 }
 
 TEST(MoreWork, RaisesWhatTheMethodsTimeGrowsWith) {
