@@ -16,7 +16,7 @@ std::vector<Parameter<P>> tree_parameters() {
             {.key = "preset",
              .meaning =
                  "Takes the paper's settings in place of the defaults: hybrid, cones, quadtree, "
-                 "receiver, area.",
+                 "receiver, area, 16 events.",
              .source = "[CC95]"}),
         parameter::choice<P>(&P::bound,
                              {{"single", Bound::single},

@@ -52,6 +52,7 @@ struct BeamTreeParams : BeamParams {
         params.hierarchy = Tree::quadtree;
         params.leaf = Leaf::receiver;
         params.intensity = Intensity::area;
+        params.max_bounces = preset_bounces;
         return params;
     }
 };

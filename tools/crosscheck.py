@@ -85,7 +85,7 @@ class Run:
 
     def exported(self, scene, target, *more):
         folder = self.work / target / scene
-        self.program("export", SCENES / f"{scene}.json", "--to", target, "-o", folder, *more)
+        self.program("export", SCENES / f"{scene}.json", "--to", target, "--max-bounces", "16", "-o", folder, *more)
         return folder
 
     def theirs(self, scene, integrator, seed):

@@ -226,7 +226,8 @@ def paths(count):
 def mitsuba_of(program, folder, mitsuba, room, size, mask):
     """The same of Mitsuba's `path`: what its direct light alone has is taken off both."""
     import numpy
-    program.run("export", SCENE, *film(size), *room, "--to", "mitsuba", "-o", pathlib.Path(folder) / "mitsuba", stderr=subprocess.DEVNULL)
+    program.run("export", SCENE, *film(size), *room, "--to", "mitsuba", "--max-bounces", "16", "-o",
+                pathlib.Path(folder) / "mitsuba", stderr=subprocess.DEVNULL)
     of_depth = {}
     for depth in (2, DEPTH):
         loaded = mitsuba.load_file(str(pathlib.Path(folder) / "mitsuba" / "scene.xml"), integrator="path", max_depth=str(depth))

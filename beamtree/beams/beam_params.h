@@ -4,6 +4,7 @@
 
 #include "beamtree/beams/caster_mesh.h"
 #include "beamtree/beams/light_sample.h"
+#include "core/light_path/bounce_limit.h"
 
 namespace caustics::beamtree {
 
@@ -12,7 +13,7 @@ struct BeamParams {
     PolygonKind polygons = PolygonKind::triangle;
     int light_samples = 16;    ///< for each area light
     int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
-    int max_bounces = 16;      ///< specular events between light and receiver
+    int max_bounces = most_bounces;  ///< specular events between light and receiver
     double prune = 1e-3;       ///< least light of a beam to be followed, of the first events' mean
     std::int64_t max_beams = 1'000'000;  ///< of several events
     int wavelengths = 16;  ///< that white light is divided into where glass disperses it

@@ -112,7 +112,7 @@ void fly(const Scene& scene, Flight flight, int max_bounces, Rng& rng, const Wav
             photons.push_back(
                 {deposit->position, deposit->geometric_normal, deposit->wi, deposit->flux, bin});
         }
-        if (!is_caster(bsdf) || flight.bounces == max_bounces) return;
+        if (!is_caster(bsdf) || flight.bounces == max_bounces || !survives(flight, rng)) return;
         const SpecularSplit split = split_at(scene, *hit, flight, rng);
         const Fate fate = roulette(split, rng, flight.flux);
         if (fate != Fate::reflected && fate != Fate::refracted) return;
@@ -160,6 +160,7 @@ void RestPhotons::trace(const Level& level, const LeftOut& part,
         Flight flight{{}, point.origin.weight * static_cast<float>(measured * share)};
         flight.bounces = static_cast<int>(level.bounces()) + 1;
         flight.wavelength.nm = set.light.bin.nm;
+        flight.start_flux = flight.flux.sum();
         if (leave_next(point, part.event, rng, flight))
             fly(scene_, flight, max_bounces_, rng, set.light.bin, photons);
     }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
+#include "core/light_path/bounce_limit.h"
 #include "core/method/described_method.h"
 
 namespace caustics {
@@ -19,7 +20,7 @@ namespace caustics {
 struct IlluminationMapParams {
     std::uint64_t emitted = 1'000'000;  ///< light paths, thinned ones included
     int resolution = 256;               ///< texels along each texture coordinate
-    int max_bounces = 16;               ///< specular events between light and receiver
+    int max_bounces = most_bounces;  ///< specular events between light and receiver
     /// Receivers are only looked at, to tell whether they can be served: no parameter.
     bool only_checked = false;
 };

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/light_path/bounce_limit.h"
 #include "core/light_path/deposit.h"
 #include "core/material/optics.h"
 #include "core/scene/scene.h"
@@ -15,7 +16,20 @@ struct Flight {
     const Spectrum* start_medium = nullptr;  ///< absorption where the ray starts, if in a medium
     int bounces = 0;
     PathWavelength wavelength = {};
+    float start_flux = 0;  ///< sum of the channels of the flux that the particle set out with
 };
+
+/// Roulette by weight for long paths: a flight that has little of its flux left goes on only sometimes, and then
+/// with more. False where it ends.
+inline bool survives(Flight& flight, Rng& rng) {
+    if (flight.bounces < preset_bounces) return true;
+    const float least = lightest_long_path * flight.start_flux;
+    const float left = flight.flux.sum();
+    if (left >= least) return true;
+    if (rng.next() * least >= left) return false;
+    flight.flux *= least / left;
+    return true;
+}
 
 /// What a flight leaves where it has come to; nothing on a black side.
 inline std::optional<Deposit> deposit_of(const Scene& scene, const SurfacePoint& hit,

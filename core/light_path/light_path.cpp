@@ -62,6 +62,13 @@ LightPathCounts light_path_counts(const Counters& counters) {
 
 namespace {
 
+Flight start_of(const LightParticle& particle) {
+    return {.ray = particle.ray,
+            .flux = particle.flux,
+            .start_medium = particle.medium,
+            .start_flux = particle.flux.sum()};
+}
+
 // What a flight finds at the end of a segment.
 struct Stop {
     std::optional<Deposit> deposit;
@@ -108,6 +115,10 @@ void record(const LightPathSettings& settings, const Ray& ray) {
 // The event at a caster; false when it ends the flight, whose end a deposit there has counted already.
 bool goes_on_from(const Scene& scene, const SurfacePoint& hit, bool has_deposit, Flight& flight,
                   Rng& rng, LightPathCounts& counts) {
+    if (!survives(flight, rng)) {
+        if (!has_deposit) ++counts.absorbed;
+        return false;
+    }
     const SpecularSplit split = split_at(scene, hit, flight, rng);
     const Fate fate = roulette(split, rng, flight.flux);
     if (fate == Fate::absorbed || fate == Fate::misdirected) {
@@ -126,7 +137,7 @@ bool goes_on_from(const Scene& scene, const SurfacePoint& hit, bool has_deposit,
 void trace_light_path(const Scene& scene, const LightParticle& particle,
                       const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
                       std::vector<Deposit>& deposits) {
-    Flight flight{particle.ray, particle.flux, particle.medium};
+    Flight flight = start_of(particle);
     for (;;) {
         record(settings, flight.ray);
         const std::optional<SurfacePoint> hit = scene.intersect(flight.ray);
@@ -177,8 +188,7 @@ void trace_light_paths(const Scene& scene, std::span<LightPathStart> starts,
     std::vector<OneOfMany> flights;
     flights.reserve(starts.size());
     for (std::size_t i = 0; i < starts.size(); ++i) {
-        const LightParticle& particle = starts[i].particle;
-        flights.push_back({{particle.ray, particle.flux, particle.medium}, i});
+        flights.push_back({start_of(starts[i].particle), i});
         // Neighbours in the order of paths, which are neighbours in the light, have wavelengths far apart.
         if (settings.wavelength_shift)
             flights.back().wavelength.choice =
@@ -212,37 +222,44 @@ public:
           counts_(counts),
           deposits_(deposits) {}
 
-    // Follows a flight along its refractions; calls itself for the reflections, so no deeper than
-    // max_bounces.
-    void follow(Flight flight) {
-        for (;;) {
-            record(settings_, flight.ray);
-            const std::optional<SurfacePoint> hit = scene_.intersect(flight.ray);
-            const Stop stop = stop_at(scene_, settings_, hit, flight, counts_);
-            const bool has_deposit = stop.deposit.has_value();
-            if (has_deposit) deposits_.push_back(*stop.deposit);
-            if (!stop.at_caster) return;
-            const SpecularSplit split = split_at(scene_, *hit, flight, rng_);
-            Flight reflected = flight;
-            const bool reflects = goes_on(split.reflected_weight, reflected);
-            const bool refracts = goes_on(split.refracted_weight, flight);
-            if (reflects) {
-                ++counts_.reflected;
-                counts_.branched += refracts || has_deposit ? 1 : 0;
-                leave(scene_, *hit, split.reflected, reflected);
-                follow(reflected);
-            }
-            if (!refracts) {
-                if (!reflects && !has_deposit)
-                    ++(is_black(split.lost_weight) ? counts_.absorbed : counts_.misdirected);
-                return;
-            }
-            ++counts_.refracted;
-            leave(scene_, *hit, split.refracted, flight);
+    // Follows a flight; of two branches the reflected one with all that comes of it first.
+    void follow(const Flight& start) {
+        waiting_.push_back(start);
+        while (!waiting_.empty()) {
+            Flight flight = waiting_.back();
+            waiting_.pop_back();
+            while (moves_on(flight)) {}
         }
     }
 
 private:
+    // Along one segment and through the event at its end.
+    bool moves_on(Flight& flight) {
+        record(settings_, flight.ray);
+        const std::optional<SurfacePoint> hit = scene_.intersect(flight.ray);
+        const Stop stop = stop_at(scene_, settings_, hit, flight, counts_);
+        const bool has_deposit = stop.deposit.has_value();
+        if (has_deposit) deposits_.push_back(*stop.deposit);
+        if (!stop.at_caster) return false;
+        const SpecularSplit split = split_at(scene_, *hit, flight, rng_);
+        Flight refracted = flight;
+        const bool reflects = goes_on(split.reflected_weight, flight);
+        const bool refracts = goes_on(split.refracted_weight, refracted);
+        counts_.reflected += reflects ? 1 : 0;
+        counts_.refracted += refracts ? 1 : 0;
+        if (reflects) counts_.branched += refracts || has_deposit ? 1 : 0;
+        if (refracts) leave(scene_, *hit, split.refracted, refracted);
+        if (reflects) {
+            leave(scene_, *hit, split.reflected, flight);
+            if (refracts) waiting_.push_back(refracted);
+        } else if (refracts) {
+            flight = refracted;
+        } else if (!has_deposit) {
+            ++(is_black(split.lost_weight) ? counts_.absorbed : counts_.misdirected);
+        }
+        return reflects || refracts;
+    }
+
     // Weighs a branch; a light one goes on only sometimes, and then heavier.
     bool goes_on(const Spectrum& weight, Flight& flight) {
         flight.flux *= weight;
@@ -259,6 +276,7 @@ private:
     Rng& rng_;
     LightPathCounts& counts_;
     std::vector<Deposit>& deposits_;
+    std::vector<Flight> waiting_;
 };
 
 }  // namespace
@@ -267,7 +285,7 @@ void trace_split_path(const Scene& scene, const LightParticle& particle,
                       const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
                       std::vector<Deposit>& deposits) {
     SplitPath(scene, settings, particle.flux, rng, counts, deposits)
-        .follow({particle.ray, particle.flux, particle.medium});
+        .follow(start_of(particle));
 }
 
 }  // namespace caustics

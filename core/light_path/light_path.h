@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
+#include "core/light_path/bounce_limit.h"
 #include "core/light_path/deposit.h"
 #include "core/math/rng.h"
 #include "core/math/spectrum.h"
@@ -59,7 +60,7 @@ enum class Interaction {
 inline constexpr float lightest_branch = 1.0F / 64;
 
 struct LightPathSettings {
-    int max_bounces = 16;  ///< specular events between light and receiver
+    int max_bounces = most_bounces;  ///< specular events between light and receiver
     Interaction interaction = Interaction::roulette;
     std::vector<Ray>* traced = nullptr;  ///< gets every ray that is traced; for measuring
     /// Where given, paths that start side by side share the wavelengths out by their numbers, turned by

@@ -17,7 +17,10 @@ public:
           settings_(settings),
           rng_(rng),
           counts_(counts),
-          flight_{particle.ray, particle.flux, particle.medium} {}
+          flight_{.ray = particle.ray,
+                  .flux = particle.flux,
+                  .start_medium = particle.medium,
+                  .start_flux = particle.flux.sum()} {}
 
     void follow(std::vector<Deposit>& deposits) {
         for (;;) {
@@ -70,6 +73,10 @@ private:
 
     // The specular events; where there are none, what is left is the receiver's.
     bool is_reflected(const SurfacePoint& hit) {
+        if (!here_ && !survives(flight_, rng_)) {
+            ++counts_.absorbed;
+            return false;
+        }
         const SpecularSplit split = split_at(scene_, hit, flight_, rng_);
         const float specular =
             Spectrum((split.reflected_weight + split.refracted_weight) * flight_.flux).sum() /

@@ -5,7 +5,7 @@
 namespace caustics {
 
 struct WholePathSettings {
-    int max_bounces = 16;  ///< specular events between two receivers
+    int max_bounces = most_bounces;  ///< specular events between two receivers
     /// The receiver at which a path ends, counted from the light [C11]; 0: none.
     int diffuse_bounces = 0;
 };

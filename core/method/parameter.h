@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/key_text.h"
+#include "core/light_path/bounce_limit.h"
 #include "core/scene_file/json_reader.h"
 
 namespace caustics {
@@ -217,8 +218,9 @@ Parameter<Params> read_file(std::filesystem::path Params::* member,
 template <class Params>
 Parameter<Params> max_bounces() {
     return whole_number<Params>(
-        &Params::max_bounces, 1, 1'000,
-        {.key = "max_bounces", .meaning = "Most specular events between light and receiver."});
+        &Params::max_bounces, 1, most_bounces,
+        {.key = "max_bounces",
+         .meaning = "Most specular events between light and receiver. Few cut the light of gems."});
 }
 
 /// The receiver at which a light path of an indirect method ends.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/light_path/bounce_limit.h"
+
 namespace caustics {
 namespace {
 
@@ -20,6 +22,14 @@ void BackwardChain::arrive(const SurfacePoint& hit, const Bsdf& bsdf) {
     weight *= segment_transmittance(start_absorption,
                                     medium_absorption(bsdf, hit.geometric_normal, -ray.direction),
                                     hit.distance);
+}
+
+bool BackwardChain::survives(Rng& rng) {
+    const float left = weight.mean();
+    if (bounces < preset_bounces || left >= lightest_long_path) return true;
+    if (rng.next() * lightest_long_path >= left) return false;
+    weight *= lightest_long_path / left;
+    return true;
 }
 
 bool BackwardChain::turn(const SurfacePoint& hit, const Bsdf& bsdf, Rng& rng, float& chance) {
@@ -55,7 +65,7 @@ std::optional<WeightedPoint> receiver_ahead(const Scene& scene, BackwardChain& c
     for (; hit; hit = scene.intersect(chain.ray)) {
         const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
         chain.arrive(*hit, bsdf);
-        if (is_black(chain.weight)) return {};
+        if (is_black(chain.weight) || !chain.survives(rng)) return {};
         const Vec3 towards = -chain.ray.direction;
         float specular = 0;
         if (is_caster(bsdf) && chain.bounces < max_bounces) {

@@ -20,6 +20,9 @@ struct BackwardChain {
     int bounces = 0;
     float specular = 0;  ///< at the receiver that it ends at: the chance of another event there
 
+    /// Roulette by weight for long chains: one with little weight goes on only sometimes, and then with more. False
+    /// where it ends.
+    bool survives(Rng& rng);
     /// Beer's law up to a hit of the ray.
     void arrive(const SurfacePoint& hit, const Bsdf& bsdf);
     /// Turns at a caster to where it comes from; false where the chain ends by chance or on a wrong side.

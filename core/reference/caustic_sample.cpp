@@ -34,7 +34,7 @@ Spectrum chain_radiance(const Scene& scene, BackwardChain chain, int max_bounces
                 segment_transmittance(is_named ? nullptr : scene.area_light_medium(hit->shape),
                                       nullptr, unknown);
         float chance = 0;
-        if (!is_caster(bsdf) || chain.bounces == max_bounces ||
+        if (!is_caster(bsdf) || chain.bounces == max_bounces || !chain.survives(rng) ||
             !chain.turn(*hit, bsdf, rng, chance))
             return result;
     }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/indirect_estimator.h"
+#include "core/light_path/bounce_limit.h"
 #include "core/method/described_method.h"
 
 namespace caustics {
@@ -12,7 +13,7 @@ namespace caustics {
 /// UnsupportedScene where casters send light of points or directions to other walls, which no path meets.
 struct IndirectPathTraceParams {
     int spp = 16;             ///< as PathTraceParams::spp
-    int max_bounces = 16;     ///< specular events between two receivers
+    int max_bounces = most_bounces;  ///< specular events between two receivers
     int diffuse_bounces = 0;  ///< the last receiver, counted from the light [C11]; 0: none
 };
 const DescribedMethod<IndirectPathTraceParams, IndirectEstimator>& indirect_pathtrace_method();

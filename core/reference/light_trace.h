@@ -5,6 +5,7 @@
 
 #include "core/caustic_estimator.h"
 #include "core/indirect_estimator.h"
+#include "core/light_path/bounce_limit.h"
 #include "core/method/described_method.h"
 
 namespace caustics {
@@ -19,7 +20,7 @@ struct LightTraceParams {
         stratified  ///< most of the paths in four batches of jittered strata, whose scatter is the standard error
     };
     std::uint64_t paths = 1'000'000;  ///< emitted, thinned ones included
-    int max_bounces = 16;             ///< specular events between light and receiver
+    int max_bounces = most_bounces;  ///< specular events between light and receiver
     double radius = 0;                ///< [m] of the disc in `probe` for points without their own
     Emission emission = Emission::random;  ///< of caustics
 };

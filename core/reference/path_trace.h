@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/caustic_estimator.h"
+#include "core/light_path/bounce_limit.h"
 #include "core/method/described_method.h"
 
 namespace caustics {
@@ -13,7 +14,7 @@ namespace caustics {
 struct PathTraceParams {
     int spp = 16;  ///< paths a pixel, shared among the eye pass's samples (at least one each); in
                    ///< `probe`, paths a point
-    int max_bounces = 16;  ///< specular events between light and receiver
+    int max_bounces = most_bounces;  ///< specular events between light and receiver
 };
 const DescribedMethod<PathTraceParams>& pathtrace_method();
 std::unique_ptr<const CausticEstimator> build(const Scene&, const PathTraceParams&,

@@ -80,8 +80,8 @@ Verb add_export(CLI::App& app) {
                      "scene.ini, and the meshes and textures they name")
         ->required()
         ->type_name("DIR");
-    add_number(*verb, "--max-bounces", options->settings.max_bounces, 1, 1000,
-               "Specular events between light and receiver (default 16)");
+    add_number(*verb, "--max-bounces", options->settings.max_bounces, 1, most_bounces,
+               "Specular events between light and receiver (default 1000)");
     verb->add_flag("--indirect", options->settings.indirect,
                    "With the light between receivers, as `render --indirect` has it");
     add_number(*verb, "--mesh-resolution", options->settings.mesh_resolution, 1, 4096,

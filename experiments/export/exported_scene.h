@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/light_path/bounce_limit.h"
 #include "core/scene/scene.h"
 
 namespace caustics::experiments {
@@ -20,7 +21,7 @@ struct ExportedScene {
 struct ExportSettings {
     std::string scene_file = {};  ///< for messages
     int mesh_resolution = 256;    ///< of exact shapes that the renderer does not know
-    int max_bounces = 16;         ///< specular events between light and receiver
+    int max_bounces = most_bounces;  ///< specular events between light and receiver
     bool indirect = false;        ///< with the light between receivers: paths of any length
 };
 

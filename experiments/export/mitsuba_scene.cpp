@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/frame.h"
@@ -83,8 +84,11 @@ private:
                   {{"name", "spp"}, {"value", std::to_string(scene_.sampling.sample_count)}});
         xml_.open("integrator", {{"type", "$integrator"}});
         value("integer", "max_depth", "$max_depth");
-        // No roulette before it is needed: it would thin out long chains behind a dark receiver.
-        value("integer", "rr_depth", settings_.indirect ? longest : "$max_depth");
+        // Late roulette: an early one would thin out chains behind a dark receiver.
+        const int roulette = std::min(events, preset_bounces) + 2;
+        value("integer", "rr_depth",
+              settings_.indirect || events > preset_bounces ? std::to_string(roulette)
+                                                            : "$max_depth");
         xml_.close();
     }
 

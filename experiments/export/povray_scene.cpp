@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -123,12 +124,20 @@ private:
         }
     }
 
+    // The longest chain that POV-Ray follows.
+    int trace_level(int more) const { return std::min(settings_.max_bounces + more, 256); }
+    // POV-Ray follows all branches, of which there would be too many without a least weight.
+    const char* least_weight() const {
+        return settings_.max_bounces > preset_bounces ? "0.0001" : "0";
+    }
+
     void write_settings() {
         const bool casters = !world_.casters().empty();
         text_ += fmt::format(
             "global_settings {{\n  assumed_gamma 1.0\n  ambient_light rgb {}\n"
-            "  max_trace_level {}\n  adc_bailout 0\n",
-            is_black(scene_.ambient) ? "0" : vector_of(scene_.ambient), settings_.max_bounces + 2);
+            "  max_trace_level {}\n  adc_bailout {}\n",
+            is_black(scene_.ambient) ? "0" : vector_of(scene_.ambient), trace_level(2),
+            least_weight());
         if (casters)
             text_ += fmt::format(
                 "  #ifndef (Photon_Count) #declare Photon_Count = 200000; #end\n"
@@ -136,8 +145,8 @@ private:
                 "  photons {{\n    count Photon_Count\n"
                 "    #ifdef (Photon_Radius) radius Photon_Radius * Unit gather 0, 1000000\n"
                 "    #else gather 20, Photon_Gather #end\n"
-                "    autostop 1\n    max_trace_level {}\n    adc_bailout 0\n  }}\n",
-                settings_.max_bounces + 1);
+                "    autostop 1\n    max_trace_level {}\n    adc_bailout {}\n  }}\n",
+                trace_level(1), least_weight());
         if (settings_.indirect) write_radiosity();
         text_ += "}\n";
     }

@@ -12,8 +12,6 @@ namespace caustics::experiments {
 
 namespace {
 
-constexpr int usual_bounces = 16;  ///< of methods that have no limit of their own
-
 bool is_dark(const Film& film) {
     for (std::size_t i = 0; i < film.pixel_count(); ++i)
         if (!is_black(film.rgb("caustic", i))) return false;
@@ -30,7 +28,7 @@ std::optional<std::uint64_t> find(const Counters& counters, const std::string& n
 int max_bounces(const Method& method, const BuildReport& report) {
     const auto loaded = report.resolved.find("max_bounces");
     if (loaded != report.resolved.end()) return static_cast<int>(loaded->second);
-    return describe(method).value("max_bounces", usual_bounces);
+    return describe(method).value("max_bounces", most_bounces);
 }
 
 /// The radius beyond which no photon is found, where the method has one [m].

@@ -25,7 +25,6 @@ namespace caustics::experiments {
 
 namespace {
 
-constexpr int max_bounces = 16;
 constexpr int most_width = 48;
 /// Pictures of one setting: for a method as given, and with more work.
 constexpr std::size_t least_seeds = 12;
@@ -151,7 +150,7 @@ private:
     }
 
     void audit() {
-        for (const LightAccount& account : audit_lights(desc_, max_bounces)) {
+        for (const LightAccount& account : audit_lights(desc_, most_bounces)) {
             if (!account.nothing_aimed.empty()) {
                 add("light: " + account.light, {}, account.nothing_aimed);
                 continue;
@@ -177,7 +176,7 @@ private:
             add("caustic: light towards them", {}, "no caustic: " + *reason);
             return;
         }
-        const CausticSurvey survey = survey_caustic(scene_, max_bounces);
+        const CausticSurvey survey = survey_caustic(scene_, most_bounces);
         if (survey.counts.stored == 0) {
             add("caustic: light from them", {},
                 "no caustic: " + why_nothing_arrives(survey.counts));

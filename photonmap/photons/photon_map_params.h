@@ -61,7 +61,7 @@ struct PhotonMapParams {
     /// Shade by tables of f_r over the directions that stored photons can have [J96 sec. 5],
     /// one photon after another, instead of a register of photons at a time.
     bool tables = false;
-    int max_bounces = 16;  ///< specular events between light and receiver
+    int max_bounces = most_bounces;  ///< specular events between light and receiver
     /// File that the traced photons are written to; empty: none. See photon_map_file.h.
     std::filesystem::path save = {};
     /// File that the photons come from instead of being traced; empty: none. Then photons and
@@ -74,6 +74,7 @@ struct PhotonMapParams {
         PhotonMapParams params;
         params.tree = TreeKind::balanced;
         params.estimator = Estimator::raw;
+        params.max_bounces = preset_bounces;
         return params;
     }
 };

@@ -137,7 +137,7 @@ TEST_F(Compare, SaysWhereTheLightDiffers) {
     const ProgramResult text = causticbench({"compare", picture, other});
     EXPECT_EQ(text.exit_code, 0);
     EXPECT_EQ(text.err,
-              "note: the two pictures ask for different light: max_bounces: 16 against 1, "
+              "note: the two pictures ask for different light: max_bounces: 1000 against 1, "
               "/floor/bsdf/reflectance: 0.5 against 0.25\n");
     EXPECT_NE(text.out.find("  rmse "), std::string::npos) << text.out;
     const nlohmann::json json =

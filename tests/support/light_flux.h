@@ -33,10 +33,10 @@ struct ArrivedFlux {
 /// they bring to each cell; `cell_of` answers -1 for deposits that do not count.
 ArrivedFlux arrived_flux(const Scene& scene, const Emit& emit, std::uint64_t paths,
                          std::size_t cells, const std::function<int(const Deposit&)>& cell_of,
-                         std::uint64_t seed, int max_bounces = 16);
+                         std::uint64_t seed, int max_bounces = most_bounces);
 
 /// The flux that arrives on each shape.
 ArrivedFlux flux_by_shape(const Scene& scene, const Emit& emit, std::uint64_t paths,
-                          std::uint64_t seed, int max_bounces = 16);
+                          std::uint64_t seed, int max_bounces = most_bounces);
 
 }  // namespace caustics::support

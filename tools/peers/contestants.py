@@ -70,7 +70,7 @@ class Contestants:
         folder = self.work / f"{target}_{scene.name}_{own.get('mesh', 0)}{own.get('normals', '')}_{own['spp'] if target == 'povray' else 0}"
         if not (folder / "done").exists():
             samples = ["--set", f"/sensor/sampler/sample_count={own['spp']}"] if target == "povray" else []
-            self.timed([self.bench, "export", contest.ROOT / scene.file, *sets(scene, setting), *samples, "--to", target, "-o", folder])
+            self.timed([self.bench, "export", contest.ROOT / scene.file, *sets(scene, setting), *samples, "--to", target, "--max-bounces", "16", "-o", folder])
             edit = povray_options if target == "povray" else aimed_lamp
             path = folder / ("scene.pov" if target == "povray" else "scene.xml")
             path.write_text(edit(path.read_text(encoding="utf-8"), scene), encoding="utf-8")

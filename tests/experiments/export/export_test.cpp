@@ -166,9 +166,28 @@ TEST(MitsubaScene, TakesPathsAsLongAsTheyCanBe) {
     const auto depth = [&] {
         return numbers_after(to_mitsuba(desc, {}).files[0].bytes, "name=\"max_depth\" value=\"")[0];
     };
-    EXPECT_EQ(depth(), 16 + 2);
+    EXPECT_EQ(depth(), 1000 + 2);
     desc.shapes.resize(1);
     EXPECT_EQ(depth(), 2) << "light between receivers is no part of the picture";
+}
+
+TEST(MitsubaScene, StartsRouletteWhereLongPathsDo) {
+    const SceneDesc desc = small_scene();
+    const auto roulette_of = [&](int max_bounces) {
+        const std::string text = to_mitsuba(desc, {.max_bounces = max_bounces}).files[0].bytes;
+        const std::size_t at = text.find("name=\"rr_depth\" value=\"") + 23;
+        return text.substr(at, text.find('"', at) - at);
+    };
+    EXPECT_EQ(roulette_of(1000), "18");
+    EXPECT_EQ(roulette_of(16), "$max_depth");
+}
+
+TEST(PovrayScene, FollowsAsLongChainsAsPovrayCan) {
+    const auto text_of = [&](int max_bounces) {
+        return file(to_povray(small_scene(), {.max_bounces = max_bounces}), "scene.pov");
+    };
+    EXPECT_NE(text_of(1000).find("max_trace_level 256\n  adc_bailout 0.0001\n"), std::string::npos);
+    EXPECT_NE(text_of(16).find("max_trace_level 18\n  adc_bailout 0\n"), std::string::npos);
 }
 
 TEST(MitsubaScene, NeverAsksForStrataWithoutJitter) {

@@ -81,37 +81,37 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
         return describe(method(name, params)).dump();
     };
     EXPECT_EQ(text("none", {}), "{}");
-    EXPECT_EQ(text("pathtrace", {}), R"({"max_bounces":16,"spp":16})");
-    EXPECT_EQ(text("lighttrace", {}), R"({"max_bounces":16,"paths":1000000})");
+    EXPECT_EQ(text("pathtrace", {}), R"({"max_bounces":1000,"spp":16})");
+    EXPECT_EQ(text("lighttrace", {}), R"({"max_bounces":1000,"paths":1000000})");
     EXPECT_EQ(text("lighttrace", {"radius=0.25"}),
-              R"({"max_bounces":16,"paths":1000000,"radius":0.25})");
+              R"({"max_bounces":1000,"paths":1000000,"radius":0.25})");
     EXPECT_EQ(text("illuminationmap", {}),
-              R"({"emitted":1000000,"max_bounces":16,"resolution":256})");
+              R"({"emitted":1000000,"max_bounces":1000,"resolution":256})");
     EXPECT_EQ(text("causticpolygons", {}),
-              R"({"light_samples":16,"max_bounces":16,"mesh_resolution":64,"polygons":"triangles",)"
+              R"({"light_samples":16,"max_bounces":1000,"mesh_resolution":64,"polygons":"triangles",)"
               R"("receiver_resolution":16})");
     EXPECT_EQ(text("photonmap", {}),
               R"({"adaptive":false,"emission":"random","estimator":"unbiased","filter":"none",)"
-              R"("interaction":"roulette","max_bounces":16,"nearest":50,"passes":1,)"
+              R"("interaction":"roulette","max_bounces":1000,"nearest":50,"passes":1,)"
               R"("photons":100000,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("photonmap", {"load=a.photons", "radius=0.5"}),
               R"({"adaptive":false,"estimator":"unbiased","filter":"none","load":"a.photons",)"
               R"("passes":1,"radius":0.5,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("photonmap", {"emitted=10", "adaptive=true", "max_radius=1"}),
               R"({"adaptive":true,"emission":"random","emitted":10,"estimator":"unbiased",)"
-              R"("filter":"none","interaction":"roulette","max_bounces":16,"max_radius":1.0,)"
+              R"("filter":"none","interaction":"roulette","max_bounces":1000,"max_radius":1.0,)"
               R"("nearest":200,"passes":1,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("beamtree", {}),
               R"({"bound":"two_slice","hierarchy":"binned","intensity":"refined","leaf":"k",)"
-              R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
+              R"("light_samples":16,"max_bounces":1000,"merging":"rays","mesh_resolution":64,)"
               R"("polygons":"triangles"})");
     EXPECT_EQ(text("beamtree", {"bound=hybrid", "intensity=area"}),
               R"({"bound":"hybrid","hierarchy":"quadtree","intensity":"area","leaf":"n",)"
-              R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
+              R"("light_samples":16,"max_bounces":1000,"merging":"rays","mesh_resolution":64,)"
               R"("polygons":"triangles","spread_threshold":10.0})");
     EXPECT_EQ(text("beamtree", {"footprint=0.1"}),
               R"({"bound":"two_slice","footprint":0.10000000149011612,"hierarchy":"binned",)"
-              R"("intensity":"refined","leaf":"k","light_samples":16,"max_bounces":16,)"
+              R"("intensity":"refined","leaf":"k","light_samples":16,"max_bounces":1000,)"
               R"("merging":"rays","mesh_resolution":64,"polygons":"triangles"})");
 }
 
