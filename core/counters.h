@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+
+#include "core/light_ledger.h"
 
 namespace caustics {
 
@@ -20,6 +23,7 @@ struct BuildReport {
     Counters counters;
     /// Parameters the method chose by itself, by name (a maximum radius, say).
     std::map<std::string, double> resolved;
+    std::optional<LightLedger> light = {};  ///< of methods that know it
 };
 
 }  // namespace caustics

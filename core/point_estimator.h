@@ -31,6 +31,7 @@ struct CameraLayer {
     std::vector<Spectrum> radiance;
     std::vector<Spectrum> standard_error;
     Counters counters;
+    std::optional<LightLedger> light = {};  ///< of caustics
 };
 
 /// A built method: the light of one set of paths at receiver points. Immutable: constructing it *is*

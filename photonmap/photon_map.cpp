@@ -189,6 +189,8 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
         build_tree(params.tree, std::move(photons.store), options.isa, options.threads);
     report.bytes = tree->bytes();
     photons.counts.add_to(report.counters);
+    // A file keeps no light.
+    if (params.load.empty()) report.light = photons.counts.watts();
     tree->add_to(report.counters);
     if (params.radius == 0)
         report.resolved["max_radius"] = static_cast<double>(settings.limits.max_radius);

@@ -23,7 +23,8 @@ std::vector<Parameter<P>> photon_parameters() {
         parameter::preset<P>(
             &P::preset, {{"jensen1996", P::jensen1996}},
             {.key = "preset",
-             .meaning = "Takes the paper's settings in place of the defaults: balanced, raw, 16 events.",
+             .meaning =
+                 "Takes the paper's settings in place of the defaults: balanced, raw, 16 events.",
              .source = "[J96]"}),
         parameter::whole_number<P>(
             &P::photons, 1, most_photons,

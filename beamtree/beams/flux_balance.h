@@ -10,6 +10,7 @@ struct FluxBalance {
     double lost = 0;         ///< reaches a further caster, and no beam carries it
     double pruned = 0;       ///< and of that in paths too weak to be followed
     double over_budget = 0;  ///< and in beams with less light than the budget's least
+    double missed = 0;       ///< and of all that what receivers miss, as a sample tells
 
     /// Adds another one, so many times.
     void add(const FluxBalance& other, double times = 1) {
@@ -17,6 +18,7 @@ struct FluxBalance {
         lost += times * other.lost;
         pruned += times * other.pruned;
         over_budget += times * other.over_budget;
+        missed += times * other.missed;
     }
     /// The share that beams carry to the last event on its way (or that of `max_bounces`).
     double captured() const { return lit > 0 ? 1 - lost / lit : 1; }

@@ -152,6 +152,13 @@ private:
     TracedBeams& traced_;
 };
 
+// Photons of a sample share the light of the first events.
+TraceSettings with_sample(TraceSettings settings, double flux) {
+    if (settings.rest_photons == 0 && settings.sampled_photons > 0)
+        settings.watts_per_photon = flux / static_cast<double>(settings.sampled_photons);
+    return settings;
+}
+
 }  // namespace
 
 double flux_of(const BeamSet& set) {
@@ -177,7 +184,7 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
         flux += flux_of(one.set);
         beams += one.set.beams.size();
     }
-    const RestPhotons rest(scene_, surface_, settings_);
+    const RestPhotons rest(scene_, surface_, with_sample(settings_, flux));
     for (const Event event : events) {
         if (first[event].set.beams.empty()) continue;
         Level level;

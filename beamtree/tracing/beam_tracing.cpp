@@ -78,6 +78,8 @@ public:
             for (const CasterMesh& caster : casters)
                 neighbours_.emplace_back(caster, options.threads);
         settings_.seed = options.seed;
+        settings_.sampled_photons = (settings.sampled_photons + parts_.size() - 1) /
+                                    std::max<std::size_t>(1, parts_.size());
         if (settings.rest_photons > 0)
             settings_.watts_per_photon = first_flux(scene, casters, lights, options.threads) /
                                          static_cast<double>(settings.rest_photons);

@@ -72,7 +72,7 @@ public:
     /// Completes light that no beam carries on, and counts it, `flux` [W], by its cause.
     void leave_out(const LeftOut& part, double flux, double& cause);
     /// Whether photons take what beams leave out.
-    bool is_completed() const { return rest_.is_on(); }
+    bool is_completed() const { return rest_.completes(); }
     /// Has photons take what no beam carries on.
     void complete(const LeftOut& part);
     std::vector<RestPhoton> take_rest() { return std::move(photons_); }

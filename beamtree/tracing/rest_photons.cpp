@@ -127,6 +127,7 @@ RestPhotons::RestPhotons(const Scene& scene, const LitCaster& surface,
     : scene_(scene),
       surface_(surface),
       watts_(settings.watts_per_photon),
+      completes_(settings.rest_photons > 0),
       seed_(settings.seed),
       max_bounces_(settings.max_bounces) {}
 

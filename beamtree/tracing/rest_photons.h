@@ -33,6 +33,8 @@ public:
     RestPhotons(const Scene& scene, const LitCaster& surface, const TraceSettings& settings);
 
     bool is_on() const { return watts_ > 0; }
+    /// Whether they are light of the picture, and not only a sample of what it lacks.
+    bool completes() const { return completes_; }
     /// Appends what arrives; `level` is that of the beam.
     void trace(const Level& level, const LeftOut& part, std::vector<RestPhoton>& photons) const;
 
@@ -40,6 +42,7 @@ private:
     const Scene& scene_;
     const LitCaster& surface_;
     double watts_;
+    bool completes_;
     std::uint64_t seed_;
     int max_bounces_;
 };

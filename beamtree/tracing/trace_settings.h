@@ -34,6 +34,9 @@ struct TraceSettings {
     /// is of all on casters. 0: none.
     std::uint64_t rest_photons = 0;
     double watts_per_photon = 0;  ///< of them [W]; trace_all_beams() finds it
+    /// Where photons complete nothing: so many paths, as the light left out is of all that a caster has of a light, tell
+    /// how much of it would come to receivers.
+    std::uint64_t sampled_photons = 0;
     std::uint64_t seed = 1;
     int threads = 1;
 };

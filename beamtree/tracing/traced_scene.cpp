@@ -14,6 +14,20 @@ constexpr float near_receiver = 1e-3F;
 // average: of many polygons in many lights each has little, but facets part its light as widely.
 constexpr double divided_share = 0x1p-20 / 2;
 constexpr double least_divided = 0x1p-10;
+// Paths that tell how much of the light that beams leave out would come to receivers.
+constexpr std::uint64_t sampled_photons = 20'000;
+
+double flux_of(const std::vector<RestPhoton>& photons) {
+    double sum = 0;
+    for (const RestPhoton& photon : photons) sum += static_cast<double>(photon.flux.mean());
+    return sum;
+}
+
+// Light that is lost where polygons are too coarse is in no sample: it is taken to be like the rest.
+double missed_light(const FluxBalance& balance, double sampled) {
+    const double left_out = balance.pruned + balance.over_budget;
+    return left_out > 0 ? sampled * balance.lost / left_out : balance.lost;
+}
 
 }  // namespace
 
@@ -48,10 +62,9 @@ BuildReport TracedScene::report() const {
         balance.lit > 0 ? balance.over_budget / balance.lit : 0;
     if (is_completed) {
         report.counters["rest_photons"] = rest.size();
-        double flux = 0;
-        for (const RestPhoton& photon : rest) flux += static_cast<double>(photon.flux.mean());
-        report.resolved["flux_share_rest"] = balance.lit > 0 ? flux / balance.lit : 0;
+        report.resolved["flux_share_rest"] = balance.lit > 0 ? flux_of(rest) / balance.lit : 0;
     }
+    report.resolved["flux_share_missed"] = balance.lit > 0 ? balance.missed / balance.lit : 0;
     if (walls.share > 0) {
         report.resolved["walls_behind_polygons"] = walls.share;
         report.resolved["walls_need_finer"] = walls.finer;
@@ -94,15 +107,21 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
                                  .divided_share = divided_share,
                                  .max_beams = static_cast<std::uint64_t>(params.max_beams),
                                  .receiver_margin = near_receiver * scene.diameter() + footprint,
-                                 .rest_photons = rest_photons};
+                                 .rest_photons = rest_photons,
+                                 .sampled_photons = sampled_photons};
     TracedBeams beams = trace_all_beams(scene, traced.casters, lights, settings, options);
     traced.sets = std::move(beams.sets);
     traced.rest = std::move(beams.rest);
     traced.is_completed = rest_photons > 0;
     traced.balance = beams.balance;
     // What photons carry is not lost.
-    if (traced.is_completed)
+    if (traced.is_completed) {
         traced.balance.lost -= traced.balance.pruned + traced.balance.over_budget;
+        traced.balance.missed = traced.balance.lost;
+    } else {
+        traced.balance.missed = missed_light(traced.balance, flux_of(traced.rest));
+        traced.rest.clear();
+    }
     traced.drift = beams.drift;
     traced.unreceived = beams.unreceived;
     traced.least_light = beams.least_light;

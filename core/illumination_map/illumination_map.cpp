@@ -127,6 +127,7 @@ public:
     BuildReport build_report() const override {
         BuildReport report;
         counts_.add_to(report.counters);
+        report.light = counts_.watts();
         for (const ReceiverMaps& maps : maps_)
             for (const std::optional<SideMap>& side : maps.sides)
                 if (side) report.bytes += side->bytes();

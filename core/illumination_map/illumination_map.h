@@ -20,7 +20,7 @@ namespace caustics {
 struct IlluminationMapParams {
     std::uint64_t emitted = 1'000'000;  ///< light paths, thinned ones included
     int resolution = 256;               ///< texels along each texture coordinate
-    int max_bounces = most_bounces;  ///< specular events between light and receiver
+    int max_bounces = most_bounces;     ///< specular events between light and receiver
     /// Receivers are only looked at, to tell whether they can be served: no parameter.
     bool only_checked = false;
 };

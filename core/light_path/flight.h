@@ -19,15 +19,13 @@ struct Flight {
     float start_flux = 0;  ///< sum of the channels of the flux that the particle set out with
 };
 
-/// Roulette by weight for long paths: a flight that has little of its flux left goes on only sometimes, and then
-/// with more. False where it ends.
+/// Roulette of long paths (chance_to_go_on); false where the flight ends.
 inline bool survives(Flight& flight, Rng& rng) {
     if (flight.bounces < preset_bounces) return true;
-    const float least = lightest_long_path * flight.start_flux;
-    const float left = flight.flux.sum();
-    if (left >= least) return true;
-    if (rng.next() * least >= left) return false;
-    flight.flux *= least / left;
+    const float chance = chance_to_go_on(flight.bounces, flight.flux.sum() / flight.start_flux);
+    if (chance >= 1) return true;
+    if (rng.next() >= chance) return false;
+    flight.flux /= chance;
     return true;
 }
 

@@ -45,6 +45,11 @@ void LightPathCounts::add(const LightPathCounts& other) {
     depth_limited += other.depth_limited;
     stored += other.stored;
     dropped += other.dropped;
+    light.add(other.light);
+}
+
+LightLedger LightPathCounts::watts() const {
+    return emitted > 0 ? light.scaled(1 / static_cast<double>(emitted)) : LightLedger{};
 }
 
 void LightPathCounts::add_to(Counters& counters) const {
@@ -69,17 +74,35 @@ Flight start_of(const LightParticle& particle) {
             .start_flux = particle.flux.sum()};
 }
 
+double watts(const Spectrum& flux) { return static_cast<double>(flux.mean()); }
+
 // What a flight finds at the end of a segment.
 struct Stop {
     std::optional<Deposit> deposit;
     bool at_caster = false;  ///< from which it may go on
 };
 
+// Light that would go on from a caster. A deposit there has counted all of it, so that what a mirror would send on is
+// sent again.
+void count_cut(const Bsdf& bsdf, const SurfacePoint& hit, const Flight& flight, bool has_deposit,
+               LightLedger& light) {
+    if (!has_deposit) {
+        light.cut += watts(flight.flux);
+        return;
+    }
+    const SpecularSplit split = split_specular(bsdf, hit.geometric_normal, hit.shading_normal,
+                                               -flight.ray.direction, flight.wavelength.nm);
+    const double more = watts((split.reflected_weight + split.refracted_weight) * flight.flux);
+    light.cut += more;
+    light.sent += more;
+}
+
 Stop stop_at(const Scene& scene, const LightPathSettings& settings,
              const std::optional<SurfacePoint>& hit, Flight& flight, LightPathCounts& counts) {
     Stop stop;
     if (!hit) {
         ++(flight.bounces == 0 ? counts.missed : counts.escaped);
+        if (flight.bounces > 0) counts.light.escaped += watts(flight.flux);
         return stop;
     }
     const Bsdf& bsdf = scene.shape_at(*hit).bsdf;
@@ -88,9 +111,15 @@ Stop stop_at(const Scene& scene, const LightPathSettings& settings,
         ++counts.missed;
         return stop;
     }
+    const double before = watts(flight.flux);
     flight.flux *= segment_transmittance(
         flight.start_medium, medium_absorption(bsdf, hit->geometric_normal, -flight.ray.direction),
         hit->distance);
+    const double left = watts(flight.flux);
+    if (flight.bounces == 0)
+        counts.light.sent += left;
+    else
+        counts.light.absorbed += before - left;
     if (is_receiver(bsdf) && flight.bounces > 0) {
         if (is_black(flight.flux)) {
             ++counts.absorbed;
@@ -98,11 +127,13 @@ Stop stop_at(const Scene& scene, const LightPathSettings& settings,
         }
         stop.deposit = deposit_of(scene, *hit, flight);
         ++(stop.deposit ? counts.stored : counts.on_black_side);
+        (stop.deposit ? counts.light.arrived : counts.light.absorbed) += left;
         // A mirror that is black on that side as well sends nothing on.
         stop.at_caster = stop.at_caster && stop.deposit;
     }
     if (stop.at_caster && flight.bounces == settings.max_bounces) {
         if (!stop.deposit) ++counts.depth_limited;
+        count_cut(bsdf, *hit, flight, stop.deposit.has_value(), counts.light);
         stop.at_caster = false;
     }
     return stop;
@@ -112,19 +143,36 @@ void record(const LightPathSettings& settings, const Ray& ray) {
     if (settings.traced != nullptr) settings.traced->push_back(ray);
 }
 
+// The light of a flight that ends at a caster with `arrived` [W], or goes on from there with `left`. What chance has
+// added or taken is absorbed light, whose mean it does not change. What goes on from a deposit, which has counted all
+// light there, is sent again.
+void count_light(bool has_deposit, double arrived, double left, LightLedger& light) {
+    if (has_deposit)
+        light.sent += left;
+    else
+        light.absorbed += arrived - left;
+}
+
 // The event at a caster; false when it ends the flight, whose end a deposit there has counted already.
 bool goes_on_from(const Scene& scene, const SurfacePoint& hit, bool has_deposit, Flight& flight,
                   Rng& rng, LightPathCounts& counts) {
+    const double arrived = watts(flight.flux);
     if (!survives(flight, rng)) {
         if (!has_deposit) ++counts.absorbed;
+        count_light(has_deposit, arrived, 0, counts.light);
         return false;
     }
     const SpecularSplit split = split_at(scene, hit, flight, rng);
     const Fate fate = roulette(split, rng, flight.flux);
     if (fate == Fate::absorbed || fate == Fate::misdirected) {
-        if (!has_deposit) ++(fate == Fate::absorbed ? counts.absorbed : counts.misdirected);
+        if (!has_deposit) {
+            const bool is_lost = fate == Fate::misdirected;
+            ++(is_lost ? counts.misdirected : counts.absorbed);
+            (is_lost ? counts.light.misdirected : counts.light.absorbed) += arrived;
+        }
         return false;
     }
+    count_light(has_deposit, arrived, watts(flight.flux), counts.light);
     const bool reflects = fate == Fate::reflected;
     counts.branched += has_deposit ? 1 : 0;
     ++(reflects ? counts.reflected : counts.refracted);
@@ -241,13 +289,24 @@ private:
         const bool has_deposit = stop.deposit.has_value();
         if (has_deposit) deposits_.push_back(*stop.deposit);
         if (!stop.at_caster) return false;
+        const double arrived = watts(flight.flux);
+        if (!survives(flight, rng_)) {
+            if (!has_deposit) ++counts_.absorbed;
+            count_light(has_deposit, arrived, 0, counts_.light);
+            return false;
+        }
         const SpecularSplit split = split_at(scene_, *hit, flight, rng_);
+        const double lost = has_deposit ? 0 : watts(split.lost_weight * flight.flux);
         Flight refracted = flight;
         const bool reflects = goes_on(split.reflected_weight, flight);
         const bool refracts = goes_on(split.refracted_weight, refracted);
         counts_.reflected += reflects ? 1 : 0;
         counts_.refracted += refracts ? 1 : 0;
         if (reflects) counts_.branched += refracts || has_deposit ? 1 : 0;
+        const double left =
+            (reflects ? watts(flight.flux) : 0) + (refracts ? watts(refracted.flux) : 0);
+        count_light(has_deposit, arrived - lost, left, counts_.light);
+        counts_.light.misdirected += lost;
         if (refracts) leave(scene_, *hit, split.refracted, refracted);
         if (reflects) {
             leave(scene_, *hit, split.reflected, flight);
@@ -284,8 +343,7 @@ private:
 void trace_split_path(const Scene& scene, const LightParticle& particle,
                       const LightPathSettings& settings, Rng& rng, LightPathCounts& counts,
                       std::vector<Deposit>& deposits) {
-    SplitPath(scene, settings, particle.flux, rng, counts, deposits)
-        .follow(start_of(particle));
+    SplitPath(scene, settings, particle.flux, rng, counts, deposits).follow(start_of(particle));
 }
 
 }  // namespace caustics

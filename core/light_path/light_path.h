@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/caustic_estimator.h"
+#include "core/light_ledger.h"
 #include "core/light_path/bounce_limit.h"
 #include "core/light_path/deposit.h"
 #include "core/math/rng.h"
@@ -40,7 +41,11 @@ struct LightPathCounts {
     std::uint64_t depth_limited = 0;  ///< met one more caster after `max_bounces`
     std::uint64_t stored = 0;
     std::uint64_t dropped = 0;  ///< arrived, but left out so that a wanted number is exact
+    /// What became of their light [W x emitted]; of caustic paths alone.
+    LightLedger light = {};
 
+    /// The same in watts; all zeros where nothing was emitted.
+    LightLedger watts() const;
     void add(const LightPathCounts& other);
     void add_to(Counters& counters) const;
 };

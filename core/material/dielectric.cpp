@@ -61,7 +61,9 @@ ObjectText Dielectric::text() {
                        .choices = "0.1 to 10"};
     };
     return {"dielectric",
-            "A bsdf, in a shape: smooth glass or water; the shape is a caster.",
+            "A bsdf, in a shape: smooth glass or water; the shape is a caster. Light counts as "
+            "unpolarised at each interface: near Brewster's angle two of them pass 10 % too little "
+            "(n = 2.4; 0.6 % for n = 1.5), and reflect half of what is right.",
             {type_key(), ior("int_ior", "Refractive index behind the surface.", "bk7"),
              ior("ext_ior", "Refractive index in front of it.", "air"),
              colour("absorption", "Of the inside.", "1/m", "0", "0 to 1e+30"),

@@ -25,10 +25,10 @@ void BackwardChain::arrive(const SurfacePoint& hit, const Bsdf& bsdf) {
 }
 
 bool BackwardChain::survives(Rng& rng) {
-    const float left = weight.mean();
-    if (bounces < preset_bounces || left >= lightest_long_path) return true;
-    if (rng.next() * lightest_long_path >= left) return false;
-    weight *= lightest_long_path / left;
+    const float chance = chance_to_go_on(bounces, weight.mean());
+    if (chance >= 1) return true;
+    if (rng.next() >= chance) return false;
+    weight /= chance;
     return true;
 }
 

@@ -20,8 +20,7 @@ struct BackwardChain {
     int bounces = 0;
     float specular = 0;  ///< at the receiver that it ends at: the chance of another event there
 
-    /// Roulette by weight for long chains: one with little weight goes on only sometimes, and then with more. False
-    /// where it ends.
+    /// Roulette of long chains (chance_to_go_on); false where the chain ends.
     bool survives(Rng& rng);
     /// Beer's law up to a hit of the ray.
     void arrive(const SurfacePoint& hit, const Bsdf& bsdf);

@@ -12,9 +12,9 @@ namespace caustics {
 /// direct light is sampled (next-event estimation) and the caustic by one more chain. Unbiased. Throws
 /// UnsupportedScene where casters send light of points or directions to other walls, which no path meets.
 struct IndirectPathTraceParams {
-    int spp = 16;             ///< as PathTraceParams::spp
+    int spp = 16;                    ///< as PathTraceParams::spp
     int max_bounces = most_bounces;  ///< specular events between two receivers
-    int diffuse_bounces = 0;  ///< the last receiver, counted from the light [C11]; 0: none
+    int diffuse_bounces = 0;         ///< the last receiver, counted from the light [C11]; 0: none
 };
 const DescribedMethod<IndirectPathTraceParams, IndirectEstimator>& indirect_pathtrace_method();
 std::unique_ptr<const IndirectEstimator> build(const Scene&, const IndirectPathTraceParams&,

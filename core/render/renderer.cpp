@@ -60,9 +60,11 @@ public:
                 layers.write_caustic(pixel, layer->radiance[pixel], layer->standard_error[pixel]);
         finish(rendering, layers);
         take_counters(rendering.report.counters);
-        if (layer)
+        if (layer) {
+            rendering.report.light = layer->light;
             for (const auto& [name, count] : layer->counters)
                 rendering.report.counters[name] += count;
+        }
         return rendering;
     }
 

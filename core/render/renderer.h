@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "core/caustic_estimator.h"
 #include "core/indirect_estimator.h"
@@ -15,6 +16,7 @@ struct RenderReport {
     /// Of the method's queries and of the eye pass: camera_rays, the receiver_points that they
     /// found and, of a method that answers at points, those that it did not leave black (lit_points).
     Counters counters;
+    std::optional<LightLedger> light = {};  ///< of a method that connects light paths to the camera
 };
 
 struct Rendering {

@@ -13,6 +13,7 @@
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
+#include "core/light_path/bounce_limit.h"
 #include "core/lights/light_text.h"
 #include "core/picture/exr_file.h"
 #include "core/picture/png_file.h"
@@ -26,6 +27,7 @@
 #include "experiments/cli/verbs.h"
 #include "experiments/picture/beam_picture.h"
 #include "experiments/picture/previews.h"
+#include "experiments/run/caustic_ledger.h"
 #include "experiments/run/cli_options.h"
 #include "experiments/run/notes.h"
 #include "experiments/run/run_progress.h"
@@ -34,6 +36,8 @@
 namespace caustics::experiments {
 
 namespace {
+
+constexpr std::uint64_t sampled_paths = 20'000;  ///< of the light that casters send on
 
 std::string sampling_name(const PixelSampling& sampling) {
     if (sampling.max_sample_count > 0)
@@ -80,6 +84,9 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     text += fmt::format("  power aimed at the casters' bounds: {} W{}\n",
                         rgb(emission.empty() ? black() : emission.total_power()),
                         has_spot ? " (of spots as if they had no falloff)" : "");
+    for (const std::string& line :
+         lines_of(scene, survey_light(scene, most_bounces, sampled_paths)))
+        text += "  " + line + "\n";
     text += "methods\n";
     StatusLine asked;
     for (const std::string& name : method_names()) {

@@ -106,8 +106,10 @@ Verb add_probe(CLI::App& app) {
         ->type_name("FILE");
     verb->footer(
         "Writes the rows as they are plus irradiance_r,g,b [W/m^2] on the side of the normal, with "
-        "a viewer\nradiance_r,g,b [W/(m^2 sr)], and for statistical methods stderr_*. The side of "
-        "a one-sided material\nthat scatters no light reads 0.\n"
+        "a viewer\nradiance_r,g,b [W/(m^2 sr)], and for statistical methods stderr_*: where no "
+        "light path came, the error of\none path, three of which bound the value in 95 % of cases. "
+        "The side of a "
+        "one-sided material that scatters no light reads 0.\n"
         "Example:\n  causticbench probe pool.json --method lighttrace --param paths=1000000 "
         "--param radius=0.01 --points floor.csv -o out.csv");
     return {verb, [options] { return probe_points(*options); }};

@@ -205,7 +205,7 @@ int render_picture(const RenderOptions& options) {
         write_stderr(fmt::format("the caustic is empty: {}\n", *result.why_empty));
     print_notes(result.notes);
     const double exposure = options.exposure.value_or(auto_exposure(result.film, ""));
-    result.film.metadata = picture_metadata(request, file, result.report);
+    result.film.metadata = picture_metadata(request, file, result);
     result.film.metadata["tone_mapping"] = tone_mapping_rule;
     result.film.metadata["exposure"] = shortest(exposure);
     if (result.why_empty) result.film.metadata["why_empty"] = *result.why_empty;

@@ -19,10 +19,10 @@ struct ExportedScene {
 };
 
 struct ExportSettings {
-    std::string scene_file = {};  ///< for messages
-    int mesh_resolution = 256;    ///< of exact shapes that the renderer does not know
+    std::string scene_file = {};     ///< for messages
+    int mesh_resolution = 256;       ///< of exact shapes that the renderer does not know
     int max_bounces = most_bounces;  ///< specular events between light and receiver
-    bool indirect = false;        ///< with the light between receivers: paths of any length
+    bool indirect = false;           ///< with the light between receivers: paths of any length
 };
 
 /// Refuses what the renderer cannot express: throws UnsupportedScene naming the scene file, the

@@ -118,7 +118,7 @@ void ReferenceCache::render(const ReferenceRequest& request, const RunOptions& o
     require_finite(result.film, "the reference");
     Film film = reference_film(result.film);
     if (begun) film = joined(request.request, *begun, film);
-    film.metadata = picture_metadata(request.request, file, result.report);
+    film.metadata = picture_metadata(request.request, file, result);
     // The command names the scene as it was reached from here, and the version that of today; the
     // file depends on neither.
     film.metadata.erase("command");

@@ -67,6 +67,7 @@ void record_report(json& record, const RunResult& result) {
         record["scene"]["mesh_flaws"] = fmt::format("{}", fmt::join(result.mesh_notes, "; "));
     if (result.report.bytes > 0) record["memory"]["map_bytes"] = result.report.bytes;
     if (result.why_empty) record["why_empty"] = *result.why_empty;
+    if (result.ledger) record["light"] = to_json(*result.ledger);
 }
 
 /// Of all planes of a picture, names included: the same picture has the same hash.
@@ -122,7 +123,7 @@ void execute(const Trial& trial, const Reference* reference, RunOptions options,
     log("measure");
     require_finite(result.film, "the picture");
     if (reference != nullptr) record_errors(record, result.film, *reference);
-    result.film.metadata = picture_metadata(trial.request, file, result.report);
+    result.film.metadata = picture_metadata(trial.request, file, result);
     record["picture_hash"] = picture_hash(result.film);
     outcome.film = std::move(result.film);
     record["status"] = "done";

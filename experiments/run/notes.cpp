@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <variant>
 
 #include "core/light_path/aimed_emission.h"
-#include "core/light_path/light_path.h"
 #include "core/material/optics.h"
 #include "core/mesh/vertex_normals.h"
 #include "core/reference/sample_mean.h"
@@ -243,24 +243,16 @@ std::vector<BentCaster> bent_casters(const Scene& scene) {
     return casters;
 }
 
-/// Of the light that met casters, what a smooth normal sent to the wrong side, if the method counts it.
-std::optional<double> misdirected_share(const BuildReport& report) {
-    if (!report.counters.contains("photons_misdirected")) return {};
-    const LightPathCounts counts = light_path_counts(report.counters);
-    const std::uint64_t met = counts.aimed + counts.branched - counts.missed;
-    if (met == 0) return {};
-    return static_cast<double>(counts.misdirected) / static_cast<double>(met);
-}
-
-void note_misdirected(const Scene& scene, const BuildReport& report,
+void note_misdirected(const Scene& scene, const CausticLedger& ledger,
                       std::vector<std::string>& all) {
-    const double share = misdirected_share(report).value_or(0);
+    const double share = ledger.light.misdirected / ledger.light.sent;
     if (share < least_share_told) return;
     const std::vector<BentCaster> casters = bent_casters(scene);
     const auto most = std::ranges::max_element(casters, {}, &BentCaster::bend);
     all.push_back(fmt::format(
-        "{:.1f} % of the light paths that met casters are lost where smooth normals send them to "
-        "the wrong side of a surface; the normals differ most from the triangles on {} "
+        "{:.1f} % of the light on casters, and about as much of the caustic, is lost where smooth "
+        "normals send it to the wrong side of a surface; the normals differ most from the "
+        "triangles on {} "
         "(face_normals: true shades the triangles of a mesh flat; a finer resolution bends less)",
         100 * share, most->text()));
 }
@@ -326,21 +318,6 @@ void note_colours_through_glass(const Scene& scene, const Method& method,
             "caustics that are seen through {}, which disperses, have wrong colours where light is "
             "spread into colours: {} keeps no wavelengths (beamtree asks for them)",
             glass->name, method.name));
-}
-
-std::string lost_light(const Method& method, const BuildReport& report, double lost) {
-    const double pruned = resolved(report, "flux_share_pruned").value_or(0);
-    const double over_budget = resolved(report, "flux_share_over_budget").value_or(0);
-    const std::string beyond =
-        over_budget > 0
-            ? fmt::format(", {:.1f} % in beams that max_beams has no room for", 100 * over_budget)
-            : "";
-    return fmt::format(
-        "{} loses {:.1f} % of the light between specular surfaces, {:.1f} % in paths too weak to "
-        "be followed{} and the rest where polygons are too coarse for what they meet ({}photonmap "
-        "follows it; max_bounces=1 asks for the paths with one event alone)",
-        method.name, 100 * lost, 100 * pruned, beyond,
-        has_parameter(method, "rest") ? "rest=photons completes it; " : "");
 }
 
 // Whether light comes from infinitely far away through a medium that absorbs.
@@ -412,10 +389,13 @@ std::vector<std::string> notes_on(const Scene& scene) {
     return all;
 }
 
-std::vector<std::string> notes(const Scene& scene, const Method& method,
-                               const BuildReport& report) {
+std::vector<std::string> notes(const Scene& scene, const Method& method, const BuildReport& report,
+                               const std::optional<CausticLedger>& ledger) {
     std::vector<std::string> all;
-    note_misdirected(scene, report, all);
+    if (ledger) {
+        note_misdirected(scene, *ledger, all);
+        std::ranges::copy(notes_on_light(method, report, *ledger), std::back_inserter(all));
+    }
     note_photons(report, all);
     note_colours(scene, method, all);
     note_colours_through_glass(scene, method, all);
@@ -427,7 +407,6 @@ std::vector<std::string> notes(const Scene& scene, const Method& method,
     if (const auto coarse = coarse_glass(scene, method)) all.push_back(*coarse);
     if (const auto pieces = flat_pieces(scene, method)) all.push_back(*pieces);
     if (const auto steps = steps_of_colour(scene, method)) all.push_back(*steps);
-    if (*captured < 1 - least_share_told) all.push_back(lost_light(method, report, 1 - *captured));
 
     const SetParameters parameters(method);
     const bool disperses = has_dispersive_caster(scene);

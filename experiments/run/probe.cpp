@@ -206,6 +206,11 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
 
 namespace {
 
+std::vector<std::string> notes_of_built(const Scene& scene, const Method& method,
+                                        const BuildReport& report) {
+    return notes(scene, method, report, caustic_ledger(scene, method, report));
+}
+
 template <class Estimator>
 ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, const ProbeList& list,
                       const RunOptions& options) {
@@ -223,7 +228,7 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
         answers.has_standard_errors = built->is_statistical();
         if (pass == 0) {
             if constexpr (std::is_same_v<Estimator, CausticEstimator>)
-                answers.notes = notes(scene, method, built->build_report());
+                answers.notes = notes_of_built(scene, method, built->build_report());
             else
                 answers.notes = notes_on_indirect(scene);
             std::ranges::copy(mesh_notes(scene), std::back_inserter(answers.notes));

@@ -16,12 +16,15 @@ namespace caustics::experiments {
 
 namespace {
 
-/// Passes follow each other: counts add up, memory and parameters chosen are those of the largest.
+/// Passes follow each other: counts and light add up, memory and parameters chosen are those of the largest.
 void add(BuildReport& report, const BuildReport& pass) {
     report.bytes = std::max(report.bytes, pass.bytes);
     for (const auto& [name, count] : pass.counters) report.counters[name] += count;
     for (const auto& [name, value] : pass.resolved)
         report.resolved[name] = std::max(report.resolved[name], value);
+    if (!pass.light) return;
+    if (!report.light) report.light.emplace();
+    report.light->add(*pass.light);
 }
 
 std::string parameter_words(const std::string& option, const nlohmann::json& parameters) {
@@ -70,7 +73,8 @@ SceneDesc take_shapes(SceneFile& file) {
 
 std::map<std::string, std::string> picture_metadata(const RunRequest& request,
                                                     const SceneFile& scene,
-                                                    const BuildReport& report) {
+                                                    const RunResult& result) {
+    const BuildReport& report = result.report;
     nlohmann::json assets = nlohmann::json::object();
     for (const auto& [name, hash] : scene.assets) assets[name] = hash;
     std::map<std::string, std::string> metadata = {
@@ -89,6 +93,7 @@ std::map<std::string, std::string> picture_metadata(const RunRequest& request,
         metadata["indirect"] = request.indirect->name;
         metadata["indirect_parameters"] = describe(*request.indirect).dump();
     }
+    if (result.ledger) metadata["light"] = to_json(*result.ledger).dump();
     if (!report.resolved.empty()) metadata["resolved"] = nlohmann::json(report.resolved).dump();
     return metadata;
 }
@@ -129,12 +134,15 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
         render(scene, {pass_count(request.method), build_pass}, options, indirect.get());
     stopwatch.stop();
 
+    if (report.light) report.light = report.light->scaled(1.0 / pass_count(request.method));
+    if (rendering.report.light) report.light = rendering.report.light;
     RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}, {}};
     result.counters = result.report.counters;
     for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
     BuildReport all = result.report;
     all.counters = result.counters;
-    result.notes = notes(scene, request.method, all);
+    result.ledger = caustic_ledger(scene, request.method, all);
+    result.notes = notes(scene, request.method, all, result.ledger);
     std::ranges::copy(notes_on_picture(request.method, request.indirect, options),
                       std::back_inserter(result.notes));
     if (request.indirect)

@@ -10,6 +10,7 @@
 #include "core/render/renderer.h"
 #include "core/scene/scene_reader.h"
 #include "experiments/base/stopwatch.h"
+#include "experiments/run/caustic_ledger.h"
 #include "experiments/run/method.h"
 
 namespace caustics::experiments {
@@ -30,13 +31,6 @@ std::string command(const std::string& verb, const RunRequest& request);
 /// The whole scene, its shapes taken away from the file: a copy of large meshes takes seconds, and as much memory again. The file keeps the rest.
 SceneDesc take_shapes(SceneFile& file);
 
-/// The resolved configuration as attributes of a picture: scene, method with every parameter in
-/// force and what it chose by itself, seed, samples, code version, and the command that makes it.
-/// The same request gives the same text, whatever the number of threads.
-std::map<std::string, std::string> picture_metadata(const RunRequest& request,
-                                                    const SceneFile& scene,
-                                                    const BuildReport& report);
-
 /// Values in a record's JSON: what the method counted and chose.
 struct RunResult {
     Film film;
@@ -45,7 +39,15 @@ struct RunResult {
     std::optional<std::string> why_empty;  ///< of a caustic that is black all over
     std::vector<std::string> notes;        ///< what a user should know, one line each
     std::vector<std::string> mesh_notes;   ///< those of the notes that are of meshes (mesh_notes.h)
+    std::optional<CausticLedger> ledger;   ///< of a method that has a caustic
 };
+
+/// The resolved configuration as attributes of a picture: scene, method with every parameter in
+/// force, what it chose by itself and what became of the light, seed, samples, code version, and the command that makes it.
+/// The same request gives the same text, whatever the number of threads.
+std::map<std::string, std::string> picture_metadata(const RunRequest& request,
+                                                    const SceneFile& scene,
+                                                    const RunResult& result);
 
 /// Builds the method and renders, cutting the time into "precompute", "precompute/PHASE", "render"
 /// and "render/PHASE" by the phases the method names. `options` brings threads and progress, and

@@ -6,6 +6,7 @@
 
 #include "core/light_path/empty_caustic.h"
 #include "core/render/film.h"
+#include "experiments/run/caustic_ledger.h"
 #include "experiments/run/caustic_survey.h"
 
 namespace caustics::experiments {
@@ -22,13 +23,6 @@ std::optional<std::uint64_t> find(const Counters& counters, const std::string& n
     const auto found = counters.find(name);
     if (found == counters.end()) return {};
     return found->second;
-}
-
-/// The limit that the method's light paths were under.
-int max_bounces(const Method& method, const BuildReport& report) {
-    const auto loaded = report.resolved.find("max_bounces");
-    if (loaded != report.resolved.end()) return static_cast<int>(loaded->second);
-    return describe(method).value("max_bounces", most_bounces);
 }
 
 /// The radius beyond which no photon is found, where the method has one [m].
@@ -64,7 +58,7 @@ std::optional<std::string> why_empty(const Scene& scene, const Method& method, c
                                      const BuildReport& report, const Counters& counters) {
     if (!method.facts().has_caustic || !is_dark(film)) return {};
     if (auto reason = why_nothing_is_aimed(scene)) return reason;
-    const CausticSurvey survey = survey_caustic(scene, max_bounces(method, report));
+    const CausticSurvey survey = survey_caustic(scene, bounce_limit_of(method, report));
     const bool traces_light = counters.contains("photons_emitted");
     const LightPathCounts counts = traces_light ? light_path_counts(counters) : survey.counts;
     if (counts.stored == 0 && survey.counts.stored == 0) return why_nothing_arrives(counts);

@@ -11,7 +11,7 @@ namespace caustics::photonmap {
 /// light between surfaces by final gathering, or straight from the map.
 struct GlobalMapParams {
     std::uint64_t photons = 200'000;  ///< to store
-    int max_bounces = most_bounces;  ///< specular events between two receivers
+    int max_bounces = most_bounces;   ///< specular events between two receivers
     int diffuse_bounces = 0;          ///< the receiver at which a photon ends [C11]; 0: by roulette
     int nearest = 50;                 ///< N of an estimate, at least 2
     double max_radius = 0;            ///< [m]; 0: chosen from the photons

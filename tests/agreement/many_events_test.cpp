@@ -24,10 +24,10 @@ SceneDesc light_guide() {
     SceneDesc desc;
     desc.shapes = {support::horizontal("floor", 0, 0.3, true, support::diffuse(0.5F))};
     for (const double x : {-0.05, 0.05})
-        desc.shapes.push_back(support::rectangle(
-            x < 0 ? "left" : "right", {x, 0, (lower_edge + upper_edge) / 2}, {0, 0.25, 0},
-            {0, 0, (upper_edge - lower_edge) / 2},
-            support::mirror(static_cast<float>(mirror_reflectance))));
+        desc.shapes.push_back(
+            support::rectangle(x < 0 ? "left" : "right", {x, 0, (lower_edge + upper_edge) / 2},
+                               {0, 0.25, 0}, {0, 0, (upper_edge - lower_edge) / 2},
+                               support::mirror(static_cast<float>(mirror_reflectance))));
     return desc;
 }
 
@@ -38,7 +38,8 @@ struct AtFloor {
 
 AtFloor below_the_guide(const CausticEstimator& method, const Scene& scene, double x) {
     ReceiverPoint point = support::probe(scene, 0, {x, 0, 0}, Vec3d::UnitZ(), 0, 0.02F);
-    const auto hit = scene.intersect(Ray{Vec3(point.position + 0.05F * Vec3::UnitZ()), -Vec3::UnitZ()});
+    const auto hit =
+        scene.intersect(Ray{Vec3(point.position + 0.05F * Vec3::UnitZ()), -Vec3::UnitZ()});
     point.uv = hit->uv;
     point.shape = hit->shape;
     const Estimate found = support::irradiance(method, {point})[0];

@@ -28,7 +28,10 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "flux_share_rest", "rest_photons_stored", "beams_unreceived", "photons_aimed", "photons_reflected",
             "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points", "indirect_rmse",
             "indirect_relmse", "indirect_mean_ratio", "indirect_s", "indirect_cpu_s", "reference_indirect_mean",
-            "reference_indirect_stderr")
+            "reference_indirect_stderr", "light_sent", "light_arrived", "light_cut", "light_pruned", "light_misdirected",
+            "light_absorbed", "light_escaped", "light_cut_share", "light_pruned_share", "light_misdirected_share",
+            "light_absorbed_share", "light_escaped_share", "caustic_missed_by_cut", "caustic_missed_by_pruning",
+            "caustic_missed_by_normals")
 RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "other_cores", "jobs", "timeout_s",
        "memory_limit_bytes", "message", "why_empty", "mesh_flaws")  # of one run of a trial
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN
@@ -44,9 +47,9 @@ INDIRECT = ("indirect_cpu_s",)
 QUERY = ("render_cpu_s",)
 CPU_PARTS = BUILD + INDIRECT + QUERY
 # Colours of one wavelength have channels below 0, and so may means of pictures; a share that is what others leave of 1 may be below
-# 0 by rounding. All other numbers count or measure something.
+# 0 by rounding, and light that is absorbed on average by chance. All other numbers count or measure something.
 SIGNED = ("alpha", "bias", "mean_ratio", "mask_mean_ratio", "indirect_mean_ratio", "leak_energy", "reference_mean",
-          "reference_indirect_mean", "flux_share_captured")
+          "reference_indirect_mean", "flux_share_captured", "light_absorbed", "light_absorbed_share")
 
 # What each metric is, as captions and axes say it: x the picture, r the reference, over all reached pixels and channels
 # of the caustic layer; radiance is in linear sRGB.

@@ -282,6 +282,67 @@ TEST(LightPath, EveryPathHasOneEnd) {
     }
 }
 
+// All light that comes to casters ends somewhere, by roulette and by splitting, on blends too.
+TEST(LightPath, TheLedgerBalances) {
+    SceneDesc desc = ball_lit_from_a_point(1, 4);
+    desc.shapes.push_back(support::sphere("inner", {0.2, 0, 0}, 0.5,
+                                          support::glass(1.2F, 1.5F, Spectrum(0.1F, 0.5F, 1))));
+    Bsdf blend = support::diffuse(0.5F);
+    blend.mirror = MirrorPart{0.6F, Spectrum(Spectrum::Constant(0.9F))};
+    desc.shapes.push_back(support::horizontal("floor", -1.5, 2, true, blend));
+    desc.shapes.push_back(
+        support::rectangle("mirror", {2, 0, 0}, {0, 1, 0}, {0, 0, 1}, support::mirror(0.5F)));
+    const Scene scene(std::move(desc));
+    const AimedEmission emission(scene);
+    for (const int max_bounces : {1, 3, 1000})
+        for (const auto trace : {trace_light_path, trace_split_path}) {
+            LightPathCounts counts;
+            double arrived = 0;
+            send(emission, [&](const LightParticle& particle, Rng& rng) {
+                std::vector<Deposit> deposits;
+                trace(scene, particle, {max_bounces}, rng, counts, deposits);
+                for (const Deposit& deposit : deposits)
+                    arrived += static_cast<double>(deposit.flux.mean());
+            });
+            const LightLedger& light = counts.light;
+            EXPECT_NEAR(light.ended(), light.sent, 1e-5 * light.sent) << max_bounces;
+            EXPECT_NEAR(light.arrived, arrived, 1e-9 * arrived) << max_bounces;
+            EXPECT_GT(light.arrived, 0.01 * light.sent);
+            EXPECT_GT(light.escaped, 0);
+            EXPECT_EQ(light.cut > 0, max_bounces < 1000);
+        }
+}
+
+// A point light before a mirror: the mirror's solid angle times the intensity, of which it keeps a quarter.
+TEST(LightPath, TheLedgerHasTheLightOnAMirrorAndWhatItAbsorbs) {
+    SceneDesc desc;
+    desc.shapes = {
+        support::rectangle("mirror", {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, support::mirror(0.75F)),
+        support::horizontal("floor", -1, 50, true, support::diffuse(0.5F))};
+    desc.lights = {support::point_light({0, 0, 0}, 2)};
+    const Scene scene(std::move(desc));
+    const AimedEmission emission(scene);
+    LightPathCounts counts;
+    support::Moments sent;
+    std::uint64_t emitted = 0;
+    for (std::uint64_t path = 0; path < 200'000; ++path) {
+        Rng rng(5, Stage::test, path);
+        ++emitted;
+        const auto particle = emission.emit(rng);
+        const double before = counts.light.sent;
+        std::vector<Deposit> deposits;
+        if (particle) trace_light_path(scene, *particle, {}, rng, counts, deposits);
+        sent.add(counts.light.sent - before);
+    }
+    counts.emitted = emitted;
+    // A square of side 2 at the distance 1 from its middle has a sixth of the sphere.
+    EXPECT_NEAR(counts.watts().sent, 2 * 4 * pi_d / 6, 4 * sent.standard_error());
+    EXPECT_NEAR(counts.light.absorbed, 0.25 * counts.light.sent, 0.005 * counts.light.sent);
+    EXPECT_EQ(counts.light.misdirected, 0);
+    EXPECT_NEAR(counts.light.arrived + counts.light.escaped, 0.75 * counts.light.sent,
+                0.005 * counts.light.sent);
+}
+
 // Absorbing glass round a ball, mirrors, water as a mesh: paths side by side against one by one.
 TEST(LightPath, PathsThatGoTogetherArriveWhereTheyArriveAlone) {
     SceneDesc desc = ball_lit_from_a_point(1, 4);

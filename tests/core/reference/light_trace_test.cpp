@@ -126,6 +126,33 @@ TEST(LightTrace, StatesTheScatterWherePathsComeBackToADisc) {
     });
 }
 
+// Where no path came the standard error is that of one path: three of these bound the truth as often as the rule of
+// three says (95 %), and none states 0 for a lit point.
+TEST(LightTrace, StatesTheErrorOfOnePathWhereNoneCame) {
+    const Scene scene = pool();
+    const double truth =
+        static_cast<double>(gathered(scene, Emission::random, 4'000'000, 99)[0].value[0]);
+    int empty = 0, bounded = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed)
+        for (const Estimate& found : gathered(scene, Emission::random, 1000, seed)) {
+            EXPECT_GT(found.standard_error[0], 0);
+            if (found.value[0] > 0) continue;
+            ++empty;
+            if (truth <= 3 * static_cast<double>(found.standard_error[0])) ++bounded;
+        }
+    ASSERT_GT(empty, 10);
+    EXPECT_GE(bounded, 0.95 * empty);
+}
+
+TEST(LightTrace, StatesNoErrorOnASideThatScattersNothing) {
+    const Scene scene = pool();
+    const auto method = build(scene, LightTraceParams{.paths = 10}, RunOptions{});
+    ReceiverPoint below = ring(scene, 1)[0];
+    below.geometric_normal = -below.geometric_normal;
+    below.front = false;
+    EXPECT_EQ(support::irradiance(*method, {below})[0].standard_error[0], 0);
+}
+
 TEST(LightTrace, StratifiedIsTheSameForAnyNumberOfThreads) {
     const Scene scene = pool();
     const auto one = gathered(scene, Emission::stratified, 50'000, 3);

@@ -87,9 +87,10 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
               R"({"max_bounces":1000,"paths":1000000,"radius":0.25})");
     EXPECT_EQ(text("illuminationmap", {}),
               R"({"emitted":1000000,"max_bounces":1000,"resolution":256})");
-    EXPECT_EQ(text("causticpolygons", {}),
-              R"({"light_samples":16,"max_bounces":1000,"mesh_resolution":64,"polygons":"triangles",)"
-              R"("receiver_resolution":16})");
+    EXPECT_EQ(
+        text("causticpolygons", {}),
+        R"({"light_samples":16,"max_bounces":1000,"mesh_resolution":64,"polygons":"triangles",)"
+        R"("receiver_resolution":16})");
     EXPECT_EQ(text("photonmap", {}),
               R"({"adaptive":false,"emission":"random","estimator":"unbiased","filter":"none",)"
               R"("interaction":"roulette","max_bounces":1000,"nearest":50,"passes":1,)"
