@@ -136,7 +136,7 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
 
     if (report.light) report.light = report.light->scaled(1.0 / pass_count(request.method));
     if (rendering.report.light) report.light = rendering.report.light;
-    RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}, {}};
+    RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}, {}, {}};
     result.counters = result.report.counters;
     for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
     BuildReport all = result.report;
