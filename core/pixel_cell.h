@@ -28,6 +28,21 @@ struct PixelCell {
                 .radius = std::sqrt(2.0) * half};
     }
 
+    /// The parallelogram through the middles of a cell's sides: it has the cell's area, and those of neighbours
+    /// overlap by the second order of their size only.
+    struct Sides {
+        Vec2d middle, first, second;
+        double sine;  ///< of the angle between the two; 0 without area
+    };
+    Sides sides() const {
+        const Vec2d first = (corners[1] + corners[2] - corners[0] - corners[3]) / 2;
+        const Vec2d second = (corners[2] + corners[3] - corners[0] - corners[1]) / 2;
+        const double turn = std::abs(first.x() * second.y() - first.y() * second.x());
+        const double product = first.norm() * second.norm();
+        return {(corners[0] + corners[1] + corners[2] + corners[3]) / 4, first, second,
+                product > 0 ? turn / product : 0};
+    }
+
     Vec2d along(const Vec3d& way) const { return {axes.right.dot(way), axes.forward.dot(way)}; }
     /// From the receiver point [m].
     Vec3d at(const Vec2d& p) const { return p.x() * axes.right + p.y() * axes.forward; }

@@ -10,6 +10,7 @@
 #include "photonmap/photons/photon_source.h"
 #include "photonmap/progressive.h"
 #include "photonmap/tree/build_tree.h"
+#include "photonmap/tree/photon_discs.h"
 
 namespace caustics::photonmap {
 
@@ -39,6 +40,9 @@ public:
 
     GatherScratch scratch;
     EstimateScratch estimate;
+    /// Squares of `footprint` round points, and the points with them.
+    std::vector<PixelCell> squares;
+    std::vector<ReceiverPoint> points;
 
 private:
     bool adaptive_;
@@ -51,12 +55,15 @@ private:
 class PhotonMap final : public CausticEstimator {
 public:
     PhotonMap(std::unique_ptr<const PhotonTree> tree, BuildReport report,
-              const RadianceEstimate::Settings& settings, Isa isa, bool tables)
+              const RadianceEstimate::Settings& settings, const PhotonMapParams& params, Isa isa)
         : tree_(std::move(tree)),
           report_(std::move(report)),
           settings_(settings),
           estimate_(settings, isa),
-          tables_(tables) {}
+          tables_(params.tables),
+          averages_pixels_(params.averages_pixels()),
+          square_(params.kernel == KernelKind::photon ? static_cast<double>(params.footprint) : 0) {
+    }
 
     std::unique_ptr<QueryContext> make_context() const override {
         return std::make_unique<GatherContext>(tables_, settings_.adaptive);
@@ -75,6 +82,7 @@ public:
         answer(points, out, dynamic_cast<GatherContext&>(context), &RadianceEstimate::irradiance);
     }
 
+    bool asks_for_cells() const override { return averages_pixels_; }
     BuildReport build_report() const override { return report_; }
 
 private:
@@ -83,6 +91,7 @@ private:
 
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                 GatherContext& context, Value value) const {
+        if (square_ > 0) points = with_squares(points, context);
         tree_->gather(points, settings_.limits, context.scratch,
                       [&](std::size_t i, const GatheredPhotons& gathered) {
                           context.count(gathered);
@@ -91,11 +100,25 @@ private:
                       });
     }
 
+    std::span<const ReceiverPoint> with_squares(std::span<const ReceiverPoint> points,
+                                                GatherContext& context) const {
+        context.squares.clear();
+        for (const ReceiverPoint& point : points)
+            context.squares.push_back(
+                PixelCell::square(point.geometric_normal.cast<double>(), square_));
+        context.points.assign(points.begin(), points.end());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            context.points[i].cell = &context.squares[i];
+        return context.points;
+    }
+
     std::unique_ptr<const PhotonTree> tree_;
     BuildReport report_;
     RadianceEstimate::Settings settings_;
     RadianceEstimate estimate_;
     bool tables_;
+    bool averages_pixels_;
+    double square_;  ///< side of the square that the photons' own kernels are averaged over [m]; 0: none
 };
 
 void check(const PhotonMapParams& params) {
@@ -118,6 +141,12 @@ void check(const PhotonMapParams& params) {
         throw InputError(
             "photonmap: footprint averages over squares, without adaptive, filter_alpha and the "
             "estimator \"raw\"");
+    if (params.kernel == KernelKind::photon &&
+        (params.tree != TreeKind::packed || params.adaptive || !unbiased ||
+         params.filter_alpha > 0))
+        throw InputError(
+            "photonmap: the kernel \"photon\" goes with the tree \"packed\", without adaptive, "
+            "filter_alpha and the estimator \"raw\"; those go with \"point\"");
     if (!params.adaptive) return;
     if (params.radius > 0)
         throw InputError("photonmap: a fixed radius leaves no N for adaptive to choose");
@@ -128,9 +157,11 @@ void check(const PhotonMapParams& params) {
 
 GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const PhotonStore& photons,
                     int pass) {
+    const bool at_points = params.kernel == KernelKind::point;
     const bool positions = params.adaptive || params.footprint > 0;
-    const auto margin =
-        static_cast<float>(RadianceEstimate::margin_of(static_cast<double>(params.footprint)));
+    const auto margin = at_points ? static_cast<float>(RadianceEstimate::margin_of(
+                                        static_cast<double>(params.footprint)))
+                                  : 0.0F;
     if (params.radius > 0)
         return {GatherLimits::all, static_cast<float>(params.radius * std::sqrt(pass_share(pass))),
                 positions, margin};
@@ -141,6 +172,25 @@ GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const Pho
             : default_max_radius(photons.photons(), scene.bounds(), params.nearest);
     return {static_cast<std::size_t>(params.nearest), static_cast<float>(max_radius), positions,
             margin};
+}
+
+/// Announces the phases "balance" and, for photons with discs of their own, "widths".
+std::unique_ptr<const PhotonTree> ordered(PhotonStore photons, const PhotonMapParams& params,
+                                          const RadianceEstimate::Settings& settings,
+                                          const RunOptions& options) {
+    options.phase("balance");
+    if (params.kernel == KernelKind::point)
+        return build_tree(params.tree, std::move(photons), options.isa, options.threads);
+    auto tree = std::make_unique<PackedKdTree>(std::move(photons), options.isa, options.threads);
+    options.phase("widths");
+    const DiscWidths widths{.nearest = settings.limits.nearest,
+                            .max_radius = settings.limits.max_radius,
+                            .fixed = params.radius > 0,
+                            .share = settings.share};
+    const bool cells = params.averages_pixels() || params.footprint > 0;
+    const double reach = cells ? CellKernel(settings.filter).reach() : 0;
+    return std::make_unique<PhotonDiscs>(std::move(tree), widths, static_cast<float>(reach),
+                                         options);
 }
 
 /// Half the width of the narrowest lobe of a receiver [deg], where photons' directions, kept in steps of 1.4 degrees [J96],
@@ -175,7 +225,8 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     settings.adaptive = params.adaptive;
     settings.share = params.radius > 0 ? 1 : pass_share(pass);
     settings.limits = limits(params, scene, photons.store, pass);
-    settings.footprint = static_cast<double>(params.footprint);
+    if (params.kernel == KernelKind::point)
+        settings.footprint = static_cast<double>(params.footprint);
     settings.flux_unit = photons.flux_per_energy();
 
     BuildReport report;
@@ -184,9 +235,8 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
         report.resolved["faint_flux_share"] = faint;
     if (const auto lobe = blurred_lobe(scene)) report.resolved["blurred_lobe_degrees"] = *lobe;
 
-    options.phase("balance");
     std::unique_ptr<const PhotonTree> tree =
-        build_tree(params.tree, std::move(photons.store), options.isa, options.threads);
+        ordered(std::move(photons.store), params, settings, options);
     report.bytes = tree->bytes();
     photons.counts.add_to(report.counters);
     // A file keeps no light.
@@ -197,8 +247,8 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     if (!params.load.empty()) report.resolved["max_bounces"] = kept.origin.max_bounces;
     if (kept.version < first_version_with_surfaces)
         report.resolved["photon_map_version"] = kept.version;
-    return std::make_unique<PhotonMap>(std::move(tree), std::move(report), settings, options.isa,
-                                       params.tables);
+    return std::make_unique<PhotonMap>(std::move(tree), std::move(report), settings, params,
+                                       options.isa);
 }
 
 }  // namespace caustics::photonmap

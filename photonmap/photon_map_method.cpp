@@ -1,6 +1,7 @@
 #include "photonmap/photon_map_method.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "photonmap/photons/photon_map_file.h"
@@ -11,7 +12,7 @@ namespace {
 
 using P = PhotonMapParams;
 
-constexpr std::int64_t most_photons = 2'000'000'000;
+constexpr std::int64_t most_stored = 2'000'000'000;
 constexpr std::int64_t most_paths = 1'000'000'000'000;
 constexpr std::int64_t most_nearest = 1'000'000;
 constexpr std::int64_t most_passes = 100'000;
@@ -27,7 +28,7 @@ std::vector<Parameter<P>> photon_parameters() {
                  "Takes the paper's settings in place of the defaults: balanced, raw, 16 events.",
              .source = "[J96]"}),
         parameter::whole_number<P>(
-            &P::photons, 1, most_photons,
+            &P::photons, 1, most_stored,
             {.key = "photons",
              .meaning = "Photons to store; light paths are traced until so many are.",
              .unit = "photons",
@@ -67,6 +68,16 @@ std::vector<Parameter<P>> photon_parameters() {
 std::vector<Parameter<P>> estimate_parameters() {
     return {
         parameter::choice<P>(
+            &P::kernel, {{"photon", KernelKind::photon}, {"point", KernelKind::point}},
+            {.key = "kernel",
+             .meaning = "Spreads each photon's light over a disc up to its own N-th neighbour, which "
+                        "keeps its sum; or takes a point's N nearest over their disc, which makes "
+                        "light where its density is uneven. Adaptive, filter_alpha, the estimator raw and "
+                        "trees other than packed belong to point.",
+             .source = "[Breiman, Meisel & Purcell 1977; Abramson 1982; J96 (4)]"})
+            .only_if([](const P& p) { return p.kernel == KernelKind::photon; })
+            .usually("photon, or point where a key belongs to it"),
+        parameter::choice<P>(
             &P::tree,
             {{name(TreeKind::balanced), TreeKind::balanced},
              {name(TreeKind::unbalanced), TreeKind::unbalanced},
@@ -78,13 +89,15 @@ std::vector<Parameter<P>> estimate_parameters() {
         parameter::whole_number<P>(
             &P::nearest, 1, most_nearest,
             {.key = "nearest",
-             .meaning = "N, the photons of an estimate; where adaptive, the most (usually 200).",
+             .meaning = "N, the photons of an estimate, or the neighbours within a photon's own "
+                        "disc; where adaptive, the most (usually 200).",
              .unit = "photons",
              .source = "[J96 (3)]"})
             .only_if([](const P& p) { return !(p.radius > 0); }),
         parameter::yes_or_no<P>(&P::adaptive,
                                 {.key = "adaptive",
-                                 .meaning = "Takes fewer than N photons where they lie unevenly.",
+                                 .meaning = "With kernel point: takes fewer than N photons where "
+                                            "they lie unevenly.",
                                  .source = "[J96 sec. 5]"}),
         parameter::optional_length<P>(&P::max_radius, "leave it out to have it chosen",
                                       {.key = "max_radius",
@@ -101,6 +114,14 @@ std::vector<Parameter<P>> estimate_parameters() {
             {.key = "footprint",
              .meaning = "Side of the square round a point that the estimate is averaged over."})
             .usually("none"),
+        parameter::yes_or_no<P>(
+            &P::pixel_footprint,
+            {.key = "pixel_footprint",
+             .meaning = "With kernel photon: averages over each pixel as the camera sees it on the "
+                        "receiver; what mirrors, glass and edges show is asked at points."})
+            .only_if([](const P& p) {
+                return p.kernel == KernelKind::photon && p.footprint == 0;
+            }),
         parameter::choice<P>(&P::filter,
                              {{name(FilterKind::none), FilterKind::none},
                               {name(FilterKind::cone), FilterKind::cone},
@@ -193,6 +214,38 @@ void settle_radius(const JsonNode& node, P& params) {
     if (params.adaptive) radius->fail("leaves no N for adaptive to choose: leave one of them out");
 }
 
+/// What the kernel "point" alone has: the key that asks for it, and why no other kernel does.
+struct PointKey {
+    const char* key;
+    bool asked;
+    const char* reason;
+};
+
+std::array<PointKey, 4> point_keys(const JsonNode& node, const P& params) {
+    return {{{"tree", params.tree != TreeKind::packed, "photons' own discs are kept by the tree \"packed\""},
+             {"adaptive", params.adaptive, "it chooses N at a point"},
+             {"estimator", params.estimator == P::Estimator::raw, "\"raw\" is the equation of a point's N nearest"},
+             {"filter_alpha", node.has("filter_alpha"), "with it the filter's mean is not 1, and light is not kept"}}};
+}
+
+// Keys that the kernel "point" alone has choose it.
+void settle_kernel(const JsonNode& node, P& params) {
+    for (const PointKey& each : point_keys(node, params)) {
+        if (!each.asked || params.kernel == KernelKind::point) continue;
+        if (node.has("kernel"))
+            node.at(node.has(each.key) ? each.key : "kernel")
+                .fail(std::string("belongs to the kernel \"point\": ") + each.reason + " (leave out " +
+                      each.key + ", or kernel)");
+        params.kernel = KernelKind::point;
+    }
+    const auto pixels = node.find("pixel_footprint");
+    if (!pixels) return;
+    if (params.kernel == KernelKind::point)
+        pixels->fail("only the kernel \"photon\" averages over pixels (or give a footprint)");
+    if (params.footprint > 0 && params.pixel_footprint)
+        pixels->fail("footprint asks for squares of its own (leave one of the two out)");
+}
+
 void settle_footprint(const JsonNode& node, const P& params) {
     const auto footprint = node.find("footprint");
     if (!footprint) return;
@@ -212,6 +265,7 @@ void settle(const JsonNode& node, P& params) {
         params.photons = 0;
     }
     settle_nearest(node, params);
+    settle_kernel(node, params);
     settle_radius(node, params);
     settle_filter(node, params);
     settle_footprint(node, params);
@@ -225,8 +279,8 @@ const DescribedMethod<PhotonMapParams>& photonmap_method() {
         {.facts =
              {.name = "photonmap",
               .summary =
-                  "Jensen 1996: photons aimed at the casters, N nearest in a packed kd-tree, or "
-                  "in the paper's balanced one",
+                  "Jensen 1996: photons aimed at the casters, each spread over a disc up to its N-th "
+                  "neighbour, or the N nearest of a point as in the paper",
               .serves = "every scene; without light on casters by `emitted` alone",
               .work = {.parameter = "photons",
                        .instead = "emitted",

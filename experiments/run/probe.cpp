@@ -211,10 +211,20 @@ std::vector<std::string> notes_of_built(const Scene& scene, const Method& method
     return notes(scene, method, report, caustic_ledger(scene, method, report));
 }
 
+/// Whether means over pixels are asked for by name, and not by the method's default.
+template <class Estimator>
+bool asks_for_pixels(const MethodOf<Estimator>& method) {
+    const std::string key = "pixel_footprint";
+    return describe(method).value(key, false) &&
+           std::ranges::none_of(method.description->parameters(), [&](const KeyText& text) {
+               return text.key == key && text.usual == value_text(true);
+           });
+}
+
 template <class Estimator>
 ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, const ProbeList& list,
                       const RunOptions& options) {
-    if (describe(method).value("pixel_footprint", false))
+    if (asks_for_pixels(method))
         throw InputError(method.facts().name +
                          ": pixel_footprint is of a camera's pixels, and points have none: leave "
                          "it out, or give a footprint in metres");

@@ -71,4 +71,19 @@ FilterPolynomial DensityFilter::polynomial() const {
     return {{1}, 0, false};
 }
 
+FilterPolynomial DensityFilter::profile_integral() const {
+    FilterPolynomial profile = polynomial();
+    // The power of z in the integral of the n-th term.
+    const auto power = [&profile](std::size_t n) {
+        return static_cast<double>(profile.of_distance ? n + 1 : 2 * n + 1);
+    };
+    double end = 0;
+    for (std::size_t n = 0; n <= profile.degree; ++n)
+        end += static_cast<double>(profile.coefficient[n]) / power(n);
+    for (std::size_t n = 0; n <= profile.degree; ++n)
+        profile.coefficient[n] = static_cast<float>(static_cast<double>(profile.coefficient[n]) /
+                                                    (2 * end * power(n)));
+    return profile;
+}
+
 }  // namespace caustics::photonmap

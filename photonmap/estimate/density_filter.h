@@ -26,6 +26,8 @@ struct DensityFilter {
     double weight(double u) const;
     /// The same as the kernels take it, to 1e-6; to 1e-5 for a beta above 3.
     FilterPolynomial polynomial() const;
+    /// The weight along an axis, at (z, 0) for z in [-1, 1], integrated from the middle and divided by z; 1/2 at z = 1.
+    FilterPolynomial profile_integral() const;
 };
 
 }  // namespace caustics::photonmap

@@ -2,25 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "photonmap/tree/resolvable_radius.h"
 
 namespace caustics::photonmap {
 
 namespace {
 
-/// Squared radius below which distances between float positions mean nothing. Where N photons
-/// fall into one point, at a perfect focus, their density has no finite value; over this disc it
-/// is large, and finite.
 double resolvable_squared_radius(const Vec3& point, float max_radius) {
-    const float scale = std::max(point.cwiseAbs().maxCoeff(), max_radius);
-    const auto radius = static_cast<double>(std::numeric_limits<float>::epsilon() * scale);
+    const auto radius = static_cast<double>(resolvable_radius(point, max_radius));
     return radius * radius;
 }
 
 }  // namespace
 
 RadianceEstimate::RadianceEstimate(const Settings& settings, Isa isa)
-    : settings_(settings), shading_(isa), adaptive_(isa), filter_(settings.filter.polynomial()) {
+    : settings_(settings),
+      shading_(isa),
+      adaptive_(isa),
+      filter_(settings.filter.polynomial()),
+      cell_(settings.filter) {
     if (settings.footprint > 0)
         square_.emplace(settings.filter, settings.footprint, settings.share);
 }
@@ -38,7 +39,22 @@ double RadianceEstimate::squared_radius(const ReceiverPoint& point, const Gather
 RadianceEstimate::Spread RadianceEstimate::spread(const ReceiverPoint& point,
                                                   const GatheredPhotons& gathered,
                                                   EstimateScratch& scratch) const {
+    if (gathered.radius != nullptr) return over_own_discs(point, gathered, scratch);
     return square_ ? over_square(point, gathered, scratch) : over_disc(point, gathered, scratch);
+}
+
+// The weights are per area already.
+RadianceEstimate::Spread RadianceEstimate::over_own_discs(const ReceiverPoint& point,
+                                                          const GatheredPhotons& gathered,
+                                                          EstimateScratch& scratch) const {
+    scratch.weight.reserve(gathered.count + widest_register);
+    float* const weight = scratch.weight.data();
+    if (gathered.cell != nullptr)
+        shading_.weigh_on_cell(cell_, point, gathered, weight);
+    else
+        shading_.weigh_discs(filter_, gathered, weight);
+    scratch.used_photons += gathered.count;
+    return {{.photons = gathered, .weight = weight}, 1};
 }
 
 RadianceEstimate::Spread RadianceEstimate::over_square(const ReceiverPoint& point,

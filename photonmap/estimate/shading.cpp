@@ -86,6 +86,37 @@ void Shading::weigh_on_square(const SquareKernel& square, const SquareKernel::Re
     kernels_.weigh_on_square(square.profile(), on);
 }
 
+void Shading::weigh_discs(const FilterPolynomial& filter, const GatheredPhotons& photons,
+                          float* weight) const {
+    kernels_.weigh_discs(filter, {photons.squared_distance, photons.radius, photons.count, weight});
+}
+
+void Shading::weigh_on_cell(const CellKernel& kernel, const ReceiverPoint& point,
+                            const GatheredPhotons& photons, float* weight) const {
+    const PixelCell::Sides sides = photons.cell->sides();
+    const Vec2d first = sides.first.normalized(), second = sides.second.normalized();
+    const double cosine = first.dot(second), square = sides.sine * sides.sine;
+    // The dual vectors of the two sides.
+    const Vec2d across[2] = {(first - cosine * second) / square, (second - cosine * first) / square};
+    const double length[2] = {sides.first.norm(), sides.second.norm()};
+    PhotonsOnCell on{};
+    std::ranges::copy(photons.position, on.position);
+    on.radius = photons.radius;
+    on.count = photons.count;
+    const Vec3 centre = point.position + photons.cell->at(sides.middle).cast<float>();
+    std::copy_n(centre.data(), 3, on.centre);
+    for (std::size_t side = 0; side < 2; ++side) {
+        const Vec3 way = photons.cell->at(across[side]).cast<float>();
+        std::copy_n(way.data(), 3, on.across[side]);
+        on.half[side] = static_cast<float>(length[side] / 2);
+        on.inverse_side[side] = static_cast<float>(1 / length[side]);
+    }
+    on.width = static_cast<float>(kernel.width(cosine));
+    on.inverse_sine = static_cast<float>(1 / sides.sine);
+    on.weight = weight;
+    kernels_.weigh_on_cell(kernel.profile(), on);
+}
+
 SpectrumSum Shading::arriving(const WeightedPhotons& photons) const {
     return sum_by(kernels_.arriving, Lobe{}, photons);
 }

@@ -4,6 +4,7 @@
 
 #include "core/caustic_estimator.h"
 #include "photonmap/estimate/brdf_lobe_table.h"
+#include "photonmap/estimate/cell_kernel.h"
 #include "photonmap/estimate/square_kernel.h"
 #include "photonmap/tree/gathered_photons.h"
 
@@ -33,6 +34,14 @@ public:
     void weigh_on_square(const SquareKernel& square, const SquareKernel::Reach& reach,
                          const ReceiverPoint& point, const GatheredPhotons& photons,
                          float* weight) const;
+
+    /// Weights [1/m^2] at a point that lies on the photons' own discs.
+    void weigh_discs(const FilterPolynomial& filter, const GatheredPhotons& photons,
+                     float* weight) const;
+
+    /// Weights [1/m^2] on the photons' cell, of photons with discs of their own.
+    void weigh_on_cell(const CellKernel& kernel, const ReceiverPoint& point,
+                       const GatheredPhotons& photons, float* weight) const;
 
     /// Sum of flux x weight, in the map's unit of flux.
     SpectrumSum arriving(const WeightedPhotons& photons) const;

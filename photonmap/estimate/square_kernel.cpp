@@ -19,17 +19,6 @@ double power_of(const FilterPolynomial& polynomial, std::size_t n) {
     return static_cast<double>(polynomial.of_distance ? n + 1 : 2 * n + 1);
 }
 
-/// The filter's weight along an axis, at (z, 0) for z in [-1, 1], integrated from the middle and divided by z.
-FilterPolynomial integrated(FilterPolynomial profile) {
-    double end = 0;
-    for (std::size_t n = 0; n <= profile.degree; ++n)
-        end += static_cast<double>(profile.coefficient[n]) / power_of(profile, n);
-    for (std::size_t n = 0; n <= profile.degree; ++n)
-        profile.coefficient[n] = static_cast<float>(static_cast<double>(profile.coefficient[n]) /
-                                                    (2 * end * power_of(profile, n)));
-    return profile;
-}
-
 /// The profile k, its integral F from the middle and F's own, H, in double.
 struct Profile {
     const FilterPolynomial& integral;
@@ -83,7 +72,7 @@ double rim_at(const Profile& profile, double p, double narrowing) {
 }  // namespace
 
 SquareKernel::SquareKernel(const DensityFilter& filter, double side, double share)
-    : profile_(integrated(filter.polynomial())),
+    : profile_(filter.profile_integral()),
       half_(side / 2),
       narrowing_(std::sqrt(share / 2) / (1 + least_share)),
       rim_(rim_steps + 1, 1) {

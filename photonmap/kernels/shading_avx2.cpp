@@ -1,5 +1,6 @@
 #include <immintrin.h>
 
+#include "photonmap/kernels/disc_loop.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/phong_loop.h"
 #include "photonmap/kernels/simd_avx2.h"
@@ -199,6 +200,8 @@ const ShadingKernels avx2_shading{add_arriving,
                                   add_schlick,
                                   PhongLoop<PhongSet>::add,
                                   weigh_photons<Avx2Lanes>,
-                                  SquareLoop<Avx2Lanes>::weigh};
+                                  SquareLoop<Avx2Lanes>::weigh,
+                                  DiscLoop<Avx2Lanes>::weigh,
+                                  DiscLoop<Avx2Lanes>::weigh_on_cell};
 
 }  // namespace caustics::photonmap

@@ -1,5 +1,6 @@
 #include <immintrin.h>
 
+#include "photonmap/kernels/disc_loop.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/phong_loop.h"
 #include "photonmap/kernels/simd_avx512.h"
@@ -208,6 +209,8 @@ const ShadingKernels avx512_shading{add_arriving,
                                     add_schlick,
                                     PhongLoop<PhongSet>::add,
                                     weigh_photons<Avx512Lanes>,
-                                    SquareLoop<Avx512Lanes>::weigh};
+                                    SquareLoop<Avx512Lanes>::weigh,
+                                    DiscLoop<Avx512Lanes>::weigh,
+                                    DiscLoop<Avx512Lanes>::weigh_on_cell};
 
 }  // namespace caustics::photonmap

@@ -78,6 +78,36 @@ struct PhotonsOnSquare {
 /// a polynomial of z^2, or of |z| where `of_distance`. The same bits on every instruction set.
 using SquareWeighingKernel = void(const FilterPolynomial& profile, const PhotonsOnSquare& photons);
 
+/// Photons with a disc each whose weights at a point are wanted. Arrays as in GatheredPhotons.
+struct PhotonsWithDiscs {
+    const float* squared_distance;
+    const float* radius;  ///< of the discs [m]
+    size_t count;
+    float* weight;
+};
+
+/// Writes the photons' weights [1/m^2]: the filter's over pi radius^2. The same bits on every instruction set.
+using DiscWeighingKernel = void(const FilterPolynomial& filter, const PhotonsWithDiscs& photons);
+
+/// Photons with a kernel of their own whose mean over a cell is wanted. The cell is a parallelogram; coordinates run
+/// along its two sides, from its middle [m]. Arrays as in GatheredPhotons.
+struct PhotonsOnCell {
+    const float* position[3];
+    const float* radius;  ///< of the photons' discs [m]
+    size_t count;
+    float centre[3];
+    float across[2][3];     ///< a position's product with these is its coordinate
+    float half[2];          ///< of the sides [m]
+    float inverse_side[2];  ///< [1/m]
+    float width;            ///< half of the kernel's width over the disc's radius
+    float inverse_sine;     ///< of the angle between the sides
+    float* weight;
+};
+
+/// Writes the photons' weights [1/m^2]: the share of their kernel that lies on the cell, over the cell's area
+/// (cell_kernel.h). `profile` as in SquareWeighingKernel. The same bits on every instruction set.
+using CellWeighingKernel = void(const FilterPolynomial& profile, const PhotonsOnCell& photons);
+
 struct ShadingKernels {
     ShadingKernel* arriving;
     ShadingKernel* facing;
@@ -85,6 +115,8 @@ struct ShadingKernels {
     ShadingKernel* phong;
     WeighingKernel* weigh;
     SquareWeighingKernel* weigh_on_square;
+    DiscWeighingKernel* weigh_discs;
+    CellWeighingKernel* weigh_on_cell;
 };
 
 extern const ShadingKernels plain_shading;

@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "photonmap/kernels/cosine_power.h"
+#include "photonmap/kernels/disc_loop.h"
 #include "photonmap/kernels/filter_loop.h"
 #include "photonmap/kernels/simd_plain.h"
 #include "photonmap/kernels/square_loop.h"
@@ -131,6 +132,8 @@ const ShadingKernels plain_shading{add_arriving,
                                    add_schlick,
                                    add_phong,
                                    weigh_photons<PlainSimd>,
-                                   SquareLoop<PlainSimd>::weigh};
+                                   SquareLoop<PlainSimd>::weigh,
+                                   DiscLoop<PlainSimd>::weigh,
+                                   DiscLoop<PlainSimd>::weigh_on_cell};
 
 }  // namespace caustics::photonmap

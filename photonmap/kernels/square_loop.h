@@ -1,6 +1,6 @@
 #pragma once
 
-#include "photonmap/kernels/shading_kernel.h"
+#include "photonmap/kernels/profile_integral.h"
 
 namespace caustics::photonmap {
 
@@ -32,21 +32,9 @@ private:
     static Floats share(const FilterPolynomial& profile, const PhotonsOnSquare& photons, Floats x) {
         const auto half = Lanes::all(photons.half);
         const auto scale = Lanes::all(photons.inverse_reach);
-        return Lanes::sub(below(profile, Lanes::mul(Lanes::add(x, half), scale)),
-                          below(profile, Lanes::mul(Lanes::sub(x, half), scale)));
-    }
-
-    /// The kernel's integral from its middle to z, odd.
-    static Floats below(const FilterPolynomial& profile, Floats z) {
-        const auto one = Lanes::all(1);
-        const auto minus_one = Lanes::all(-1);
-        z = Lanes::max(Lanes::min(z, one), minus_one);
-        const auto x =
-            profile.of_distance ? Lanes::max(z, Lanes::mul(z, minus_one)) : Lanes::mul(z, z);
-        auto value = Lanes::all(profile.coefficient[profile.degree]);
-        for (size_t n = profile.degree; n-- > 0;)
-            value = Lanes::add(Lanes::mul(value, x), Lanes::all(profile.coefficient[n]));
-        return Lanes::mul(value, z);
+        return Lanes::sub(
+            profile_integral<Lanes>(profile, Lanes::mul(Lanes::add(x, half), scale)),
+            profile_integral<Lanes>(profile, Lanes::mul(Lanes::sub(x, half), scale)));
     }
 };
 

@@ -107,6 +107,27 @@ struct Farthest {
     bool alone;  ///< no other candidate is as far
 };
 
+/// A packed tree whose photons have a disc each (photon_discs.h).
+struct DiscView {
+    PackedView tree;
+    const float* radius;  ///< of each photon's disc [m], bucket by bucket; 0 where there is no photon
+};
+
+/// One query for the discs that hold a point, or that may reach a cell round it.
+struct DiscQuery {
+    float point[3];
+    /// A disc of radius r reaches the query up to the distance widening * r + margin [m].
+    float widening;
+    float margin;
+};
+
+/// Photons whose discs reach a query, side by side. Room as in Candidates.
+struct CoveringPhotons {
+    float* squared_distance;  ///< [m^2]
+    float* radius;            ///< of the discs [m]
+    CopiedPhotons copies;     ///< with positions
+};
+
 /// The loops, for one instruction set. Every set gives the same bits.
 struct TreeKernels {
     /// Finds the nearest in a packed tree and returns a squared distance within which they lie. With a
@@ -120,6 +141,9 @@ struct TreeKernels {
     /// query's; `squared_distance` has room for all.
     float (*nth_in_columns)(const CopiedPhotons&, size_t count, const NearestQuery&,
                             float* squared_distance);
+    /// Copies the photons of these buckets whose discs reach the query; returns their number.
+    size_t (*find_covering)(const DiscView&, const DiscQuery&, const uint32_t* buckets,
+                            size_t bucket_count, const CoveringPhotons& to);
     /// Drops candidates until `most` or (ties aside) fewer, but at least `nearest` are left, and
     /// returns the largest squared distance that a further one may have.
     float (*shrink)(Candidates&, size_t nearest, size_t most, float bound);

@@ -24,8 +24,14 @@ enum class FilterKind { none, cone, gaussian, epanechnikov };
 /// "none", "cone", "gaussian", "epanechnikov".
 const char* name(FilterKind kind);
 
+/// Whose disc spreads a photon's light.
+enum class KernelKind {
+    photon,  ///< each photon's own, up to its N-th neighbour: the light's sum is kept (photon_discs.h)
+    point    ///< the point's, up to its N-th photon [J96 (3)]: too much light where it is uneven
+};
+
 /// `photonmap` [J96]: photons traced from the lights through the casters, stored 20 bytes each in
-/// a kd-tree, radiance from the N nearest [J96 (4)] or from all within a radius.
+/// a kd-tree, radiance from discs of the photons' own, from the N nearest [J96 (4)] or from all within a radius.
 struct PhotonMapParams {
     enum class Estimator {
         unbiased,  ///< the outermost photon only sets the radius: mean (N-1)/(pi r_N^2)
@@ -40,16 +46,19 @@ struct PhotonMapParams {
     std::uint64_t emitted = 0;        ///< to emit; 0 when `photons` is given
     Emission emission = Emission::random;
     Interaction interaction = Interaction::roulette;
-    TreeKind tree = TreeKind::packed;
+    KernelKind kernel = KernelKind::photon;
+    TreeKind tree = TreeKind::packed;  ///< with `photon` packed
     static constexpr int default_adaptive_nearest = 200;
     static constexpr int least_adaptive_nearest = 20;  ///< for AdaptiveN's ladder to have room
     static constexpr int most_adaptive_nearest = 100'000;
-    int nearest = 50;       ///< N; at least 2 for `unbiased`
+    int nearest = 50;       ///< N; at least 2 for `unbiased`, also where it counts a photon's neighbours
     bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveN)
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, see the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those
     /// Side of the square round each point, along PlaneAxes, over which the estimate is averaged [m]; 0: the point's.
     float footprint = 0;
+    /// With `photon`: the estimate is averaged over the pixels' cells (ReceiverPoint::cell) where points have one.
+    bool pixel_footprint = true;
     FilterKind filter = FilterKind::none;
     double filter_k = 1.1;       ///< of the cone
     double filter_beta = 1.953;  ///< of the Gaussian
@@ -68,10 +77,15 @@ struct PhotonMapParams {
     /// emitted are 0, and the file says how the photons were traced.
     std::filesystem::path load = {};
 
+    bool averages_pixels() const {
+        return kernel == KernelKind::photon && pixel_footprint && footprint == 0;
+    }
+
     /// The settings of [J96]: light paths at random, a balanced tree, and the estimate as printed. The
     /// paper does not say N.
     static PhotonMapParams jensen1996() {
         PhotonMapParams params;
+        params.kernel = KernelKind::point;
         params.tree = TreeKind::balanced;
         params.estimator = Estimator::raw;
         params.max_bounces = preset_bounces;

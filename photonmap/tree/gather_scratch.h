@@ -62,6 +62,10 @@ struct GatherScratch {
     CandidateArrays group_found;
     CopyArrays group_copies;
 
+    // Photons' own discs.
+    AlignedArray<std::uint32_t> buckets;
+    AlignedArray<float> radius;
+
     std::uint64_t single_queries = 0;
     std::uint64_t grouped_queries = 0;
 };

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/pixel_cell.h"
+
 namespace caustics::photonmap {
 
 /// The photons a query found, as arrays that shading and filters read a register at a time: plain
@@ -20,6 +22,10 @@ struct GatheredPhotons {
     /// World frame [m]; null unless GatherLimits::positions asked for them.
     const float* position[3] = {nullptr, nullptr, nullptr};
     bool full = false;  ///< whether N photons lie within the maximum radius
+    /// Of the photons' own discs [m] (photon_discs.h); null: the estimate has one disc for all.
+    const float* radius = nullptr;
+    /// What their discs reach, in place of the point; null: the point.
+    const PixelCell* cell = nullptr;
 };
 
 }  // namespace caustics::photonmap

@@ -90,6 +90,20 @@ void PackedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) co
     }
 }
 
+Photon PackedKdTree::photon(std::size_t index) const {
+    const unsigned char* const x = view_.buckets + index / bucket_photons * bucket_bytes +
+                                   4 * (index % bucket_photons);
+    const unsigned char* const direction = x + 16 * bucket_photons - 2 * (index % bucket_photons);
+    Photon photon;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        std::memcpy(photon.position + axis, x + 4 * axis * bucket_photons, 4);
+    std::memcpy(&photon.energy, x + 12 * bucket_photons, 4);
+    std::memcpy(&photon.theta, direction, 2);
+    std::memcpy(&photon.flags, direction + 2 * bucket_photons, 2);
+    set_axis(photon, 0);
+    return photon;
+}
+
 std::uint64_t PackedKdTree::code_of(std::uint32_t photon) const {
     std::uint32_t energy = 0;
     std::uint16_t direction = 0;

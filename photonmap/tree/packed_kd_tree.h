@@ -22,9 +22,12 @@ public:
                 GatherScratch& scratch, const Consumer& consume) const override;
     std::size_t size() const override { return photons_.size(); }
     std::uint64_t bytes() const override;
+    /// A photon as the buckets order them; without its tree's axis.
+    Photon photon(std::size_t index) const;
 
 private:
     friend class PackedGather;
+    friend class PhotonDiscs;
 
     void find(const NearestQuery& query, GatherScratch& scratch) const override;
     void copy_out(const Candidates& found, const CopiedPhotons& to) const override;

@@ -82,10 +82,17 @@ TEST(Corner, PhotonsOfTheFloorDoNotLightTheWall) {
           photonmap::TreeKind::packed}) {
         SCOPED_TRACE(name(tree));
         const auto map = build(
-            scene, photonmap::PhotonMapParams{.photons = 150'000, .tree = tree, .radius = radius},
+            scene,
+            photonmap::PhotonMapParams{.photons = 150'000,
+                                       .kernel = photonmap::KernelKind::point,
+                                       .tree = tree,
+                                       .radius = radius},
             RunOptions{});
         expect_no_light_round_the_corner(scene, truth, *map);
     }
+    const auto discs = build(
+        scene, photonmap::PhotonMapParams{.photons = 150'000, .radius = radius}, RunOptions{});
+    expect_no_light_round_the_corner(scene, truth, *discs);
 }
 
 TEST(Corner, PathsToTheFloorDoNotLightTheWall) {

@@ -108,11 +108,16 @@ std::vector<float> greens(const Scene& scene, const photonmap::PhotonMapParams& 
 
 // Floors of every model that has a kernel, under every way to weigh photons.
 TEST(PhotonMap, PicturesAreTheSameByThreadsAndInstructionSets) {
-    std::vector<photonmap::PhotonMapParams> settings(5, {.photons = 5000});
+    std::vector<photonmap::PhotonMapParams> settings(
+        5, {.photons = 5000, .kernel = photonmap::KernelKind::point});
     settings[1].filter = photonmap::FilterKind::cone;
     settings[2].footprint = 0.05F;
     settings[3].adaptive = true;
     settings[4].tree = photonmap::TreeKind::balanced;
+    settings.push_back({.photons = 5000});
+    settings.push_back({.photons = 5000,
+                        .pixel_footprint = false,
+                        .filter = photonmap::FilterKind::epanechnikov});
     const Bsdf floors[] = {
         support::diffuse(0.5F), {Schlick{Spectrum(Spectrum::Constant(0.5F)), 0.1F}}, {Phong{}}};
     for (const Bsdf& floor : floors)

@@ -42,6 +42,30 @@ TEST(PhotonMapParams, AreReadWithTheirDefaultsInPlace) {
     EXPECT_FALSE(defaults.tables);
 }
 
+TEST(PhotonMapParams, ChooseTheKernelThatTheyNeed) {
+    EXPECT_EQ(params_of("{}").kernel, KernelKind::photon);
+    EXPECT_TRUE(params_of("{}").averages_pixels());
+    EXPECT_FALSE(params_of(R"({"pixel_footprint": false})").averages_pixels());
+    EXPECT_FALSE(params_of(R"({"footprint": 0.1})").averages_pixels());
+    EXPECT_FALSE(params_of(R"({"kernel": "point"})").averages_pixels());
+    EXPECT_EQ(params_of(R"({"preset": "jensen1996"})").kernel, KernelKind::point);
+    for (const std::string key :
+         {R"("tree": "balanced")", R"("tree": "unbalanced")", R"("adaptive": true)",
+          R"("estimator": "raw")", R"("filter": "gaussian", "filter_alpha": 0.918)"}) {
+        EXPECT_EQ(params_of("{" + key + "}").kernel, KernelKind::point) << key;
+        const std::string line = refusal_of_params(R"({"kernel": "photon", )" + key + "}");
+        EXPECT_NE(line.find("belongs to the kernel \"point\""), std::string::npos) << line;
+    }
+    EXPECT_NE(refusal_of_params(R"({"kernel": "photon", "preset": "jensen1996"})")
+                  .find("/kernel: belongs to the kernel"),
+              std::string::npos);
+    for (const std::string other : {R"("kernel": "point")", R"("adaptive": true)", R"("footprint": 1)"})
+        EXPECT_NE(refusal_of_params(R"({"pixel_footprint": true, )" + other + "}")
+                      .find("/pixel_footprint"),
+                  std::string::npos)
+            << other;
+}
+
 TEST(PhotonMapParams, EmittedReplacesPhotons) {
     const PhotonMapParams given = params_of(R"({"emitted": 5000})");
     EXPECT_EQ(given.emitted, 5'000U);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -77,7 +78,10 @@ std::vector<Estimate> irradiance(const CausticEstimator& map,
 TEST(PhotonMap, StoresTheFluxThatTheMirrorCatches) {
     const Scene scene(flat_mirror(grey));
     const auto map =
-        build(scene, {.photons = 0, .emitted = 100'000, .tree = TreeKind::balanced}, {});
+        build(scene, {.photons = 0,
+                             .emitted = 100'000,
+                             .kernel = KernelKind::point,
+                             .tree = TreeKind::balanced}, {});
     const BuildReport report = map->build_report();
     EXPECT_EQ(report.counters.at("photons_emitted"), 100'000U);
     const double share = static_cast<double>(report.counters.at("photons_stored")) / 100'000;
@@ -141,7 +145,7 @@ TEST(PhotonMap, CountsQueriesAndTellsItsPhasesAndRadius) {
     std::vector<std::string> phases;
     RunOptions options;
     options.begin_phase = [&](std::string_view phase) { phases.emplace_back(phase); };
-    const auto map = build(scene, {.photons = 10'000, .nearest = 20, .max_radius = 0.5}, options);
+    const auto map = build(scene, {.photons = 10'000, .kernel = KernelKind::point, .nearest = 20, .max_radius = 0.5}, options);
     EXPECT_EQ(phases, (std::vector<std::string>{"trace", "balance"}));
     EXPECT_EQ(map->build_report().resolved.at("max_radius"), 0.5);
     const auto context = map->make_context();
@@ -154,6 +158,47 @@ TEST(PhotonMap, CountsQueriesAndTellsItsPhasesAndRadius) {
     EXPECT_EQ(counters.at("gathered_photons"), 20U);
     EXPECT_EQ(counters.at("empty_gathers"), 1U);
     EXPECT_GT(build(scene, {.photons = 10'000}, {})->build_report().resolved.at("max_radius"), 0);
+}
+
+TEST(PhotonMap, TellsThePhaseOfThePhotonsWidths) {
+    const Scene scene(flat_mirror(grey));
+    std::vector<std::string> phases;
+    std::vector<double> done;
+    RunOptions options;
+    options.begin_phase = [&](std::string_view phase) {
+        phases.emplace_back(phase);
+        done.clear();
+    };
+    options.progress = [&](double share) { done.push_back(share); };
+    const auto map = build(scene, {.photons = 10'000}, options);
+    EXPECT_EQ(phases, (std::vector<std::string>{"trace", "balance", "widths"}));
+    ASSERT_FALSE(done.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(done));
+    EXPECT_EQ(done.back(), 1);
+    EXPECT_TRUE(map->asks_for_cells());
+    EXPECT_FALSE(build(scene, {.photons = 10, .pixel_footprint = false}, {})->asks_for_cells());
+    EXPECT_FALSE(build(scene, {.photons = 10, .footprint = 0.1F}, {})->asks_for_cells());
+}
+
+// Smaller and smaller discs of the photons' own, too.
+TEST(PhotonMap, PassesDrawThePhotonsDiscsCloser) {
+    const Scene scene(flat_mirror(grey));
+    for (const double radius : {0.0, 0.3}) {
+        std::vector<std::uint64_t> found;
+        for (const int pass : {0, 3}) {
+            const auto map = build_pass(
+                scene, {.photons = 20'000, .nearest = 300, .radius = radius, .passes = 4}, {}, pass);
+            const auto context = map->make_context();
+            const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
+            std::vector<Estimate> out(1);
+            map->irradiance(points, out, *context);
+            Counters counters;
+            context->add_to(counters);
+            found.push_back(counters.at("gathered_photons"));
+        }
+        const auto ratio = static_cast<double>(found[1]) / static_cast<double>(found[0]);
+        EXPECT_NEAR(ratio, pass_share(3), 4 / std::sqrt(static_cast<double>(found[1])));
+    }
 }
 
 TEST(PhotonMap, GathersAllPhotonsWithinARadius) {
@@ -174,7 +219,7 @@ TEST(PhotonMap, GathersAllPhotonsWithinARadius) {
 
 TEST(PhotonMap, CountsThePhotonsThatAdaptiveUses) {
     const Scene scene(flat_mirror(grey));
-    const auto map = build(scene, {.photons = 20'000, .nearest = 100, .adaptive = true}, {});
+    const auto map = build(scene, {.photons = 20'000, .kernel = KernelKind::point, .nearest = 100, .adaptive = true}, {});
     const auto context = map->make_context();
     const auto points = ceiling_grid();
     std::vector<Estimate> out(points.size());
@@ -188,7 +233,7 @@ TEST(PhotonMap, CountsThePhotonsThatAdaptiveUses) {
 TEST(PhotonMap, PassesAreIndependentMapsWithSmallerDiscs) {
     const Scene scene(flat_mirror(grey));
     const PhotonMapParams params{
-        .photons = 20'000, .tree = TreeKind::balanced, .radius = 0.3, .passes = 4};
+        .photons = 20'000, .kernel = KernelKind::point, .tree = TreeKind::balanced, .radius = 0.3, .passes = 4};
     const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
     std::vector<std::uint64_t> found;
     std::set<float> values;
@@ -226,14 +271,17 @@ TEST(PhotonMap, RefusesParametersThatContradictEachOther) {
     EXPECT_THROW(build(scene, {.photons = 10, .emitted = 10}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 0, .emitted = 0}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .nearest = 1}, {}), InputError);
-    EXPECT_NO_THROW(build(scene, {.photons = 10, .nearest = 1, .estimator = Estimator::raw}, {}));
+    EXPECT_NO_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .nearest = 1, .estimator = Estimator::raw}, {}));
+    EXPECT_THROW(build(scene, {.photons = 10, .tree = TreeKind::balanced}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .adaptive = true}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .estimator = Estimator::raw}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = -1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .radius = -1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .passes = 0}, {}), InputError);
-    EXPECT_THROW(build(scene, {.photons = 10, .adaptive = true, .radius = 1}, {}), InputError);
-    EXPECT_THROW(build(scene, {.photons = 10, .nearest = 10, .adaptive = true}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .adaptive = true, .radius = 1}, {}), InputError);
+    EXPECT_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .nearest = 10, .adaptive = true}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = 1, .radius = 1}, {}), InputError);
-    EXPECT_THROW(build(scene, {.photons = 10, .nearest = 100'001, .adaptive = true}, {}),
+    EXPECT_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .nearest = 100'001, .adaptive = true}, {}),
                  InputError);
 }
 
@@ -253,7 +301,7 @@ TEST(PhotonMap, RefusesASquareToAverageOverWhereThatHasNoMeaning) {
     const Scene scene(flat_mirror(grey));
     using Estimator = PhotonMapParams::Estimator;
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-    const PhotonMapParams good{.photons = 10, .footprint = 0.1F};
+    const PhotonMapParams good{.photons = 10, .kernel = KernelKind::point, .footprint = 0.1F};
     EXPECT_NO_THROW(build(scene, good, {}));
     const auto refused = [&](const auto& change) {
         PhotonMapParams params = good;

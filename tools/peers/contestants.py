@@ -20,7 +20,7 @@ from report import exr
 
 HERE = pathlib.Path(__file__).resolve().parent
 OUR_METHODS = ("photonmap", "beamtree", "lighttrace")
-FIXED = {"photonmap": {"emission": "stratified", "filter": "epanechnikov"}, "lighttrace": {"emission": "stratified"}}
+FIXED = {"photonmap": {"kernel": "point", "emission": "stratified", "filter": "epanechnikov"}, "lighttrace": {"emission": "stratified"}}
 REPEATS = {1: 1.0, 2: 1.013, 3: 0.987}  # of POV-Ray's photons, which have no seed
 DEPTH = 18  # of Mitsuba's paths: our 16 events, floor and eye
 JITTER = 0.4  # of POV-Ray's photons, in spacings

@@ -80,25 +80,25 @@ Answer map(const std::vector<std::string>& more, const std::string& scene = "pla
 }
 
 TEST(Knobs, OfThePhotonMap) {
-    const Answer usual = map({});
+    const Answer usual = map({"kernel=point"});
     // Scatter 1 / sqrt(N - 2), bias by the disc's size.
-    EXPECT_NEAR(map({"nearest=200"}).error() / usual.error(), 0.5, 0.15);
+    EXPECT_NEAR(map({"kernel=point", "nearest=200"}).error() / usual.error(), 0.5, 0.15);
     EXPECT_EQ(count(map({"photons=80000"}), "photons_stored"), 80'000U);
     EXPECT_EQ(count(map({"emitted=10000"}), "photons_emitted"), 10'000U);
     // [J96 (4)] as printed reads high by N / (N - 1).
     EXPECT_NEAR(map({"estimator=raw"}).mean() / usual.mean(), 50.0 / 49.0, 1e-3);
     EXPECT_EQ(map({"preset=jensen1996"}).mean(), map({"estimator=raw", "tree=balanced"}).mean());
-    EXPECT_LT(count(map({"max_radius=0.02"}), "gathered_photons"),
+    EXPECT_LT(count(map({"kernel=point", "max_radius=0.02"}), "gathered_photons"),
               count(usual, "gathered_photons") / 2);
     const Answer narrow = map({"radius=0.05"}), wide = map({"radius=0.2"});
     EXPECT_NEAR(wide.error() / narrow.error(), 0.25, 0.1);
     // Squares that hold more photons than the nearest scatter less.
-    const Answer averaged = map({"footprint=0.2"});
+    const Answer averaged = map({"kernel=point", "footprint=0.2"});
     EXPECT_LT(averaged.error(), 0.8 * usual.error());
     EXPECT_NEAR(averaged.mean(), 1, 0.05);
     // A kernel that trusts near photons more has fewer of them in effect.
     for (const std::string filter : {"cone", "gaussian", "epanechnikov"}) {
-        const Answer filtered = map({"filter=" + filter});
+        const Answer filtered = map({"kernel=point", "filter=" + filter});
         EXPECT_GT(filtered.error(), usual.error()) << filter;
         EXPECT_NEAR(filtered.mean(), 1, 0.05) << filter;
     }
@@ -108,12 +108,13 @@ TEST(Knobs, OfThePhotonMap) {
     EXPECT_GT(map({"filter=gaussian", "filter_beta=6"}).error(),
               map({"filter=gaussian", "filter_beta=0.5"}).error());
     EXPECT_NEAR(
-        map({"filter=gaussian", "filter_alpha=0.918"}).mean() / map({"filter=gaussian"}).mean(),
+        map({"filter=gaussian", "filter_alpha=0.918"}).mean() /
+            map({"kernel=point", "filter=gaussian"}).mean(),
         0.531, 1e-3);
     // Discs that reach over the edges of the light hold photons that points do not use.
     const Answer adaptive = map({"nearest=4000", "adaptive=true"}, "parabolic_mirror");
     EXPECT_LT(count(adaptive, "used_photons"), count(adaptive, "gathered_photons"));
-    EXPECT_LT(map({"emission=stratified"}).error(), usual.error());
+    EXPECT_LT(map({"kernel=point", "emission=stratified"}).error(), usual.error());
     // Glass splits its light, or decides for one way.
     EXPECT_GT(count(map({"interaction=split"}, "flat_water"), "photons_branched"), 0U);
     EXPECT_EQ(count(map({}, "flat_water"), "photons_branched"), 0U);
@@ -122,15 +123,32 @@ TEST(Knobs, OfThePhotonMap) {
     EXPECT_LT(map({"emitted=10000", "max_bounces=1"}, "slab").mean(), 0.05);
 }
 
+// Discs of the photons' own: the same knobs.
+TEST(Knobs, OfThePhotonMapsOwnDiscs) {
+    const Answer usual = map({});
+    EXPECT_NE(usual.mean(), map({"kernel=point"}).mean());
+    EXPECT_NEAR(usual.mean(), 1, 0.02);
+    EXPECT_NEAR(map({"nearest=200"}).error() / usual.error(), 0.5, 0.15);
+    EXPECT_LT(count(map({"max_radius=0.02"}), "gathered_photons"),
+              count(usual, "gathered_photons") / 2);
+    EXPECT_LT(map({"footprint=0.2"}).error(), 0.8 * usual.error());
+    // Points of a probe have no pixels.
+    EXPECT_EQ(map({"pixel_footprint=false"}).mean(), usual.mean());
+    for (const std::string filter : {"cone", "gaussian", "epanechnikov"})
+        EXPECT_GT(map({"filter=" + filter}).error(), usual.error()) << filter;
+    EXPECT_LT(map({"emission=stratified"}).error(), usual.error());
+}
+
 TEST(Knobs, OfThePhotonMapThatChangeNoAnswer) {
-    const Answer usual = map({}, "schlick");
+    const Answer usual = map({"kernel=point"}, "schlick");
     for (const std::string tree : {"tree=unbalanced", "tree=balanced"}) {
         const Answer other = map({tree}, "schlick");
         EXPECT_NE(other.bytes, usual.bytes) << tree;
         EXPECT_LT(other.largest_difference(usual), 1e-5) << tree;
     }
     // Another way to the same sum, in one order or another; BrdfLobeTable's tests count what it looks up.
-    EXPECT_LT(map({"tables=true"}, "schlick").largest_difference(usual), 1e-5);
+    EXPECT_LT(map({"kernel=point", "tables=true"}, "schlick").largest_difference(usual), 1e-5);
+    EXPECT_LT(map({"tables=true"}, "schlick").largest_difference(map({}, "schlick")), 1e-5);
 }
 
 Answer beams(const std::vector<std::string>& more, const std::string& scene = "sine_water") {
@@ -259,8 +277,8 @@ TEST(Knobs, AreAllTurnedAbove) {
         {"photonmap", {"preset",      "photons",     "emitted",      "estimator",   "adaptive",
                        "nearest",     "max_radius",  "radius",       "footprint",   "filter",
                        "filter_k",    "filter_beta", "filter_alpha", "max_bounces", "emission",
-                       "interaction", "tree",        "tables",       "passes",      "save",
-                       "load"}},  // these three: photonmap/progressive_test, kept_photons_test
+                       "interaction", "tree",        "tables",       "kernel",      "pixel_footprint",
+                       "passes",      "save",        "load"}},  // these three: photonmap/progressive_test, kept_photons_test
         {"beamtree",
          {"preset",        "bound",           "spread_threshold", "merging",         "hierarchy",
           "leaf",          "intensity",       "footprint",        "pixel_footprint", "polygons",

@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "core/reference/light_trace.h"
+#include "photonmap/photon_map.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/caustic_sum.h"
+#include "tests/support/statistics.h"
+
+namespace caustics {
+namespace {
+
+using photonmap::KernelKind;
+using photonmap::PhotonMapParams;
+
+/// A pool so deep that its light folds, in parallel light from above.
+SceneDesc folded_pool() {
+    SceneDesc desc;
+    Shape water;
+    water.name = "water";
+    water.primitive = Primitive::heightfield;
+    water.field.half_size = Vec2d::Constant(2);
+    water.field.waves = {{0.03, {9, -12}, 0.7}};
+    water.to_world = Eigen::Translation3d(0, 0, 0.9);
+    water.bsdf = support::glass(1.33F);
+    desc.shapes = {support::horizontal("floor", 0, 1.5, true, support::diffuse(0.5F)), water};
+    desc.lights = {support::directional_light({0.1, -0.05, -1}, 1)};
+    desc.camera = support::camera({0, 0, 0.8}, {0.05, 0.1, 0}, {0, 1, 0}, 65, 32, 32);
+    return desc;
+}
+
+support::Moments sums(const Scene& scene, const PhotonMapParams& params) {
+    support::Moments found;
+    RunOptions options;
+    options.samples_per_pixel = 4;
+    for (options.seed = 1; options.seed <= 25; ++options.seed)
+        found.add(support::caustic_sum(scene, *build(scene, params, options), options));
+    return found;
+}
+
+double traced_sum(const Scene& scene) {
+    RunOptions options;
+    options.samples_per_pixel = 4;
+    return support::caustic_sum(
+        scene, *build(scene, LightTraceParams{.paths = 4'000'000}, options), options);
+}
+
+// The N nearest of a dark point reach the bright folds, and the picture has too much light; discs of the photons' own keep it.
+TEST(PhotonSum, OfAFoldedPoolIsThatOfLightTracing) {
+    const Scene scene(folded_pool());
+    const double truth = traced_sum(scene);
+    for (const std::uint64_t photons : {10'000, 40'000}) {
+        const support::Moments own = sums(scene, {.photons = photons});
+        EXPECT_NEAR(own.mean() / truth, 1, 0.01) << photons;
+        EXPECT_LT(own.standard_error() / truth, 0.004);
+        const support::Moments at_points =
+            sums(scene, {.photons = photons, .pixel_footprint = false});
+        EXPECT_NEAR(at_points.mean() / truth, 1, 0.01) << photons;
+    }
+    EXPECT_GT(sums(scene, {.photons = 40'000, .kernel = KernelKind::point}).mean() / truth, 1.03);
+}
+
+}  // namespace
+}  // namespace caustics
