@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/reference/light_trace.h"
+#include "core/render/renderer.h"
 #include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/caustic_sum.h"
@@ -28,35 +29,38 @@ SceneDesc folded_pool() {
     return desc;
 }
 
-support::Moments sums(const Scene& scene, const PhotonMapParams& params) {
+Film traced(const Scene& scene) {
+    RunOptions options;
+    options.samples_per_pixel = 4;
+    return render(scene, *build(scene, LightTraceParams{.paths = 4'000'000}, options), options)
+        .film;
+}
+
+/// The pictures' sums over the traced one's.
+support::Moments shares(const Scene& scene, const PhotonMapParams& params, const Film& truth) {
     support::Moments found;
     RunOptions options;
     options.samples_per_pixel = 4;
     for (options.seed = 1; options.seed <= 25; ++options.seed)
-        found.add(support::caustic_sum(scene, *build(scene, params, options), options));
+        found.add(support::share_of_traced(
+            render(scene, *build(scene, params, options), options).film, truth));
     return found;
-}
-
-double traced_sum(const Scene& scene) {
-    RunOptions options;
-    options.samples_per_pixel = 4;
-    return support::caustic_sum(
-        scene, *build(scene, LightTraceParams{.paths = 4'000'000}, options), options);
 }
 
 // The N nearest of a dark point reach the bright folds, and the picture has too much light; discs of the photons' own keep it.
 TEST(PhotonSum, OfAFoldedPoolIsThatOfLightTracing) {
     const Scene scene(folded_pool());
-    const double truth = traced_sum(scene);
+    const Film truth = traced(scene);
     for (const std::uint64_t photons : {10'000, 40'000}) {
-        const support::Moments own = sums(scene, {.photons = photons});
-        EXPECT_NEAR(own.mean() / truth, 1, 0.01) << photons;
-        EXPECT_LT(own.standard_error() / truth, 0.004);
+        const support::Moments own = shares(scene, {.photons = photons}, truth);
+        EXPECT_NEAR(own.mean(), 1, 0.01) << photons;
+        EXPECT_LT(own.standard_error(), 0.004);
         const support::Moments at_points =
-            sums(scene, {.photons = photons, .pixel_footprint = false});
-        EXPECT_NEAR(at_points.mean() / truth, 1, 0.01) << photons;
+            shares(scene, {.photons = photons, .pixel_footprint = false}, truth);
+        EXPECT_NEAR(at_points.mean(), 1, 0.01) << photons;
     }
-    EXPECT_GT(sums(scene, {.photons = 40'000, .kernel = KernelKind::point}).mean() / truth, 1.03);
+    const PhotonMapParams nearest{.photons = 40'000, .kernel = KernelKind::point};
+    EXPECT_GT(shares(scene, nearest, truth).mean(), 1.03);
 }
 
 }  // namespace

@@ -1,18 +1,15 @@
 #include "tests/support/caustic_sum.h"
 
-#include "core/render/renderer.h"
-
 namespace caustics::support {
 
-double caustic_sum(const Scene& scene, const CausticEstimator& estimator,
-                   const RunOptions& options) {
-    const Film film = render(scene, estimator, options).film;
-    const std::vector<float>& green = *film.find("caustic.G");
-    const std::vector<float>* const unreached = film.find("unreached");
-    double sum = 0;
-    for (std::size_t i = 0; i < green.size(); ++i)
-        if (unreached == nullptr || (*unreached)[i] == 0) sum += static_cast<double>(green[i]);
-    return sum;
+double share_of_traced(const Film& picture, const Film& traced) {
+    double sum = 0, truth = 0;
+    for (std::size_t i = 0; i < traced.pixel_count(); ++i) {
+        if ((*traced.find("unreached.Y"))[i] != 0) continue;
+        sum += static_cast<double>(picture.rgb("caustic", i)[1]);
+        truth += static_cast<double>(traced.rgb("caustic", i)[1]);
+    }
+    return sum / truth;
 }
 
 }  // namespace caustics::support

@@ -1,12 +1,10 @@
 #pragma once
 
-#include "core/caustic_estimator.h"
-#include "core/scene/scene.h"
+#include "core/render/film.h"
 
 namespace caustics::support {
 
-/// Sum of a picture's caustic (green) over the pixels that light paths reach.
-double caustic_sum(const Scene& scene, const CausticEstimator& estimator,
-                   const RunOptions& options);
+/// Sum of a picture's caustic (green) over that of light tracing, over the pixels that light paths reach.
+double share_of_traced(const Film& picture, const Film& traced);
 
 }  // namespace caustics::support
