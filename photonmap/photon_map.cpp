@@ -244,6 +244,8 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     tree->add_to(report.counters);
     if (params.radius == 0)
         report.resolved["max_radius"] = static_cast<double>(settings.limits.max_radius);
+    // Nearest N alone does not keep the light's sum.
+    if (params.kernel == KernelKind::point && params.radius == 0) report.resolved["sum_not_kept"] = 1;
     if (!params.load.empty()) report.resolved["max_bounces"] = kept.origin.max_bounces;
     if (kept.version < first_version_with_surfaces)
         report.resolved["photon_map_version"] = kept.version;

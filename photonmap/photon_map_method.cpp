@@ -129,7 +129,8 @@ std::vector<Parameter<P>> estimate_parameters() {
                               {name(FilterKind::epanechnikov), FilterKind::epanechnikov}},
                              {.key = "filter",
                               .meaning = "How photons weigh by their distance.",
-                              .source = "[Jensen 2001]"}),
+                              .source = "[Jensen 2001; Epanechnikov 1969; Silverman 1986]"})
+            .usually("epanechnikov; none with kernel point"),
         parameter::number<P>(&P::filter_k, 1, 1000,
                              {.key = "filter_k",
                               .meaning = "Of the filter cone: its weight is 0 at so many radii.",
@@ -238,6 +239,8 @@ void settle_kernel(const JsonNode& node, P& params) {
                       each.key + ", or kernel)");
         params.kernel = KernelKind::point;
     }
+    if (!node.has("filter") && params.kernel == KernelKind::photon)
+        params.filter = FilterKind::epanechnikov;
     const auto pixels = node.find("pixel_footprint");
     if (!pixels) return;
     if (params.kernel == KernelKind::point)
@@ -265,9 +268,9 @@ void settle(const JsonNode& node, P& params) {
         params.photons = 0;
     }
     settle_nearest(node, params);
-    settle_kernel(node, params);
     settle_radius(node, params);
     settle_filter(node, params);
+    settle_kernel(node, params);
     settle_footprint(node, params);
     settle_files(node, params);
 }

@@ -59,6 +59,7 @@ struct PhotonMapParams {
     float footprint = 0;
     /// With `photon`: the estimate is averaged over the pixels' cells (ReceiverPoint::cell) where points have one.
     bool pixel_footprint = true;
+    /// The table of parameters takes `epanechnikov` with `kernel: photon` where none is given.
     FilterKind filter = FilterKind::none;
     double filter_k = 1.1;       ///< of the cone
     double filter_beta = 1.953;  ///< of the Gaussian

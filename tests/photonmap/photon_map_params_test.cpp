@@ -86,7 +86,11 @@ TEST(PhotonMapParams, ChooseTheEmissionAndTheInteraction) {
 }
 
 TEST(PhotonMapParams, ChooseTheFilterAndARadiusInPlaceOfTheNearest) {
-    EXPECT_EQ(params_of("{}").filter, FilterKind::none);
+    EXPECT_EQ(params_of("{}").filter, FilterKind::epanechnikov);
+    EXPECT_EQ(params_of(R"({"kernel": "point"})").filter, FilterKind::none);
+    EXPECT_EQ(params_of(R"({"preset": "jensen1996"})").filter, FilterKind::none);
+    EXPECT_EQ(params_of(R"({"adaptive": true})").filter, FilterKind::none);
+    EXPECT_EQ(params_of(R"({"filter": "none"})").filter, FilterKind::none);
     EXPECT_EQ(params_of("{}").radius, 0);
     EXPECT_EQ(params_of(R"({"filter": "epanechnikov"})").filter, FilterKind::epanechnikov);
     EXPECT_EQ(params_of(R"({"filter": "cone", "radius": 0.5})").radius, 0.5);
