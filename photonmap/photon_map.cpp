@@ -118,7 +118,8 @@ private:
     RadianceEstimate estimate_;
     bool tables_;
     bool averages_pixels_;
-    double square_;  ///< side of the square that the photons' own kernels are averaged over [m]; 0: none
+    double
+        square_;  ///< side of the square that the photons' own kernels are averaged over [m]; 0: none
 };
 
 void check(const PhotonMapParams& params) {
@@ -159,9 +160,10 @@ GatherLimits limits(const PhotonMapParams& params, const Scene& scene, const Pho
                     int pass) {
     const bool at_points = params.kernel == KernelKind::point;
     const bool positions = params.adaptive || params.footprint > 0;
-    const auto margin = at_points ? static_cast<float>(RadianceEstimate::margin_of(
-                                        static_cast<double>(params.footprint)))
-                                  : 0.0F;
+    const auto margin =
+        at_points
+            ? static_cast<float>(RadianceEstimate::margin_of(static_cast<double>(params.footprint)))
+            : 0.0F;
     if (params.radius > 0)
         return {GatherLimits::all, static_cast<float>(params.radius * std::sqrt(pass_share(pass))),
                 positions, margin};
@@ -245,7 +247,8 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     if (params.radius == 0)
         report.resolved["max_radius"] = static_cast<double>(settings.limits.max_radius);
     // Nearest N alone does not keep the light's sum.
-    if (params.kernel == KernelKind::point && params.radius == 0) report.resolved["sum_not_kept"] = 1;
+    if (params.kernel == KernelKind::point && params.radius == 0)
+        report.resolved["sum_not_kept"] = 1;
     if (!params.load.empty()) report.resolved["max_bounces"] = kept.origin.max_bounces;
     if (kept.version < first_version_with_surfaces)
         report.resolved["photon_map_version"] = kept.version;

@@ -70,10 +70,11 @@ std::vector<Parameter<P>> estimate_parameters() {
         parameter::choice<P>(
             &P::kernel, {{"photon", KernelKind::photon}, {"point", KernelKind::point}},
             {.key = "kernel",
-             .meaning = "Spreads each photon's light over a disc up to its own N-th neighbour, which "
-                        "keeps its sum; or takes a point's N nearest over their disc, which makes "
-                        "light where its density is uneven. Adaptive, filter_alpha, the estimator raw and "
-                        "trees other than packed belong to point.",
+             .meaning =
+                 "Spreads each photon's light over a disc up to its own N-th neighbour, which "
+                 "keeps its sum; or takes a point's N nearest over their disc, which makes "
+                 "light where its density is uneven. Adaptive, filter_alpha, the estimator raw and "
+                 "trees other than packed belong to point.",
              .source = "[Breiman, Meisel & Purcell 1977; Abramson 1982; J96 (4)]"})
             .only_if([](const P& p) { return p.kernel == KernelKind::photon; })
             .usually("photon, or point where a key belongs to it"),
@@ -119,9 +120,7 @@ std::vector<Parameter<P>> estimate_parameters() {
             {.key = "pixel_footprint",
              .meaning = "With kernel photon: averages over each pixel as the camera sees it on the "
                         "receiver; what mirrors, glass and edges show is asked at points."})
-            .only_if([](const P& p) {
-                return p.kernel == KernelKind::photon && p.footprint == 0;
-            }),
+            .only_if([](const P& p) { return p.kernel == KernelKind::photon && p.footprint == 0; }),
         parameter::choice<P>(&P::filter,
                              {{name(FilterKind::none), FilterKind::none},
                               {name(FilterKind::cone), FilterKind::cone},
@@ -223,10 +222,13 @@ struct PointKey {
 };
 
 std::array<PointKey, 4> point_keys(const JsonNode& node, const P& params) {
-    return {{{"tree", params.tree != TreeKind::packed, "photons' own discs are kept by the tree \"packed\""},
+    return {{{"tree", params.tree != TreeKind::packed,
+              "photons' own discs are kept by the tree \"packed\""},
              {"adaptive", params.adaptive, "it chooses N at a point"},
-             {"estimator", params.estimator == P::Estimator::raw, "\"raw\" is the equation of a point's N nearest"},
-             {"filter_alpha", node.has("filter_alpha"), "with it the filter's mean is not 1, and light is not kept"}}};
+             {"estimator", params.estimator == P::Estimator::raw,
+              "\"raw\" is the equation of a point's N nearest"},
+             {"filter_alpha", node.has("filter_alpha"),
+              "with it the filter's mean is not 1, and light is not kept"}}};
 }
 
 // Keys that the kernel "point" alone has choose it.
@@ -235,8 +237,8 @@ void settle_kernel(const JsonNode& node, P& params) {
         if (!each.asked || params.kernel == KernelKind::point) continue;
         if (node.has("kernel"))
             node.at(node.has(each.key) ? each.key : "kernel")
-                .fail(std::string("belongs to the kernel \"point\": ") + each.reason + " (leave out " +
-                      each.key + ", or kernel)");
+                .fail(std::string("belongs to the kernel \"point\": ") + each.reason +
+                      " (leave out " + each.key + ", or kernel)");
         params.kernel = KernelKind::point;
     }
     if (!node.has("filter") && params.kernel == KernelKind::photon)
@@ -279,16 +281,15 @@ void settle(const JsonNode& node, P& params) {
 
 const DescribedMethod<PhotonMapParams>& photonmap_method() {
     static const DescribedMethod<P> method(
-        {.facts =
-             {.name = "photonmap",
-              .summary =
-                  "Jensen 1996: photons aimed at the casters, each spread over a disc up to its N-th "
-                  "neighbour, or the N nearest of a point as in the paper",
-              .serves = "every scene; without light on casters by `emitted` alone",
-              .work = {.parameter = "photons",
-                       .instead = "emitted",
-                       .first = 1000,
-                       .most = 1'000'000'000}},
+        {.facts = {.name = "photonmap",
+                   .summary = "Jensen 1996: photons aimed at the casters, each spread over a disc "
+                              "up to its N-th "
+                              "neighbour, or the N nearest of a point as in the paper",
+                   .serves = "every scene; without light on casters by `emitted` alone",
+                   .work = {.parameter = "photons",
+                            .instead = "emitted",
+                            .first = 1000,
+                            .most = 1'000'000'000}},
          .parameters = joined(photon_parameters(), estimate_parameters()),
          .settle = settle,
          .take_least_work =

@@ -81,8 +81,8 @@ FilterPolynomial DensityFilter::profile_integral() const {
     for (std::size_t n = 0; n <= profile.degree; ++n)
         end += static_cast<double>(profile.coefficient[n]) / power(n);
     for (std::size_t n = 0; n <= profile.degree; ++n)
-        profile.coefficient[n] = static_cast<float>(static_cast<double>(profile.coefficient[n]) /
-                                                    (2 * end * power(n)));
+        profile.coefficient[n] =
+            static_cast<float>(static_cast<double>(profile.coefficient[n]) / (2 * end * power(n)));
     return profile;
 }
 

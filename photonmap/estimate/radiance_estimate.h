@@ -40,11 +40,11 @@ struct EstimateScratch {
 /// the maximum radius sets the kernel too: with A its area, the two parts bring d P(a_N < A) + g(A) f_N(A) and
 /// d P(a_N > A) - g(A) f_N(A). f_r is the point's everywhere on the square.
 ///
-/// Where the photons have discs of their own (photon_discs.h), each weighs by the filter over its own disc, and the estimate
-/// is their sum: unbiased in a uniform field for any N and filter, and for photons that depend on each other, because a
-/// photon's disc does not depend on the point. The discs' area goes as one over the density, which leaves
-/// a bias of the fourth order of their width [Abramson 1982; Silverman 1986, sec. 5.3]. Photons may be gathered for a cell in
-/// place of the point: then it is the mean over that (cell_kernel.h).
+/// Where the photons have discs of their own (photon_discs.h), each weighs by the filter over its own disc, and the
+/// estimate is their sum: unbiased in a uniform field for any N and filter, and for photons that depend on each other,
+/// because a photon's disc does not depend on the point. The discs' area goes as one over the density, which leaves
+/// a bias of the fourth order of their width [Abramson 1982; Silverman 1986, sec. 5.3]. Photons may be gathered for a
+/// cell in place of the point: then it is the mean over that (cell_kernel.h).
 ///
 /// Photons that came from behind the point's geometric normal do not count, and neither do those of
 /// surfaces that face elsewhere: the floor's at the foot of a wall (same_surface.h). Photons carry flux,

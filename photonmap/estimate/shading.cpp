@@ -97,7 +97,8 @@ void Shading::weigh_on_cell(const CellKernel& kernel, const ReceiverPoint& point
     const Vec2d first = sides.first.normalized(), second = sides.second.normalized();
     const double cosine = first.dot(second), square = sides.sine * sides.sine;
     // The dual vectors of the two sides.
-    const Vec2d across[2] = {(first - cosine * second) / square, (second - cosine * first) / square};
+    const Vec2d across[2] = {(first - cosine * second) / square,
+                             (second - cosine * first) / square};
     const double length[2] = {sides.first.norm(), sides.second.norm()};
     PhotonsOnCell on{};
     std::ranges::copy(photons.position, on.position);

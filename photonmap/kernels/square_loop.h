@@ -32,9 +32,8 @@ private:
     static Floats share(const FilterPolynomial& profile, const PhotonsOnSquare& photons, Floats x) {
         const auto half = Lanes::all(photons.half);
         const auto scale = Lanes::all(photons.inverse_reach);
-        return Lanes::sub(
-            profile_integral<Lanes>(profile, Lanes::mul(Lanes::add(x, half), scale)),
-            profile_integral<Lanes>(profile, Lanes::mul(Lanes::sub(x, half), scale)));
+        return Lanes::sub(profile_integral<Lanes>(profile, Lanes::mul(Lanes::add(x, half), scale)),
+                          profile_integral<Lanes>(profile, Lanes::mul(Lanes::sub(x, half), scale)));
     }
 };
 

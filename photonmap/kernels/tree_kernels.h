@@ -110,7 +110,8 @@ struct Farthest {
 /// A packed tree whose photons have a disc each (photon_discs.h).
 struct DiscView {
     PackedView tree;
-    const float* radius;  ///< of each photon's disc [m], bucket by bucket; 0 where there is no photon
+    const float*
+        radius;  ///< of each photon's disc [m], bucket by bucket; 0 where there is no photon
 };
 
 /// One query for the discs that hold a point, or that may reach a cell round it.

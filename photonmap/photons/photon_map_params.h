@@ -27,7 +27,7 @@ const char* name(FilterKind kind);
 /// Whose disc spreads a photon's light.
 enum class KernelKind {
     photon,  ///< each photon's own, up to its N-th neighbour: the light's sum is kept (photon_discs.h)
-    point    ///< the point's, up to its N-th photon [J96 (3)]: too much light where it is uneven
+    point  ///< the point's, up to its N-th photon [J96 (3)]: too much light where it is uneven
 };
 
 /// `photonmap` [J96]: photons traced from the lights through the casters, stored 20 bytes each in
@@ -51,7 +51,7 @@ struct PhotonMapParams {
     static constexpr int default_adaptive_nearest = 200;
     static constexpr int least_adaptive_nearest = 20;  ///< for AdaptiveN's ladder to have room
     static constexpr int most_adaptive_nearest = 100'000;
-    int nearest = 50;       ///< N; at least 2 for `unbiased`, also where it counts a photon's neighbours
+    int nearest = 50;  ///< N; at least 2 for `unbiased`, also where it counts a photon's neighbours
     bool adaptive = false;  ///< N is the largest number, each point takes its own (AdaptiveN)
     double max_radius = 0;  ///< [m]; 0: chosen from the photons, see the report
     double radius = 0;  ///< [m], of every estimate, in place of nearest and max_radius; 0: those

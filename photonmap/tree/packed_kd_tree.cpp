@@ -91,8 +91,8 @@ void PackedKdTree::copy_out(const Candidates& found, const CopiedPhotons& to) co
 }
 
 Photon PackedKdTree::photon(std::size_t index) const {
-    const unsigned char* const x = view_.buckets + index / bucket_photons * bucket_bytes +
-                                   4 * (index % bucket_photons);
+    const unsigned char* const x =
+        view_.buckets + index / bucket_photons * bucket_bytes + 4 * (index % bucket_photons);
     const unsigned char* const direction = x + 16 * bucket_photons - 2 * (index % bucket_photons);
     Photon photon;
     for (std::size_t axis = 0; axis < 3; ++axis)

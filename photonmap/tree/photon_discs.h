@@ -6,12 +6,12 @@ namespace caustics::photonmap {
 
 /// Photons that have a disc each, up to their N-th neighbour: a kernel estimate whose widths belong to the samples
 /// [Breiman, Meisel & Purcell 1977], in a plane in proportion to the density to the power -1/2, as [Abramson 1982] has
-/// them. A kernel of integral 1 on each disc keeps the light of each photon, so that the estimate's integral over a plane
-/// is the photons' flux.
+/// them. A kernel of integral 1 on each disc keeps the light of each photon, so that the estimate's integral over a
+/// plane is the photons' flux.
 ///
-/// A point's answer is the photons whose discs hold it, without a number N; a heap of boxes over the buckets of a packed
-/// tree finds them. Where discs may be averaged over cells (ReceiverPoint::cell), it is those whose kernels may reach the cell.
-/// Photons count for points as in every tree. The same answers on every instruction set.
+/// A point's answer is the photons whose discs hold it, without a number N; a heap of boxes over the buckets of a
+/// packed tree finds them. Where discs may be averaged over cells (ReceiverPoint::cell), it is those whose kernels may
+/// reach the cell. Photons count for points as in every tree. The same answers on every instruction set.
 class PhotonDiscs final : public PhotonTree {
 public:
     /// `cell_reach`: how far a kernel reaches that is averaged over a cell, over the disc's radius; 0: cells are not
@@ -41,7 +41,8 @@ private:
     std::unique_ptr<const PackedKdTree> tree_;
     AlignedArray<float> radius_;
     float cell_reach_;
-    std::vector<Bounds> bounds_;  ///< of the discs below each node of the packed tree, the root's at 1
+    std::vector<Bounds>
+        bounds_;  ///< of the discs below each node of the packed tree, the root's at 1
 };
 
 }  // namespace caustics::photonmap

@@ -13,8 +13,8 @@ constexpr std::size_t buckets_together = 32;
 /// Squares of smaller radii are no normal floats.
 constexpr float smallest_radius = 1e-18F;
 
-/// Where a photon landed, seen from the side it came from. Where the surface is not known the photon's direction stands for
-/// its normal.
+/// Where a photon landed, seen from the side it came from. Where the surface is not known the photon's direction
+/// stands for its normal.
 ReceiverPoint landing_of(const Photon& photon) {
     ReceiverPoint point;
     point.position = position(photon);
@@ -59,9 +59,8 @@ AlignedArray<float> photon_widths(const PackedKdTree& tree, const DiscWidths& wi
             else
                 tree.gather(landings, limits, scratch,
                             [&](std::size_t i, const GatheredPhotons& near) {
-                                take(i, near.full
-                                            ? std::sqrt(near.squared_distance[near.farthest])
-                                            : widths.max_radius);
+                                take(i, near.full ? std::sqrt(near.squared_distance[near.farthest])
+                                                  : widths.max_radius);
                             });
         }
         done += chunk.end - chunk.first;

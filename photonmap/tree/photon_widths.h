@@ -13,9 +13,9 @@ struct DiscWidths {
     double share = 1;          ///< of the squared radius that is taken (pass_share)
 };
 
-/// The radii [m] of the photons' discs, bucket by bucket of their tree; 0 in a bucket's empty places. A photon's neighbours
-/// are those that count at a point of its surface where it landed: they came from the same side, and their surface
-/// faces alike. On all threads, a bucket at a time.
+/// The radii [m] of the photons' discs, bucket by bucket of their tree; 0 in a bucket's empty places. A photon's
+/// neighbours are those that count at a point of its surface where it landed: they came from the same side, and their
+/// surface faces alike. On all threads, a bucket at a time.
 AlignedArray<float> photon_widths(const PackedKdTree& tree, const DiscWidths& widths,
                                   const RunOptions& options);
 

@@ -81,13 +81,12 @@ TEST(Corner, PhotonsOfTheFloorDoNotLightTheWall) {
          {photonmap::TreeKind::balanced, photonmap::TreeKind::unbalanced,
           photonmap::TreeKind::packed}) {
         SCOPED_TRACE(name(tree));
-        const auto map = build(
-            scene,
-            photonmap::PhotonMapParams{.photons = 150'000,
-                                       .kernel = photonmap::KernelKind::point,
-                                       .tree = tree,
-                                       .radius = radius},
-            RunOptions{});
+        const auto map = build(scene,
+                               photonmap::PhotonMapParams{.photons = 150'000,
+                                                          .kernel = photonmap::KernelKind::point,
+                                                          .tree = tree,
+                                                          .radius = radius},
+                               RunOptions{});
         expect_no_light_round_the_corner(scene, truth, *map);
     }
     const auto discs = build(

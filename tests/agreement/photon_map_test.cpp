@@ -115,9 +115,8 @@ TEST(PhotonMap, PicturesAreTheSameByThreadsAndInstructionSets) {
     settings[3].adaptive = true;
     settings[4].tree = photonmap::TreeKind::balanced;
     settings.push_back({.photons = 5000});
-    settings.push_back({.photons = 5000,
-                        .pixel_footprint = false,
-                        .filter = photonmap::FilterKind::epanechnikov});
+    settings.push_back(
+        {.photons = 5000, .pixel_footprint = false, .filter = photonmap::FilterKind::epanechnikov});
     const Bsdf floors[] = {
         support::diffuse(0.5F), {Schlick{Spectrum(Spectrum::Constant(0.5F)), 0.1F}}, {Phong{}}};
     for (const Bsdf& floor : floors)

@@ -47,7 +47,8 @@ support::Moments shares(const Scene& scene, const PhotonMapParams& params, const
     return found;
 }
 
-// The N nearest of a dark point reach the bright folds, and the picture has too much light; discs of the photons' own keep it.
+// The N nearest of a dark point reach the bright folds, and the picture has too much light; discs of the photons' own
+// keep it.
 TEST(PhotonSum, OfAFoldedPoolIsThatOfLightTracing) {
     const Scene scene(folded_pool());
     const Film truth = traced(scene);

@@ -59,7 +59,8 @@ TEST(PhotonMapParams, ChooseTheKernelThatTheyNeed) {
     EXPECT_NE(refusal_of_params(R"({"kernel": "photon", "preset": "jensen1996"})")
                   .find("/kernel: belongs to the kernel"),
               std::string::npos);
-    for (const std::string other : {R"("kernel": "point")", R"("adaptive": true)", R"("footprint": 1)"})
+    for (const std::string other :
+         {R"("kernel": "point")", R"("adaptive": true)", R"("footprint": 1)"})
         EXPECT_NE(refusal_of_params(R"({"pixel_footprint": true, )" + other + "}")
                       .find("/pixel_footprint"),
                   std::string::npos)

@@ -77,11 +77,10 @@ std::vector<Estimate> irradiance(const CausticEstimator& map,
 
 TEST(PhotonMap, StoresTheFluxThatTheMirrorCatches) {
     const Scene scene(flat_mirror(grey));
-    const auto map =
-        build(scene, {.photons = 0,
-                             .emitted = 100'000,
-                             .kernel = KernelKind::point,
-                             .tree = TreeKind::balanced}, {});
+    const auto map = build(
+        scene,
+        {.photons = 0, .emitted = 100'000, .kernel = KernelKind::point, .tree = TreeKind::balanced},
+        {});
     const BuildReport report = map->build_report();
     EXPECT_EQ(report.counters.at("photons_emitted"), 100'000U);
     const double share = static_cast<double>(report.counters.at("photons_stored")) / 100'000;
@@ -145,7 +144,9 @@ TEST(PhotonMap, CountsQueriesAndTellsItsPhasesAndRadius) {
     std::vector<std::string> phases;
     RunOptions options;
     options.begin_phase = [&](std::string_view phase) { phases.emplace_back(phase); };
-    const auto map = build(scene, {.photons = 10'000, .kernel = KernelKind::point, .nearest = 20, .max_radius = 0.5}, options);
+    const auto map = build(
+        scene, {.photons = 10'000, .kernel = KernelKind::point, .nearest = 20, .max_radius = 0.5},
+        options);
     EXPECT_EQ(phases, (std::vector<std::string>{"trace", "balance"}));
     EXPECT_EQ(map->build_report().resolved.at("max_radius"), 0.5);
     const auto context = map->make_context();
@@ -187,7 +188,8 @@ TEST(PhotonMap, PassesDrawThePhotonsDiscsCloser) {
         std::vector<std::uint64_t> found;
         for (const int pass : {0, 3}) {
             const auto map = build_pass(
-                scene, {.photons = 20'000, .nearest = 300, .radius = radius, .passes = 4}, {}, pass);
+                scene, {.photons = 20'000, .nearest = 300, .radius = radius, .passes = 4}, {},
+                pass);
             const auto context = map->make_context();
             const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
             std::vector<Estimate> out(1);
@@ -219,7 +221,9 @@ TEST(PhotonMap, GathersAllPhotonsWithinARadius) {
 
 TEST(PhotonMap, CountsThePhotonsThatAdaptiveUses) {
     const Scene scene(flat_mirror(grey));
-    const auto map = build(scene, {.photons = 20'000, .kernel = KernelKind::point, .nearest = 100, .adaptive = true}, {});
+    const auto map = build(
+        scene, {.photons = 20'000, .kernel = KernelKind::point, .nearest = 100, .adaptive = true},
+        {});
     const auto context = map->make_context();
     const auto points = ceiling_grid();
     std::vector<Estimate> out(points.size());
@@ -232,8 +236,11 @@ TEST(PhotonMap, CountsThePhotonsThatAdaptiveUses) {
 
 TEST(PhotonMap, PassesAreIndependentMapsWithSmallerDiscs) {
     const Scene scene(flat_mirror(grey));
-    const PhotonMapParams params{
-        .photons = 20'000, .kernel = KernelKind::point, .tree = TreeKind::balanced, .radius = 0.3, .passes = 4};
+    const PhotonMapParams params{.photons = 20'000,
+                                 .kernel = KernelKind::point,
+                                 .tree = TreeKind::balanced,
+                                 .radius = 0.3,
+                                 .passes = 4};
     const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
     std::vector<std::uint64_t> found;
     std::set<float> values;
@@ -271,18 +278,30 @@ TEST(PhotonMap, RefusesParametersThatContradictEachOther) {
     EXPECT_THROW(build(scene, {.photons = 10, .emitted = 10}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 0, .emitted = 0}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .nearest = 1}, {}), InputError);
-    EXPECT_NO_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .nearest = 1, .estimator = Estimator::raw}, {}));
+    EXPECT_NO_THROW(build(
+        scene,
+        {.photons = 10, .kernel = KernelKind::point, .nearest = 1, .estimator = Estimator::raw},
+        {}));
     EXPECT_THROW(build(scene, {.photons = 10, .tree = TreeKind::balanced}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .adaptive = true}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .estimator = Estimator::raw}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = -1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .radius = -1}, {}), InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .passes = 0}, {}), InputError);
-    EXPECT_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .adaptive = true, .radius = 1}, {}), InputError);
-    EXPECT_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .nearest = 10, .adaptive = true}, {}), InputError);
+    EXPECT_THROW(
+        build(scene, {.photons = 10, .kernel = KernelKind::point, .adaptive = true, .radius = 1},
+              {}),
+        InputError);
+    EXPECT_THROW(
+        build(scene, {.photons = 10, .kernel = KernelKind::point, .nearest = 10, .adaptive = true},
+              {}),
+        InputError);
     EXPECT_THROW(build(scene, {.photons = 10, .max_radius = 1, .radius = 1}, {}), InputError);
-    EXPECT_THROW(build(scene, {.photons = 10, .kernel = KernelKind::point, .nearest = 100'001, .adaptive = true}, {}),
-                 InputError);
+    EXPECT_THROW(
+        build(scene,
+              {.photons = 10, .kernel = KernelKind::point, .nearest = 100'001, .adaptive = true},
+              {}),
+        InputError);
 }
 
 // One map has one file; a loaded one is there already.

@@ -77,10 +77,9 @@ protected:
 TEST_F(KeptPhotons, GiveThePictureThatTracingGives) {
     expect_same_when_loaded(still_life(), {.photons = 3000});
     for (const TreeKind tree : {TreeKind::unbalanced, TreeKind::packed})
-        expect_same_when_loaded(still_life(), {.photons = 3000,
-                                               .kernel = KernelKind::point,
-                                               .tree = tree,
-                                               .nearest = 7});
+        expect_same_when_loaded(
+            still_life(),
+            {.photons = 3000, .kernel = KernelKind::point, .tree = tree, .nearest = 7});
     expect_same_when_loaded(still_life(), {.photons = 0, .emitted = 5000});
     expect_same_when_loaded(still_life(), {.photons = 3000,
                                            .emission = PhotonMapParams::Emission::stratified,

@@ -108,10 +108,9 @@ TEST(Knobs, OfThePhotonMap) {
               map({"filter=cone", "filter_k=4"}).error());
     EXPECT_GT(map({"filter=gaussian", "filter_beta=6"}).error(),
               map({"filter=gaussian", "filter_beta=0.5"}).error());
-    EXPECT_NEAR(
-        map({"filter=gaussian", "filter_alpha=0.918"}).mean() /
-            map({"kernel=point", "filter=gaussian"}).mean(),
-        0.531, 1e-3);
+    EXPECT_NEAR(map({"filter=gaussian", "filter_alpha=0.918"}).mean() /
+                    map({"kernel=point", "filter=gaussian"}).mean(),
+                0.531, 1e-3);
     // Discs that reach over the edges of the light hold photons that points do not use.
     const Answer adaptive = map({"nearest=4000", "adaptive=true"}, "parabolic_mirror");
     EXPECT_LT(count(adaptive, "used_photons"), count(adaptive, "gathered_photons"));
@@ -275,25 +274,27 @@ TEST(Knobs, OfTheReferences) {
 
 // A parameter that is added and forgotten above is noticed here.
 TEST(Knobs, AreAllTurnedAbove) {
-    const std::map<std::string, std::set<std::string>> turned = {
-        {"photonmap", {"preset",      "photons",     "emitted",      "estimator",   "adaptive",
-                       "nearest",     "max_radius",  "radius",       "footprint",   "filter",
-                       "filter_k",    "filter_beta", "filter_alpha", "max_bounces", "emission",
-                       "interaction", "tree",        "tables",       "kernel",      "pixel_footprint",
-                       "passes",      "save",        "load"}},  // these three: photonmap/progressive_test, kept_photons_test
-        {"beamtree",
-         {"preset",        "bound",           "spread_threshold", "merging",         "hierarchy",
-          "leaf",          "intensity",       "footprint",        "pixel_footprint", "polygons",
-          "light_samples", "mesh_resolution", "max_bounces",      "prune",           "max_beams",
-          "rest",          "rest_photons",    "rest_nearest",     "wavelengths",     "dispersion"}},
-        // pixel_footprint: beamtree/slices/pixel_footprint_test; the last two: agreement/dispersion_test
-        {"causticpolygons",
-         {"polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
-          "wavelengths", "receiver_resolution"}},
-        {"illuminationmap", {"emitted", "resolution", "max_bounces"}},
-        {"lighttrace", {"paths", "radius", "emission", "max_bounces"}},
-        {"pathtrace", {"spp", "max_bounces"}},
-        {"none", {"shadows"}}};  // core/render/direct_light_test
+    const std::map<std::string, std::set<std::string>> turned =
+        {
+            {"photonmap",
+             {"preset",      "photons",     "emitted",      "estimator",   "adaptive",
+              "nearest",     "max_radius",  "radius",       "footprint",   "filter",
+              "filter_k",    "filter_beta", "filter_alpha", "max_bounces", "emission",
+              "interaction", "tree",        "tables",       "kernel",      "pixel_footprint",
+              "passes",      "save",        "load"}},  // these three: photonmap/progressive_test, kept_photons_test
+            {"beamtree", {"preset",          "bound",        "spread_threshold", "merging",
+                          "hierarchy",       "leaf",         "intensity",        "footprint",
+                          "pixel_footprint", "polygons",     "light_samples",    "mesh_resolution",
+                          "max_bounces",     "prune",        "max_beams",        "rest",
+                          "rest_photons",    "rest_nearest", "wavelengths",      "dispersion"}},
+            // pixel_footprint: beamtree/slices/pixel_footprint_test; the last two: agreement/dispersion_test
+            {"causticpolygons",
+             {"polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
+              "wavelengths", "receiver_resolution"}},
+            {"illuminationmap", {"emitted", "resolution", "max_bounces"}},
+            {"lighttrace", {"paths", "radius", "emission", "max_bounces"}},
+            {"pathtrace", {"spp", "max_bounces"}},
+            {"none", {"shadows"}}};  // core/render/direct_light_test
     for (const MethodDescription* method : all_methods()) {
         std::set<std::string> told;
         for (const KeyText& parameter : method->parameters()) told.insert(parameter.key);

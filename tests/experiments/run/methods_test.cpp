@@ -91,18 +91,20 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
         text("causticpolygons", {}),
         R"({"light_samples":16,"max_bounces":1000,"mesh_resolution":64,"polygons":"triangles",)"
         R"("receiver_resolution":16})");
-    EXPECT_EQ(text("photonmap", {}),
-              R"({"adaptive":false,"emission":"random","estimator":"unbiased",)"
-              R"("filter":"epanechnikov","interaction":"roulette","kernel":"photon","max_bounces":1000,"nearest":50,"passes":1,)"
-              R"("photons":100000,"pixel_footprint":true,"tables":false,"tree":"packed"})");
+    EXPECT_EQ(
+        text("photonmap", {}),
+        R"({"adaptive":false,"emission":"random","estimator":"unbiased",)"
+        R"("filter":"epanechnikov","interaction":"roulette","kernel":"photon","max_bounces":1000,"nearest":50,"passes":1,)"
+        R"("photons":100000,"pixel_footprint":true,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("photonmap", {"kernel=point"}),
               R"({"adaptive":false,"emission":"random","estimator":"unbiased","filter":"none",)"
               R"("interaction":"roulette","max_bounces":1000,"nearest":50,"passes":1,)"
               R"("photons":100000,"tables":false,"tree":"packed"})");
-    EXPECT_EQ(text("photonmap", {"load=a.photons", "radius=0.5"}),
-              R"({"adaptive":false,"estimator":"unbiased","filter":"epanechnikov","kernel":"photon",)"
-              R"("load":"a.photons","passes":1,"pixel_footprint":true,"radius":0.5,)"
-              R"("tables":false,"tree":"packed"})");
+    EXPECT_EQ(
+        text("photonmap", {"load=a.photons", "radius=0.5"}),
+        R"({"adaptive":false,"estimator":"unbiased","filter":"epanechnikov","kernel":"photon",)"
+        R"("load":"a.photons","passes":1,"pixel_footprint":true,"radius":0.5,)"
+        R"("tables":false,"tree":"packed"})");
     EXPECT_EQ(text("photonmap", {"emitted=10", "adaptive=true", "max_radius=1"}),
               R"({"adaptive":true,"emission":"random","emitted":10,"estimator":"unbiased",)"
               R"("filter":"none","interaction":"roulette","max_bounces":1000,"max_radius":1.0,)"

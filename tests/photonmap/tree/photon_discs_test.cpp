@@ -38,8 +38,7 @@ public:
         GatherScratch gather;
         EstimateScratch scratch;
         discs_.gather(points, {}, gather, [&](std::size_t i, const GatheredPhotons& near) {
-            found[i] =
-                static_cast<double>(estimate_.irradiance(points[i], near, scratch).mean());
+            found[i] = static_cast<double>(estimate_.irradiance(points[i], near, scratch).mean());
         });
         return found;
     }
@@ -165,7 +164,8 @@ TEST(PhotonDiscs, FollowALinearField) {
     EXPECT_LT(found.standard_error(), 0.02);
 }
 
-/// Over the flux of the photons: the integral over a plane, by the middles of a fine grid's squares that reaches `beyond` the field.
+/// Over the flux of the photons: the integral over a plane, by the middles of a fine grid's squares that reaches
+/// `beyond` the field.
 template <typename Irradiance>
 double integral(const Irradiance& irradiance, double photons, double beyond) {
     constexpr int side = 300;
@@ -302,8 +302,9 @@ double mean_over(const Irradiance& irradiance, const Vec2d& low, const Vec2d& si
     return sum / static_cast<double>(points.size());
 }
 
-// Photons know no edge, and discs of photons there are wider: some of their light falls beside the receiver. A strip inside a
-// straight edge, as wide as discs are elsewhere, keeps 0.79 of its light, a square of that side in a corner 0.50.
+// Photons know no edge, and discs of photons there are wider: some of their light falls beside the receiver. A strip
+// inside a straight edge, as wide as discs are elsewhere, keeps 0.79 of its light, a square of that side in a corner
+// 0.50.
 TEST(PhotonDiscs, LoseAKnownShareAtAReceiversEdgeAndCorner) {
     constexpr std::size_t count = 20'000, nearest = 50;
     const double r = std::sqrt(nearest / (pi_d * count));
