@@ -46,7 +46,7 @@ std::vector<Parameter<P>> photon_parameters() {
             {.key = "emission",
              .meaning =
                  "Draws light paths at random, or one jittered path from each stratum: with less "
-                 "noise, but the nearest N then read up to 1/(2N) low.",
+                 "noise, but with kernel point the nearest N then read up to 1/(2N) low.",
              .source = "[J96 sec. 2]"})
             .only_if(is_traced),
         parameter::choice<P>(&P::interaction,

@@ -1,7 +1,9 @@
 #include "photonmap/tree/photon_discs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "photonmap/kernels/left_balanced.h"
 

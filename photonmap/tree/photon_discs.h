@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "photonmap/tree/photon_widths.h"
 
 namespace caustics::photonmap {

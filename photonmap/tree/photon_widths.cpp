@@ -1,7 +1,9 @@
 #include "photonmap/tree/photon_widths.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "photonmap/tree/resolvable_radius.h"

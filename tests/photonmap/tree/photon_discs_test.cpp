@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "tests/photonmap/estimate_map.h"
 #include "tests/support/statistics.h"
