@@ -86,7 +86,8 @@ struct BeamSet {
     /// One a ray where the light drifts (LightSample::drifts), else none: the ray at the shortest wavelength of
     /// the bin, and at the longest. Between them rays move linearly.
     std::array<std::vector<VertexRay>, 2> ends;
-    /// One a triangle of a beam where roots are searched (RootSearch), else none; `triangle_room` a beam.
+    /// One a triangle of a beam where roots are searched (RootSearch), else none; `triangle_room` a beam, those
+    /// that it does not have without directions.
     std::vector<EdgeMiddles> middles;
     std::size_t triangle_room = 1;
     /// One a ray with `middles` after several events: where its light met the first surface.

@@ -11,9 +11,10 @@ namespace caustics::beamtree {
 /// What both methods that work with beams ask of them.
 struct BeamParams {
     PolygonKind polygons = PolygonKind::triangle;
-    int light_samples = 16;          ///< for each area light
-    int mesh_resolution = 64;        ///< of exact casters; meshes are taken as they are
-    int max_bounces = most_bounces;  ///< specular events between light and receiver
+    int light_samples = 16;    ///< for each area light
+    int mesh_resolution = 64;  ///< of exact casters; meshes are taken as they are
+    int max_bounces =
+        preset_bounces;  ///< specular events between light and receiver: levels of beams cost too much for more
     double prune = 1e-3;  ///< least light of a beam to be followed, of the first events' mean
     std::int64_t max_beams = 1'000'000;  ///< of several events
     int wavelengths = 16;  ///< that white light is divided into where glass disperses it

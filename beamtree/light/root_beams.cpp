@@ -28,7 +28,13 @@ struct RootBeam {
     Beam beam;
     std::uint32_t from = 0;  ///< the beam of the set that it is, or is part of
     bool is_part = false;
-    std::array<EdgeMiddles, 2> middles;
+    std::array<EdgeMiddles, 2> middles = {no_middles(), no_middles()};
+
+    /// Rays without a direction, of a triangle that a beam does not have.
+    static EdgeMiddles no_middles() {
+        const VertexRay none{Vec3::Zero(), Vec3::Zero()};
+        return {none, none, none};
+    }
 };
 
 /// What becomes of some beams of a set. Rays of new corners are numbered from the set's last ray on.
@@ -163,7 +169,7 @@ private:
         for (std::size_t which = 0; which < count; ++which) divide(number, which, out);
         if (count == 1 || out.beams.size() - before > count) return;
         // A cell that need not be divided stays one.
-        RootBeam cell{beam, number, false, {}};
+        RootBeam cell{.beam = beam, .from = number};
         for (std::size_t which = 0; which < count; ++which)
             cell.middles[which] = out.beams[before + which].middles[0];
         out.beams.resize(before);
@@ -177,7 +183,7 @@ private:
         std::array<Node, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = {at[i], set_.origin(rays[i]), set_.rays[rays[i]], true, rays[i]};
-        RootBeam whole{beam, number, beam.triangle_count() > 1, {}};
+        RootBeam whole{.beam = beam, .from = number, .is_part = beam.triangle_count() > 1};
         whole.beam.flux *= static_cast<float>(beam.share_of(which));
         whole.beam.first_share = 1;
         whole.beam.triangle = beam.mesh_triangle(which);

@@ -110,7 +110,7 @@ public:
 
     SceneReport run() {
         StepProgress progress(2 + methods_.size() + 2 * compared_count());
-        for (const std::string& note : mesh_notes(scene_)) add("mesh", Verdict::told, note);
+        for (const std::string& note : mesh_notes(scene_)) add("mesh", {}, note);
         progress.begin("account of the light");
         audit();
         look_for_the_caustic();

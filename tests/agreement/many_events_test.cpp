@@ -57,8 +57,12 @@ TEST(ManyEvents, SunlightComesThroughALightGuideByEveryMethodsDefault) {
         EXPECT_LT(found.error, 0.1 * exact) << name;
     };
     expect_near(*build(scene, LightTraceParams{.paths = 1'000'000}, RunOptions{}), 0, "lighttrace");
-    expect_near(*build(scene, beamtree::BeamTreeParams{}, RunOptions{}), 0.005, "beamtree");
+    // Beams take 16 events by default.
+    beamtree::BeamTreeParams beams;
+    beams.max_bounces = 30;
+    expect_near(*build(scene, beams, RunOptions{}), 0.005, "beamtree");
     beamtree::CausticPolygonsParams polygons;
+    polygons.max_bounces = 30;
     polygons.receiver_resolution = 64;
     expect_near(*build(scene, polygons, RunOptions{}), 0.02, "causticpolygons");
     for (const Interaction interaction : {Interaction::roulette, Interaction::split}) {

@@ -131,7 +131,8 @@ TEST_F(KeptPhotons, BeginWithTryingTheFileToWrite) {
     EXPECT_TRUE(phases.empty());
     build(scene, PhotonMapParams{.photons = 10, .save = file_}, run);
     build(scene, PhotonMapParams{.photons = 0, .load = file_}, run);
-    EXPECT_EQ(phases, (std::vector<std::string>{"trace", "save", "balance", "load", "balance"}));
+    EXPECT_EQ(phases, (std::vector<std::string>{"trace", "save", "balance", "widths", "load",
+                                                "balance", "widths"}));
 }
 
 Film indirect_picture(SceneDesc desc, const GlobalMapParams& params, RunOptions run = options()) {

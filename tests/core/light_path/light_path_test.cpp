@@ -476,20 +476,20 @@ TEST(LightPath, BlackParticlesAndDeepChainsEnd) {
     Rng rng(1, Stage::test, 0);
     LightPathCounts counts;
     const Ray ray{Vec3(0, 0, 0.5F), Vec3::UnitZ()};
-    EXPECT_FALSE(trace_one(scene, {ray, Spectrum(Spectrum::Ones())}, {100}, rng, counts));
+    EXPECT_FALSE(trace_one(scene, {ray, Spectrum(Spectrum::Ones())}, {60}, rng, counts));
     EXPECT_EQ(counts.depth_limited, 1U);
-    EXPECT_EQ(counts.reflected, 100U);
-    EXPECT_FALSE(trace_one(scene, {ray, black()}, {100}, rng, counts));
+    EXPECT_EQ(counts.reflected, 60U);
+    EXPECT_FALSE(trace_one(scene, {ray, black()}, {60}, rng, counts));
     EXPECT_EQ(counts.absorbed, 1U);
     LightPathCounts branches;
     std::vector<Ray> traced;
     std::vector<Deposit> deposits;
-    trace_split_path(scene, {ray, Spectrum(Spectrum::Ones())}, {100, Interaction::split, &traced},
+    trace_split_path(scene, {ray, Spectrum(Spectrum::Ones())}, {60, Interaction::split, &traced},
                      rng, branches, deposits);
     EXPECT_TRUE(deposits.empty());
     EXPECT_EQ(branches.depth_limited, 1U);
-    EXPECT_EQ(branches.reflected, 100U);
-    ASSERT_EQ(traced.size(), 101U);
+    EXPECT_EQ(branches.reflected, 60U);
+    ASSERT_EQ(traced.size(), 61U);
     for (std::size_t i = 1; i < traced.size(); ++i)
         EXPECT_EQ(traced[i].direction, -traced[i - 1].direction);
 }

@@ -87,10 +87,9 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
               R"({"max_bounces":1000,"paths":1000000,"radius":0.25})");
     EXPECT_EQ(text("illuminationmap", {}),
               R"({"emitted":1000000,"max_bounces":1000,"resolution":256})");
-    EXPECT_EQ(
-        text("causticpolygons", {}),
-        R"({"light_samples":16,"max_bounces":1000,"mesh_resolution":64,"polygons":"triangles",)"
-        R"("receiver_resolution":16})");
+    EXPECT_EQ(text("causticpolygons", {}),
+              R"({"light_samples":16,"max_bounces":16,"mesh_resolution":64,"polygons":"triangles",)"
+              R"("receiver_resolution":16})");
     EXPECT_EQ(
         text("photonmap", {}),
         R"({"adaptive":false,"emission":"random","estimator":"unbiased",)"
@@ -111,15 +110,15 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
               R"("nearest":200,"passes":1,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("beamtree", {}),
               R"({"bound":"two_slice","hierarchy":"binned","intensity":"refined","leaf":"k",)"
-              R"("light_samples":16,"max_bounces":1000,"merging":"rays","mesh_resolution":64,)"
+              R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
               R"("polygons":"triangles"})");
     EXPECT_EQ(text("beamtree", {"bound=hybrid", "intensity=area"}),
               R"({"bound":"hybrid","hierarchy":"quadtree","intensity":"area","leaf":"n",)"
-              R"("light_samples":16,"max_bounces":1000,"merging":"rays","mesh_resolution":64,)"
+              R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
               R"("polygons":"triangles","spread_threshold":10.0})");
     EXPECT_EQ(text("beamtree", {"footprint=0.1"}),
               R"({"bound":"two_slice","footprint":0.10000000149011612,"hierarchy":"binned",)"
-              R"("intensity":"refined","leaf":"k","light_samples":16,"max_bounces":1000,)"
+              R"("intensity":"refined","leaf":"k","light_samples":16,"max_bounces":16,)"
               R"("merging":"rays","mesh_resolution":64,"polygons":"triangles"})");
 }
 

@@ -71,7 +71,8 @@ TEST(Run, TellsItsStagesAndPhases) {
     options.begin_phase = [&](std::string_view name) { stages.emplace_back(name); };
     Stopwatch stopwatch;
     const RunResult result = run(scene, request, options, stopwatch);
-    EXPECT_EQ(stages, (std::vector<std::string>{"precompute", "trace", "balance", "render"}));
+    EXPECT_EQ(stages,
+              (std::vector<std::string>{"precompute", "trace", "balance", "widths", "render"}));
     EXPECT_GT(stopwatch.of("precompute").wall, 0);
     EXPECT_GT(stopwatch.of("precompute/balance").wall, 0);
     EXPECT_GT(stopwatch.of("render").wall, 0);

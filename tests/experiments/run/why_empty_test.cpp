@@ -138,7 +138,7 @@ TEST(WhyEmpty, KnowsThatTheCameraSeesNothingOfTheLight) {
     // All of the floor lies below the water, for an eye close above it.
     SceneDesc through_water = pool();
     through_water.camera = support::camera({0, 0, 1.9}, {0, 0, 0}, {0, 1, 0}, 120, 6, 4);
-    EXPECT_EQ(reason(through_water, "photonmap", {"emitted=3000", "radius=1e-7"})
+    EXPECT_EQ(reason(through_water, "photonmap", {"emitted=3000", "radius=1e-7", "kernel=point"})
                   .find("the camera sees what light reaches through casters at most ("),
               0U);
 }
@@ -185,7 +185,7 @@ TEST(WhyEmpty, KnowsWhatAMethodCannotDo) {
 
 TEST(WhyEmpty, KnowsThatTheWorkWasTooLittle) {
     for (const char* too_small : {"max_radius=1e-7", "radius=1e-7"})
-        EXPECT_NE(reason(pool(), "photonmap", {"emitted=3000", too_small})
+        EXPECT_NE(reason(pool(), "photonmap", {"emitted=3000", "kernel=point", too_small})
                       .find("no photon lies within 1e-07 m"),
                   std::string::npos)
             << too_small;

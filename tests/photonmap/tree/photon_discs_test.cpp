@@ -31,7 +31,7 @@ class DiscMap {
 public:
     DiscMap(const std::vector<Photon>& photons, const DiscWidths& widths,
             FilterKind filter = FilterKind::none, const RunOptions& options = {})
-        : estimate_({.filter = {.kind = filter}}, options.isa),
+        : estimate_({.limits = {}, .filter = {.kind = filter}}, options.isa),
           discs_(std::make_unique<PackedKdTree>(store_of(photons), options.isa, options.threads),
                  widths, static_cast<float>(CellKernel({.kind = filter}).reach()), options) {}
 
