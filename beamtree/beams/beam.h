@@ -105,6 +105,10 @@ struct BeamSet {
         return origins.empty() ? rays[ray].position : origins[ray];
     }
     bool has_roots() const { return !middles.empty(); }
+    /// Whether roots are searched in one of a beam's triangles; else its middles have no directions.
+    bool has_roots(std::size_t beam, std::size_t which) const {
+        return has_roots() && !middles_of(beam, which)[0].direction.isZero(0);
+    }
     const EdgeMiddles& middles_of(std::size_t beam, std::size_t which) const {
         return middles[beam * triangle_room + which];
     }

@@ -16,6 +16,7 @@ void add_bulges(const BeamSet& set, std::uint32_t index, NodeRays& rays) {
     constexpr double over_middles = 2.1;  // 2 for a quadratic
     const Beam& beam = set.beams[index];
     for (std::size_t which = 0; which < beam.triangle_count(); ++which) {
+        if (!set.has_roots(index, which)) continue;
         const auto corners = set.triangle(beam, which);
         const EdgeMiddles& middles = set.middles_of(index, which);
         for (std::size_t i = 0; i < 3; ++i) {

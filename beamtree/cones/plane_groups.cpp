@@ -32,7 +32,7 @@ float least_along(const BeamSet& set, std::uint32_t number, const Beam& beam, co
     if (!set.has_roots()) return least;
     for (std::size_t i = 0; i < beam.triangle_count(); ++i)
         for (const VertexRay& ray : set.middles_of(number, i))
-            least = std::min(least, ray.direction.dot(axis));
+            if (set.has_roots(number, i)) least = std::min(least, ray.direction.dot(axis));
     return least;
 }
 

@@ -14,13 +14,16 @@ void find_roots_in_beam(const BeamSet& set, const std::array<const VertexRay*, 4
     const Beam& beam = set.beams[number.beam];
     for (std::size_t i = 0; i < beam.triangle_count(); ++i) {
         const std::array<const VertexRay*, 3> corners = {rays[0], rays[1 + i], rays[2 + i]};
+        const bool has_roots = set.has_roots(number.beam, i);
         if (test_triangle(corners, i, plane, hits)) {
             hits.back().flux_share *= beam.share_of(i);
+        } else if (!has_roots) {
+            continue;
         } else {
             hits.emplace_back().winding = 0;
             hits.back().triangle = static_cast<std::uint8_t>(i);
         }
-        hits.back().has_roots = true;
+        hits.back().has_roots = has_roots;
         hits.back().set = number.set;
         hits.back().beam = number.beam;
     }

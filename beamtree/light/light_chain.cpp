@@ -135,6 +135,7 @@ std::optional<LightChain::Arrival> LightChain::next_arrival(const Arrival& befor
         ray.offset = hit->offset;
     }
     const SpecularSurface& surface = facet ? *facet : *exact_[number];
+    if (surface.is_flat_facet()) ray.facets += static_cast<double>(number) * surface.facet_normal();
     const auto place = surface.first_along(ray.position, ray.direction, least_[number]);
     if (!place) return {};
     if (!facet)

@@ -28,6 +28,8 @@ struct ChainRay {
     Vec3d across;      ///< unit geometric normal there
     float offset = 0;  ///< of rays that leave it [m]
     Vec3d direction;   ///< unit
+    /// Changes where the light meets another of the facets that are shaded flat, after the first surface.
+    Vec3d facets = Vec3d::Zero();
     std::array<Vec3d, 2> by_position;
     std::array<Vec3d, 2> by_direction;
 };

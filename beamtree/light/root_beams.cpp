@@ -20,6 +20,7 @@ struct Node {
     Vec3 origin;  ///< in the polygon's plane
     VertexRay ray;
     bool is_lit = true;                 ///< light of it goes the set's way
+    Vec3d facets = Vec3d::Zero();       ///< that it meets (ChainRay::facets)
     std::uint32_t number = Beam::none;  ///< of the ray, where it is a corner
 };
 
@@ -56,6 +57,13 @@ public:
         const std::array<Node, 3> middles = {between(corners[0], corners[1]),
                                              between(corners[1], corners[2]),
                                              between(corners[2], corners[0])};
+        // The image of several facets is in pieces, of which each has roots of its own: polygons serve there.
+        if (meet_facets(middles)) {
+            out_.beams.push_back(beam);
+            for (std::size_t i = 0; i < 3; ++i)
+                out_.beams.back().beam.corners[i] = corners[i].number;
+            return;
+        }
         if (quarters == 0 || !is_rough(corners, middles)) {
             add(corners, middles, beam);
             return;
@@ -84,7 +92,9 @@ private:
         Node node{at, polygon_.position(at).cast<float>(), {}};
         const auto ray = chain_.ray(polygon_.start(at));
         node.is_lit = ray.has_value();
-        if (ray) node.ray = {ray->position.cast<float>(), ray->direction.cast<float>()};
+        if (!ray) return node;
+        node.ray = {ray->position.cast<float>(), ray->direction.cast<float>()};
+        node.facets = ray->facets;
         return node;
     }
     Node between(const Node& a, const Node& b) const {
@@ -93,6 +103,14 @@ private:
             middle.ray = {(a.ray.position + b.ray.position) / 2,
                           (a.ray.direction + b.ray.direction).normalized()};
         return middle;
+    }
+    // Whether the triangle's middles meet different facets after the first surface.
+    static bool meet_facets(const std::array<Node, 3>& middles) {
+        constexpr double rounding = 1e-6;
+        return std::ranges::any_of(middles, [&](const Node& node) {
+            return node.is_lit && middles[0].is_lit &&
+                   (node.facets - middles[0].facets).norm() > rounding;
+        });
     }
     double light_area(const std::array<Node, 3>& corners) const {
         const auto ray =
@@ -182,7 +200,10 @@ private:
         const std::array<std::uint32_t, 3> rays = beam.triangle_corners(which);
         std::array<Node, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
-            corners[i] = {at[i], set_.origin(rays[i]), set_.rays[rays[i]], true, rays[i]};
+            corners[i] = {.at = at[i],
+                          .origin = set_.origin(rays[i]),
+                          .ray = set_.rays[rays[i]],
+                          .number = rays[i]};
         RootBeam whole{.beam = beam, .from = number, .is_part = beam.triangle_count() > 1};
         whole.beam.flux *= static_cast<float>(beam.share_of(which));
         whole.beam.first_share = 1;

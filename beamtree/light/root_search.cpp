@@ -18,6 +18,13 @@ constexpr double double_rounding = 4 * std::numeric_limits<double>::epsilon();
 constexpr double edge_width = 1e-6;
 constexpr double same_root = 1e-5;  // barycentric distance
 
+// Areas between float positions mean nothing below this: at a perfect focus the irradiance is large, and finite.
+double least_image(const ArrivalPlane& plane) {
+    const double side = static_cast<double>(std::numeric_limits<float>::epsilon()) *
+                        std::max(plane.point().cwiseAbs().maxCoeff(), 1e-6);
+    return side * side;
+}
+
 }  // namespace
 
 RootSearch::RootSearch(const Scene& scene, const BeamSet& set)
@@ -59,7 +66,8 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
                                 (1 + change.norm() / polygon.size());
         if (miss.norm() <= miss_tolerance * std::abs(way) + rounding) {
             if (!(least_weight(at) >= -edge_width) || !(way > 0)) return {};
-            const double area = std::abs(change.determinant()) * plane.steepness(ray->direction);
+            const double area = std::max(std::abs(change.determinant()), least_image(plane)) *
+                                plane.steepness(ray->direction);
             return Found{at, *ray, ray->light_area / area};
         }
         const Vec2d by = change.inverse() * miss;

@@ -113,7 +113,7 @@ public:
                     lowest = std::min(lowest, height);
                 }
             }
-            if (set.has_roots()) {
+            if (set.has_roots(number.beam, i)) {
                 triangle.bulge = bulge_of(number, i);
                 for (const VertexRay& ray : set.middles_of(number.beam, i))
                     highest = std::max(highest,
@@ -139,6 +139,7 @@ private:
         const std::array<std::uint32_t, 3> corners = set.beams[number.beam].triangle_corners(which);
         const EdgeMiddles& middles = set.middles_of(number.beam, which);
         SliceReach bulge = {};
+        if (!set.has_roots(number.beam, which)) return bulge;
         for (std::size_t i = 0; i < 3; ++i) {
             const RaySlices& a = slices_[number.set][corners[i]];
             const RaySlices& b = slices_[number.set][corners[(i + 1) % 3]];

@@ -255,8 +255,8 @@ private:
         });
         for (std::uint32_t& place : of_holes) place = ends.find(place).set;
         std::ranges::sort(of_holes);
-        const auto repeated = std::ranges::unique(of_holes);
-        found_.holes = of_holes.size() - repeated.size();
+        const auto end = std::unique(of_holes.begin(), of_holes.end());
+        found_.holes = static_cast<std::size_t>(end - of_holes.begin());
         throw_if_interrupted();
     }
 

@@ -202,7 +202,7 @@ private:
         Eigen::AlignedBox3d box;
         for (const Vec3d& p : mesh_.exact_positions) box.extend(p);
         const double reach = box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff();
-        const double step = reach * double{std::numeric_limits<float>::epsilon()};
+        const double step = reach * static_cast<double>(std::numeric_limits<float>::epsilon());
         const double width = box.diagonal().norm();
         constexpr double coarsest = 1e-3;
         if (!box.isEmpty() && step > coarsest * width)

@@ -97,6 +97,7 @@ void expect_photon_map_is(const Scene& scene, const Truth& truth) {
     photonmap::PhotonMapParams params;
     params.photons = 600'000;
     params.nearest = 200;
+    params.kernel = photonmap::KernelKind::point;
     const auto map = build(scene, params, RunOptions{});
     const std::vector<ReceiverPoint> points = inside_points(scene, 500, 0);
     const std::vector<Estimate> found = support::irradiance(*map, points);

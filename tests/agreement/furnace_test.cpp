@@ -86,7 +86,8 @@ void expect_flux_of_surface(const Scene& scene, double surface) {
     for (const double error : flux.standard_error) variance += error * error;
     const double expected = pi_d * static_cast<double>(wall_radiance) * surface;
     EXPECT_NEAR(flux.total() / expected, 1, 4 * std::sqrt(variance) / expected);
-    EXPECT_EQ(flux.counts.absorbed, 0U);
+    // Roulette ends a few of the paths that have more than 64 events.
+    EXPECT_LT(flux.counts.absorbed, flux.counts.stored / 1000);
     EXPECT_EQ(flux.counts.escaped, 0U);
 }
 

@@ -36,6 +36,7 @@ std::vector<LightWay> light_ways() {
             params.photons = 0;
             params.emitted = 200'000;
             params.nearest = 100;
+            params.kernel = photonmap::KernelKind::point;
             change(params);
             return build(scene, params, {});
         };

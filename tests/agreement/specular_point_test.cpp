@@ -35,9 +35,9 @@ TEST(SpecularPoints, TellWavyWaterToRounding) {
         const Errors fine = truth.errors(exact_water(), of(beamtree::Intensity::refined, 96));
         EXPECT_LT(coarse.median, 1e-6);
         EXPECT_LT(fine.median, 1e-6);
-        // What is left are points beside folds, where polygons find a ray too many or too few.
-        EXPECT_LE(fine.mean, coarse.mean);
-        EXPECT_LT(fine.mean, 0.006);
+        // All rays are found beside folds, too. An error above 1 counts as 1: one point of a thousand, on a fold, may have one.
+        EXPECT_LT(coarse.mean, 0.0011);
+        EXPECT_LT(fine.mean, 0.0011);
         // The control: eq. 11 on the same polygons.
         EXPECT_GT(truth.errors(exact_water(), of(beamtree::Intensity::area, 96)).median, 0.01);
     }

@@ -90,6 +90,7 @@ TEST(Spot, PhotonsFollowTheFalloff) {
         params.photons = 0;
         params.emitted = 400'000;
         params.nearest = 100;
+        params.kernel = photonmap::KernelKind::point;
         params.emission = emission;
         const auto map = build(mirror, params, {});
         for (const double r : distances)

@@ -185,7 +185,7 @@ TEST(BeamSquare, BecomesAPointAsItShrinks) {
     const Scene scene(pool_desc(32));
     const std::vector<Vec2> at = middles(10, 0.5F, Vec2(0.0031F, 0.0017F));
     const auto points = irradiance(scene, averaged(0, Intensity::area), at);
-    const auto squares = irradiance(scene, averaged(1e-4F, Intensity::area), at);
+    const auto squares = irradiance(scene, averaged(1e-5F, Intensity::area), at);
     for (std::size_t i = 0; i < at.size(); ++i) EXPECT_NEAR(squares[i] / points[i], 1, 1e-2);
 }
 

@@ -195,22 +195,25 @@ TEST(Knobs, OfTheBeamTree) {
 
 // A slab sends light to and fro between its sides, each time weaker.
 TEST(Knobs, OfBeamsOfSeveralEvents) {
-    const Answer usual = beams({"mesh_resolution=8"}, "slab");
-    const Answer strong = beams({"mesh_resolution=8", "prune=0.1"}, "slab");
+    const Answer usual = beams({"mesh_resolution=8", "intensity=area"}, "slab");
+    const Answer strong = beams({"mesh_resolution=8", "intensity=area", "prune=0.1"}, "slab");
     EXPECT_LT(4 * count(strong, "beams"), 3 * count(usual, "beams"));
     EXPECT_LT(strong.mean(), usual.mean() - 1e-3);
     EXPECT_GT(strong.mean(), 0.95 * usual.mean());
-    const Answer few = beams({"mesh_resolution=8", "max_beams=200"}, "slab");
+    const Answer few = beams({"mesh_resolution=8", "intensity=area", "max_beams=200"}, "slab");
     EXPECT_LT(count(few, "beams"), count(usual, "beams"));
     EXPECT_LT(few.mean(), usual.mean());
-    EXPECT_EQ(beams({"mesh_resolution=8", "max_beams=900000"}, "slab").mean(), usual.mean());
-    const Answer whole = beams({"mesh_resolution=8", "max_beams=200", "rest=photons"}, "slab");
+    EXPECT_EQ(beams({"mesh_resolution=8", "intensity=area", "max_beams=900000"}, "slab").mean(),
+              usual.mean());
+    const Answer whole =
+        beams({"mesh_resolution=8", "intensity=area", "max_beams=200", "rest=photons"}, "slab");
     EXPECT_GT(whole.mean(), few.mean());
-    const Answer rough =
-        beams({"mesh_resolution=8", "max_beams=200", "rest=photons", "rest_photons=3000"}, "slab");
+    const Answer rough = beams({"mesh_resolution=8", "intensity=area", "max_beams=200",
+                                "rest=photons", "rest_photons=3000"},
+                               "slab");
     EXPECT_LT(4 * count(rough, "rest_photons"), count(whole, "rest_photons"));
-    EXPECT_NE(beams({"mesh_resolution=8", "max_beams=200", "rest=photons", "rest_photons=3000",
-                     "rest_nearest=10"},
+    EXPECT_NE(beams({"mesh_resolution=8", "intensity=area", "max_beams=200", "rest=photons",
+                     "rest_photons=3000", "rest_nearest=10"},
                     "slab")
                   .mean(),
               rough.mean());

@@ -144,7 +144,8 @@ TEST(Methods, TakeThePapersSettingsByName) {
     paper = settings("photonmap", {"nearest=80", "preset=jensen1996"});
     EXPECT_EQ(paper.at("preset"), "jensen1996");
     paper.erase("preset");
-    EXPECT_EQ(paper, settings("photonmap", {"nearest=80", "tree=balanced", "estimator=raw"}));
+    EXPECT_EQ(paper, settings("photonmap",
+                              {"nearest=80", "tree=balanced", "estimator=raw", "max_bounces=16"}));
     EXPECT_NE(error("beamtree", {"preset=jensen1996"}).find("chuang1995"), std::string::npos);
 }
 

@@ -224,7 +224,7 @@ TEST(Notes, NameTheShapeWhoseSmoothNormalsLoseLight) {
                                    support::glass(1.5F));
     EXPECT_TRUE(
         any_holds(notes_of(desc, "photonmap", photons),
-                  {"% of the light paths", "crystal, by up to 55 degrees", "face_normals"}));
+                  {"% of the light on casters", "crystal, by up to 55 degrees", "face_normals"}));
     EXPECT_TRUE(any_holds(notes_on(Scene(desc)), {"crystal, by up to 55", "face_normals: true"}));
 }
 
