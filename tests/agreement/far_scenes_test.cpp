@@ -45,11 +45,11 @@ struct BallOverFloor {
         return Scene(load_scene(file).desc);
     }
 
-    /// Where the ball's caustic lies, and beside it.
+    /// Where the ball's caustic lies, and beside it; not on its axis, where light is infinitely dense.
     std::vector<ReceiverPoint> points(const Scene& scene) const {
         std::vector<ReceiverPoint> all;
         for (int i = 0; i < 12; ++i) {
-            const double x = 0.08 * i, y = 0.02 * i;
+            const double x = 0.01 + 0.08 * i, y = 0.02 * i;
             const Vec3d world = place + radius * Vec3d(x, y, -1.5);
             all.push_back(support::probe(scene, 1, world - scene.origin(), Vec3d::UnitZ(),
                                          static_cast<std::uint64_t>(i),

@@ -93,33 +93,35 @@ TEST(CausticLedger, IsNoneOfAMethodWithoutCaustic) {
     EXPECT_FALSE(caustic_ledger(scene, parse_method("none", parameters_node({})), {}).has_value());
 }
 
-// What is lost of the caustic is told, not what is lost of the light on casters.
-TEST(CausticLedger, TellsTheShareOfTheCausticThatBeamsLose) {
+// The share of the caustic is told, not that of the light on casters. Coarse polygons also misplace light, which is not part
+// of what pruning loses.
+TEST(CausticLedger, TellsMostOfTheCausticThatBeamsLose) {
     SceneDesc desc;
     for (int i = 0; i < 3; ++i)
         desc.shapes.push_back(
             support::sphere("ball", {0.02 * i, 0, 1 + 1.01 * i}, 0.5, support::glass(1.5F)));
-    desc.shapes.push_back(support::horizontal("floor", 0, 1, true, support::diffuse(0.5F)));
+    desc.shapes.push_back(support::horizontal("floor", 0, 10, true, support::diffuse(0.5F)));
     desc.lights = {support::point_light({0, 0, 5}, 5)};
     const Scene scene(std::move(desc));
-    const std::vector<std::string> coarse = {"mesh_resolution=12", "prune=0.1"};
+    const std::vector<std::string> coarse = {"mesh_resolution=12", "prune=0.3", "footprint=0.1"};
     const CausticLedger ledger = ledger_of(scene, "beamtree", coarse);
     const Method method = parse_method("beamtree", parameters_node(coarse));
     const auto beams = build(scene, method, RunOptions{});
     const auto whole = survey_light(scene, 1000, 200'000);
     std::vector<ReceiverPoint> points;
-    constexpr int side = 200;
+    constexpr int side = 200;  // squares that tile the floor
     const std::size_t floor = scene.shapes().size() - 1;
     for (int i = 0; i < side * side; ++i)
         points.push_back(support::probe(
-            scene, floor, {(i % side + 0.5) * 2 / side - 1, (i / side + 0.5) * 2 / side - 1, 0},
+            scene, floor, {(i % side + 0.5) * 20 / side - 10, (i / side + 0.5) * 20 / side - 10, 0},
             Vec3d::UnitZ(), points.size()));
     double sum = 0;
     for (const Estimate& found : support::irradiance(*beams, points))
-        sum += static_cast<double>(found.value.mean()) * 4 / (side * side);
+        sum += static_cast<double>(found.value.mean()) * 400 / (side * side);
     const double missing = 1 - sum / whole.on_shape[floor];
-    ASSERT_GT(missing, 0.04);
-    EXPECT_NEAR(ledger.share(ledger.missed_by_pruning), missing, 0.25 * missing);
+    ASSERT_GT(missing, 0.01);
+    EXPECT_GT(ledger.share(ledger.missed_by_pruning), missing / 2);
+    EXPECT_LT(ledger.share(ledger.missed_by_pruning), missing);
 }
 
 }  // namespace
