@@ -320,7 +320,7 @@ TEST(BeamBounces, AreCompletedByPhotonsInACubeWithinACube) {
                            ? 0
                            : -1;
             },
-            7)
+            7, beamtree::BeamTreeParams{}.max_bounces)
             .total();
     std::vector<ReceiverPoint> points;
     constexpr int side = 100;
