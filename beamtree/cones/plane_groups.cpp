@@ -36,7 +36,7 @@ float least_along(const BeamSet& set, std::uint32_t number, const Beam& beam, co
     return least;
 }
 
-// Whether all rays of the set, and of edges' middles, run along the axis at this cosine at least.
+// True where all rays of the set, and of edges' middles, run along the axis at this cosine at least.
 bool all_run_along(const BeamSet& set, const Vec3& axis, float least) {
     for (std::uint32_t ray = 0; ray < set.rays.size(); ++ray)
         if (least_along(set, ray, axis) < least) return false;

@@ -14,7 +14,7 @@ constexpr int most_model_steps = 14;
 constexpr double longest_model_step = 0.5;  // of the polygon's sides
 // How far beyond the polygon a solution may lie, and a ray that reaches the point still leave the polygon.
 constexpr double model_reach = 0.3;
-// What the image is off its model, at most, over its bulge.
+// The largest distance of the image from its model, over its bulge.
 constexpr double model_error = 0.25;
 constexpr double same_solution = 1e-3;
 

@@ -56,7 +56,7 @@ public:
                                         const EdgeMiddles& middles);
     /// One where the image does not turn over; else all that are found from places all over the polygon.
     Solutions solutions() const;
-    /// Whether the straight-sided image holds the point deeper inside than the image bulges: then a ray reaches it.
+    /// True where the straight-sided image holds the point deeper inside than the image bulges: then a ray reaches it.
     bool surely_holds() const;
 
 private:

@@ -38,7 +38,7 @@ struct RootBeam {
     }
 };
 
-/// What becomes of some beams of a set. Rays of new corners are numbered from the set's last ray on.
+/// The prepared beams of a part of a set. Rays of new corners are numbered from the set's last ray on.
 struct RootBeams {
     std::vector<RootBeam> beams;
     std::vector<VertexRay> rays;
@@ -104,7 +104,7 @@ private:
                           (a.ray.direction + b.ray.direction).normalized()};
         return middle;
     }
-    // Whether the triangle's middles meet different facets after the first surface.
+    // True where the triangle's middles meet different facets after the first surface.
     static bool meet_facets(const std::array<Node, 3>& middles) {
         constexpr double rounding = 1e-6;
         return std::ranges::any_of(middles, [&](const Node& node) {

@@ -37,7 +37,7 @@ public:
               std::vector<Root>& roots) const;
 
 private:
-    /// What Newton's method has come to.
+    /// A solution of Newton's method.
     struct Found {
         Vec2d at;  ///< on the polygon
         ChainRay ray;

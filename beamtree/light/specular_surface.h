@@ -38,7 +38,7 @@ public:
     Place beside(const Vec3d& local) const;
     /// How that place changes as the point moves along a way of the surface's frame.
     Change beside_change(const Vec3d& local, const Place& place, const Vec3d& way) const;
-    /// Whether it is a triangle that is shaded by one normal, and its geometric normal.
+    /// True for a triangle that is shaded by one normal, and its geometric normal.
     bool is_flat_facet() const { return shape_ == nullptr && plane_.is_flat; }
     const Vec3d& facet_normal() const { return plane_.across; }
     /// How the shading normal at a place changes along a way on the surface, in the scene's frame.

@@ -26,7 +26,7 @@ SliceBox box_of(const SlicedTriangle& triangle) {
     return box;
 }
 
-// Of both planes, along an axis.
+// The larger reach of both planes, along an axis.
 float most(const SliceReach& reach, std::size_t axis) {
     return std::max(reach[axis], reach[2 + axis]);
 }

@@ -51,7 +51,7 @@ struct SliceView {
     /// What lies beside the leaves, beam by beam: fetched for those that are found.
     const char* beams;
     size_t beam_bytes;
-    /// Whether triangles hold points beside their straight-sided images: then their boxes are asked as well.
+    /// True where triangles hold points beside their straight-sided images: then their boxes are asked as well.
     bool has_bulges;
 };
 
