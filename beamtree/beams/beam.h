@@ -45,6 +45,9 @@ struct Beam {
     std::uint32_t triangle = 0;            ///< of the first caster's mesh; the first one of a cell
     bool inside = false;   ///< goes through the medium behind the last caster's front side
     bool is_cell = false;  ///< a cell of a grid: its second triangle is the mesh's next
+    /// Light of a part of the polygon does not go the set's way, as beyond the horizon of a curved surface.
+    bool has_dark_part = false;
+    bool front = true;  ///< where roots are searched: the light comes to the first caster's front
 
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
     /// Corners of one of its triangles.

@@ -15,37 +15,53 @@ inline std::optional<SpecularSurface> first_exact_surface(const Scene& scene, co
     return SpecularSurface(shape);
 }
 
-/// One of a beam's triangles on the first surface: its places are those beside corner + u side + v side.
+/// Where the corners of one of a beam's triangles lie on the first surface's mesh.
+inline std::array<Vec3, 3> first_corners(const BeamSet& set, const Beam& beam, std::size_t which) {
+    const auto [a, b, c] = beam.triangle_corners(which);
+    return {set.origin(a), set.origin(b), set.origin(c)};
+}
+
+/// A triangle on the first surface: its places are those beside corner + u side + v side.
 class FirstPolygon {
 public:
-    /// `exact` is first_exact_surface(); all outlive this.
+    /// One of a beam's triangles, which has these corners. `exact` is first_exact_surface(); all outlive this.
     FirstPolygon(const Scene& scene, const BeamSet& set,
-                 const std::optional<SpecularSurface>& exact, const Beam& beam, std::size_t which)
-        : offset_(beam.offset) {
+                 const std::optional<SpecularSurface>& exact, const Beam& beam, std::size_t which,
+                 const std::array<Vec3, 3>& corners)
+        : offset_(beam.offset), side_(beam.front ? 1 : -1) {
         if (exact)
             surface_ = &*exact;
         else
             surface_ = &facet_.emplace(scene.shapes()[set.caster].mesh, beam.mesh_triangle(which));
-        const std::array<std::uint32_t, 3> corners = beam.triangle_corners(which);
         const auto local = [&](std::size_t i) {
-            return surface_->local(set.origin(corners[i]).cast<double>());
+            return surface_->local(corners[i].cast<double>());
         };
         corner_ = local(0);
         sides_ = {local(1) - corner_, local(2) - corner_};
-        const Vec3& from = set.origin(corners[0]);
-        size_ = static_cast<double>(std::max((set.origin(corners[1]) - from).norm(),
-                                             (set.origin(corners[2]) - from).norm()));
+        size_ = static_cast<double>(
+            std::max((corners[1] - corners[0]).norm(), (corners[2] - corners[0]).norm()));
     }
+    FirstPolygon(const Scene& scene, const BeamSet& set,
+                 const std::optional<SpecularSurface>& exact, const Beam& beam, std::size_t which)
+        : FirstPolygon(scene, set, exact, beam, which, first_corners(set, beam, which)) {}
     FirstPolygon(const FirstPolygon&) = delete;
     FirstPolygon& operator=(const FirstPolygon&) = delete;
 
     ChainStart start(const Vec2d& at) const {
-        return {*surface_, corner_ + at.x() * sides_[0] + at.y() * sides_[1], sides_, offset_};
+        return {*surface_, corner_ + at.x() * sides_[0] + at.y() * sides_[1], sides_, offset_,
+                side_};
     }
 
     /// A place of the straight-sided polygon, in the scene's frame.
     Vec3d position(const Vec2d& at) const {
         return surface_->world(corner_ + at.x() * sides_[0] + at.y() * sides_[1]);
+    }
+    /// The coordinates of a place in its plane, which is given in the scene's frame.
+    Vec2d coordinates(const Vec3d& position) const {
+        const Vec3d way = surface_->local(position) - corner_;
+        const Vec3d normal = sides_[0].cross(sides_[1]);
+        return Vec2d(normal.dot(way.cross(sides_[1])), normal.dot(sides_[0].cross(way))) /
+               normal.squaredNorm();
     }
     /// About how long its sides are [m].
     double size() const { return size_; }
@@ -57,6 +73,7 @@ private:
     std::array<Vec3d, 2> sides_;
     double size_;
     float offset_;
+    double side_;  ///< ChainStart::side
 };
 
 }  // namespace caustics::beamtree

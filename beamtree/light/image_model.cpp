@@ -16,6 +16,7 @@ constexpr double longest_model_step = 0.5;  // of the polygon's sides
 constexpr double model_reach = 0.3;
 // The largest distance of the image from its model, over its bulge.
 constexpr double model_error = 0.25;
+constexpr double model_error_in_part = 1;
 constexpr double same_solution = 1e-3;
 
 // Places all over a polygon.
@@ -56,7 +57,7 @@ Eigen::Matrix2d ArrivalPlane::miss_change(const ChainRay& ray) const {
 
 std::optional<ImageModel> ImageModel::of(const ArrivalPlane& plane,
                                          const std::array<const VertexRay*, 3>& corners,
-                                         const EdgeMiddles& middles) {
+                                         const EdgeMiddles& middles, bool has_dark_part) {
     std::array<Vec2d, 6> misses;
     bool arrives = false;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -69,7 +70,7 @@ std::optional<ImageModel> ImageModel::of(const ArrivalPlane& plane,
     }
     if (!arrives) return {};
     const ImageModel model(misses);
-    if (!model.may_hold()) return {};
+    if (!model.may_hold(has_dark_part ? model_error_in_part : model_error)) return {};
     return model;
 }
 
@@ -86,7 +87,7 @@ ImageModel::ImageModel(const std::array<Vec2d, 6>& misses) : misses_(misses) {
 }
 
 // A quadratic lies in the hull of its Bezier points: the corners, and for each edge its middle moved on by the bulge.
-bool ImageModel::may_hold() const {
+bool ImageModel::may_hold(double error) const {
     Vec2d low = misses_[0];
     Vec2d high = misses_[0];
     for (std::size_t i = 0; i < 3; ++i)
@@ -94,7 +95,7 @@ bool ImageModel::may_hold() const {
             low = low.cwiseMin(at);
             high = high.cwiseMax(at);
         }
-    const double room = model_error * bulge_;
+    const double room = error * bulge_;
     return (low.array() <= room).all() && (high.array() >= -room).all();
 }
 
@@ -139,6 +140,12 @@ Vec2d ImageModel::solve(Vec2d at) const {
         if (length < 1e-6) return at;
     }
     return at;
+}
+
+ImageModel::Solutions ImageModel::everywhere() {
+    Solutions all;
+    for (const auto& [u, v] : places) all.at[all.count++] = {u, v};
+    return all;
 }
 
 ImageModel::Solutions ImageModel::solutions() const {

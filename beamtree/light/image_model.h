@@ -50,10 +50,13 @@ public:
         const Vec2d* end() const { return at.data() + count; }
     };
 
-    /// From the rays of corners and edges' middles; empty where the image cannot hold the point.
+    /// From the rays of corners and edges' middles; empty where the image cannot hold the point. Rays of a polygon with
+    /// a dark part are near the places that they stand for.
     static std::optional<ImageModel> of(const ArrivalPlane& plane,
                                         const std::array<const VertexRay*, 3>& corners,
-                                        const EdgeMiddles& middles);
+                                        const EdgeMiddles& middles, bool has_dark_part);
+    /// Places all over any polygon.
+    static Solutions everywhere();
     /// One where the image does not turn over; else all that are found from places all over the polygon.
     Solutions solutions() const;
     /// True where the straight-sided image holds the point deeper inside than the image bulges: then a ray reaches it.
@@ -61,7 +64,7 @@ public:
 
 private:
     explicit ImageModel(const std::array<Vec2d, 6>& misses);
-    bool may_hold() const;
+    bool may_hold(double error) const;
     bool folds() const;
     Vec2d straight() const;
     Vec2d solve(Vec2d at) const;

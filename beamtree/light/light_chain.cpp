@@ -164,6 +164,7 @@ template <typename Visit>
 std::optional<ChainRay> LightChain::go(const ChainStart& start, const Visit& visit) const {
     ChainRay ray;
     std::optional<Arrival> arrival = first_arrival(start, ray);
+    if (start.side * arrival->place.across.dot(arrival->w) < 0) return {};
     while (arrival) {
         const auto bent = bend(*arrival);
         if (!bent || !leave(*arrival, *bent, ray) || !visit(*arrival, *bent)) return {};

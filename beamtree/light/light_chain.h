@@ -15,6 +15,7 @@ struct ChainStart {
     Vec3d local;                ///< beside the surface, in its frame
     std::array<Vec3d, 2> ways;  ///< in its frame
     float offset;               ///< of rays that leave the place [m]
+    double side;  ///< 1 if the light comes to the front of the surface, -1 if to the back
 };
 
 /// A ray of light that has left the last surface of a chain, with its derivatives by the two ways of the start.

@@ -1,5 +1,6 @@
 #include "beamtree/light/root_beams.h"
 
+#include "beamtree/light/cut_triangles.h"
 #include "beamtree/light/first_polygon.h"
 #include "core/base/parallel.h"
 
@@ -12,10 +13,14 @@ constexpr int most_root_quarters = 3;
 // scene: a wave of two radians a polygon has 0.03, and half the polygon a quarter of that.
 constexpr double most_off_image = 0.1;
 constexpr double most_off_directions = 0.02;
+constexpr int most_lit_halvings = 12;
 constexpr std::size_t root_beams_together = 256;  // that threads take at a time
 
+// Corners of a triangle, in its own coordinates.
+const std::array<Vec2d, 3> unit_corners = {Vec2d(0, 0), Vec2d(1, 0), Vec2d(0, 1)};
+
 /// A place of a triangle, with its ray.
-struct Node {
+struct RootNode {
     Vec2d at;
     Vec3 origin;  ///< in the polygon's plane
     VertexRay ray;
@@ -53,10 +58,25 @@ public:
             std::uint32_t first_number, RootBeams& out)
         : chain_(chain), polygon_(polygon), reach_(reach), first_number_(first_number), out_(out) {}
 
-    void divide(const std::array<Node, 3>& corners, const RootBeam& beam, int quarters) {
-        const std::array<Node, 3> middles = {between(corners[0], corners[1]),
-                                             between(corners[1], corners[2]),
-                                             between(corners[2], corners[0])};
+    /// A triangle with a dark part, of whose corners the rays are not known, and a place whose light goes the set's way.
+    void add_cut(const RootBeam& beam, const std::array<Vec3, 3>& origins,
+                 const Vec2d& lit_middle) {
+        std::array<RootNode, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i) {
+            corners[i] = last_lit(unit_corners[i], lit_middle);
+            corners[i].origin = origins[i];
+            number(corners[i]);
+        }
+        std::array<RootNode, 3> middles;
+        for (std::size_t i = 0; i < 3; ++i)
+            middles[i] = last_lit((unit_corners[i] + unit_corners[(i + 1) % 3]) / 2, lit_middle);
+        add(corners, middles, beam);
+    }
+
+    void divide(const std::array<RootNode, 3>& corners, const RootBeam& beam, int quarters) {
+        const std::array<RootNode, 3> middles = {between(corners[0], corners[1]),
+                                                 between(corners[1], corners[2]),
+                                                 between(corners[2], corners[0])};
         // The image of several facets is in pieces, of which each has roots of its own: polygons serve there.
         if (meet_facets(middles)) {
             out_.beams.push_back(beam);
@@ -64,14 +84,24 @@ public:
                 out_.beams.back().beam.corners[i] = corners[i].number;
             return;
         }
-        if (quarters == 0 || !is_rough(corners, middles)) {
+        if (quarters == 0 || is_nearly_straight(corners, middles)) {
             add(corners, middles, beam);
+            out_.beams.back().beam.has_dark_part = !are_lit(middles);
             return;
         }
-        std::array<Node, 3> m = middles;
-        for (Node& node : m) number(node);
+        const std::array<RootNode, 3> quarter_nodes = {quarter(corners[0], corners[1]),
+                                                       quarter(corners[1], corners[2]),
+                                                       quarter(corners[2], corners[0])};
+        const bool has_dark_part = !are_lit(middles) || !are_lit(quarter_nodes);
+        if (has_dark_part || !is_rough(corners, middles, quarter_nodes)) {
+            add(corners, middles, beam);
+            out_.beams.back().beam.has_dark_part = has_dark_part;
+            return;
+        }
+        std::array<RootNode, 3> m = middles;
+        for (RootNode& node : m) number(node);
         const auto& [a, b, c] = corners;
-        const std::array<std::array<Node, 3>, 4> parts = {
+        const std::array<std::array<RootNode, 3>, 4> parts = {
             {{a, m[0], m[2]}, {m[0], b, m[1]}, {m[2], m[1], c}, {m[0], m[1], m[2]}}};
         std::array<double, 4> area;
         double sum = 0;
@@ -88,8 +118,22 @@ public:
     }
 
 private:
-    Node node(const Vec2d& at) const {
-        Node node{at, polygon_.position(at).cast<float>(), {}};
+    // The node at a place, with the ray of the last place towards it from a lit one.
+    RootNode last_lit(const Vec2d& at, const Vec2d& lit) const {
+        RootNode found = node(at);
+        if (found.is_lit) return found;
+        double low = 0;
+        double high = 1;
+        for (int halving = 0; halving < most_lit_halvings; ++halving) {
+            const double middle = (low + high) / 2;
+            const RootNode here = node(lit + middle * (at - lit));
+            (here.is_lit ? low : high) = middle;
+            if (here.is_lit) found.ray = here.ray;
+        }
+        return found;
+    }
+    RootNode node(const Vec2d& at) const {
+        RootNode node{at, polygon_.position(at).cast<float>(), {}};
         const auto ray = chain_.ray(polygon_.start(at));
         node.is_lit = ray.has_value();
         if (!ray) return node;
@@ -97,37 +141,59 @@ private:
         node.facets = ray->facets;
         return node;
     }
-    Node between(const Node& a, const Node& b) const {
-        Node middle = node((a.at + b.at) / 2);
+    RootNode between(const RootNode& a, const RootNode& b) const {
+        RootNode middle = node((a.at + b.at) / 2);
         if (!middle.is_lit)
             middle.ray = {(a.ray.position + b.ray.position) / 2,
                           (a.ray.direction + b.ray.direction).normalized()};
         return middle;
     }
     // True where the triangle's middles meet different facets after the first surface.
-    static bool meet_facets(const std::array<Node, 3>& middles) {
+    static bool meet_facets(const std::array<RootNode, 3>& middles) {
         constexpr double rounding = 1e-6;
-        return std::ranges::any_of(middles, [&](const Node& node) {
+        return std::ranges::any_of(middles, [&](const RootNode& node) {
             return node.is_lit && middles[0].is_lit &&
                    (node.facets - middles[0].facets).norm() > rounding;
         });
     }
-    double light_area(const std::array<Node, 3>& corners) const {
+    double light_area(const std::array<RootNode, 3>& corners) const {
         const auto ray =
             chain_.ray(polygon_.start((corners[0].at + corners[1].at + corners[2].at) / 3));
         return ray ? ray->light_area : 0;
     }
-    // At a quarter of each edge, where a cubic is off its quadratic most.
-    bool is_rough(const std::array<Node, 3>& corners, const std::array<Node, 3>& middles) const {
+    static bool are_lit(const std::array<RootNode, 3>& nodes) {
+        return std::ranges::all_of(nodes, &RootNode::is_lit);
+    }
+    // Whether directions are so near to straight between the corners that they are nearer still to a quadratic.
+    static bool is_nearly_straight(const std::array<RootNode, 3>& corners,
+                                   const std::array<RootNode, 3>& middles) {
+        constexpr float most_bulge = 0.1F;  // of how far the corners' directions part
+        if (!are_lit(middles)) return false;
+        float bulge = 0;
+        float apart = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3& a = corners[i].ray.direction;
+            const Vec3& b = corners[(i + 1) % 3].ray.direction;
+            bulge = std::max(bulge, (middles[i].ray.direction - (a + b) / 2).norm());
+            apart = std::max(apart, (b - a).norm());
+        }
+        return bulge <= most_bulge * apart;
+    }
+    // A quarter along an edge, where a cubic is off its quadratic most.
+    RootNode quarter(const RootNode& a, const RootNode& b) const {
+        return node(0.75 * a.at + 0.25 * b.at);
+    }
+    // `quarter_nodes`: of the three edges.
+    bool is_rough(const std::array<RootNode, 3>& corners, const std::array<RootNode, 3>& middles,
+                  const std::array<RootNode, 3>& quarter_nodes) const {
         double off_image = 0;
         double off_directions = 0;
         double apart = 0;
         for (std::size_t i = 0; i < 3; ++i) {
-            const Node& a = corners[i];
-            const Node& b = corners[(i + 1) % 3];
-            const Node& middle = middles[i];
-            const Node here = node(0.75 * a.at + 0.25 * b.at);
-            if (!here.is_lit || !middle.is_lit) return false;
+            const RootNode& a = corners[i];
+            const RootNode& b = corners[(i + 1) % 3];
+            const RootNode& middle = middles[i];
+            const RootNode& here = quarter_nodes[i];
             const auto off = [&](Vec3 VertexRay::* part) {
                 const Vec3 quadratic =
                     0.375F * a.ray.*part + 0.75F * middle.ray.*part - 0.125F * b.ray.*part;
@@ -138,18 +204,18 @@ private:
             off_directions = std::max(off_directions, direction);
             off_image =
                 std::max(off_image, (off(&VertexRay::position) + reach_ * direction) / size);
-            for (const Node* other : {&b, &middle})
+            for (const RootNode* other : {&b, &middle})
                 apart = std::max(
                     apart, static_cast<double>((other->ray.direction - a.ray.direction).norm()));
         }
         return off_image > most_off_image && off_directions > most_off_directions * apart;
     }
-    void number(Node& node) {
+    void number(RootNode& node) {
         node.number = first_number_ + static_cast<std::uint32_t>(out_.rays.size());
         out_.rays.push_back(node.ray);
         out_.origins.push_back(node.origin);
     }
-    void add(const std::array<Node, 3>& corners, const std::array<Node, 3>& middles,
+    void add(const std::array<RootNode, 3>& corners, const std::array<RootNode, 3>& middles,
              const RootBeam& beam) {
         RootBeam& added = out_.beams.emplace_back(beam);
         for (std::size_t i = 0; i < 3; ++i) added.beam.corners[i] = corners[i].number;
@@ -166,11 +232,15 @@ private:
 /// Prepares the beams of a set.
 class RootPreparation {
 public:
-    RootPreparation(const Scene& scene, const BeamSet& set)
+    RootPreparation(const Scene& scene, const TriangleMesh& polygons,
+                    const std::vector<RayOrigin>& origins, const BeamSet& set)
         : scene_(scene),
           set_(set),
           chain_(scene, set),
           exact_(first_exact_surface(scene, set)),
+          cut_(exact_ ? CutTriangles(polygons, origins, set,
+                                     [this](CutTriangles::Whole& whole) { return find_lit(whole); })
+                      : CutTriangles(set)),
           reach_(static_cast<double>(scene.diameter())) {}
 
     RootBeams run(const Chunk& beams) const {
@@ -181,6 +251,8 @@ public:
 
 private:
     void prepare(std::uint32_t number, RootBeams& out) const {
+        for (const CutTriangles::Whole& whole : cut_.after(number)) add_cut(whole, number, out);
+        if (cut_.has(number)) return;
         const Beam& beam = set_.beams[number];
         const std::size_t count = beam.triangle_count();
         const std::size_t before = out.beams.size();
@@ -194,13 +266,39 @@ private:
         out.beams.push_back(cell);
     }
 
+    FirstPolygon polygon(const CutTriangles::Whole& whole) const {
+        return {scene_, set_, exact_, whole.beam, 0, whole.corners};
+    }
+    bool find_lit(CutTriangles::Whole& whole) const {
+        const FirstPolygon triangle = polygon(whole);
+        const std::array<Vec2d, 4> places = {triangle.coordinates(whole.middle), unit_corners[0],
+                                             unit_corners[1], unit_corners[2]};
+        bool is_lit = false;
+        bool has_dark = false;
+        for (const Vec2d& at : places) {
+            const bool lit = chain_.ray(triangle.start(at)).has_value();
+            if (lit && !is_lit) whole.lit = at;
+            is_lit = is_lit || lit;
+            has_dark = has_dark || !lit;
+        }
+        return is_lit && (has_dark || whole.is_covered);
+    }
+    void add_cut(const CutTriangles::Whole& whole, std::uint32_t number, RootBeams& out) const {
+        const FirstPolygon triangle = polygon(whole);
+        divider(triangle, out)
+            .add_cut({.beam = whole.beam, .from = number, .is_part = true}, whole.corners,
+                     whole.lit);
+    }
+    Divider divider(const FirstPolygon& polygon, RootBeams& out) const {
+        return {chain_, polygon, reach_, static_cast<std::uint32_t>(set_.rays.size()), out};
+    }
+
     void divide(std::uint32_t number, std::size_t which, RootBeams& out) const {
         const Beam& beam = set_.beams[number];
-        static const std::array<Vec2d, 3> at = {Vec2d(0, 0), Vec2d(1, 0), Vec2d(0, 1)};
         const std::array<std::uint32_t, 3> rays = beam.triangle_corners(which);
-        std::array<Node, 3> corners;
+        std::array<RootNode, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
-            corners[i] = {.at = at[i],
+            corners[i] = {.at = unit_corners[i],
                           .origin = set_.origin(rays[i]),
                           .ray = set_.rays[rays[i]],
                           .number = rays[i]};
@@ -211,14 +309,14 @@ private:
         whole.beam.is_cell = false;
         whole.beam.corners[3] = Beam::none;
         const FirstPolygon polygon(scene_, set_, exact_, beam, which);
-        Divider(chain_, polygon, reach_, static_cast<std::uint32_t>(set_.rays.size()), out)
-            .divide(corners, whole, most_root_quarters);
+        divider(polygon, out).divide(corners, whole, most_root_quarters);
     }
 
     const Scene& scene_;
     const BeamSet& set_;
     LightChain chain_;
     std::optional<SpecularSurface> exact_;
+    CutTriangles cut_;
     double reach_;
 };
 
@@ -266,15 +364,24 @@ private:
     std::vector<std::uint32_t> from_;        ///< one a beam: the old one, unless it is a part
 };
 
+bool comes_to_front(const LightSample& light, const std::vector<RayOrigin>& origins,
+                    const Beam& beam) {
+    float slant = 0;
+    for (const std::uint32_t corner : beam.triangle_corners(0))
+        slant += origins[corner].normal.dot(to_light(light, origins[corner].position));
+    return slant > 0;
+}
+
 }  // namespace
 
-void prepare_roots(const Scene& scene, const std::vector<RayOrigin>& origins, int threads,
-                   BeamSet& set) {
+void prepare_roots(const Scene& scene, const TriangleMesh& polygons,
+                   const std::vector<RayOrigin>& origins, int threads, BeamSet& set) {
     if (set.beams.empty()) return;
+    for (Beam& beam : set.beams) beam.front = comes_to_front(set.light, origins, beam);
     if (set.path.size() > 1)
         for (const RayOrigin& origin : origins) set.origins.push_back(origin.position);
     std::vector<RootBeams> chunks(chunk_count(set.beams.size(), root_beams_together));
-    const RootPreparation preparation(scene, set);
+    const RootPreparation preparation(scene, polygons, origins, set);
     parallel_chunks(threads, set.beams.size(), root_beams_together,
                     [&](const Chunk& chunk) { chunks[chunk.index] = preparation.run(chunk); });
     const bool divides =

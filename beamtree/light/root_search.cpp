@@ -8,8 +8,9 @@ namespace caustics::beamtree {
 namespace {
 
 constexpr int most_steps = 14;
-constexpr double longest_step = 0.5;  // of the polygon's sides
-constexpr double farthest_out = -1;   // barycentric, of a step
+constexpr int most_steps_in_part = 40;  // of a polygon with a dark part
+constexpr double longest_step = 0.5;    // of the polygon's sides
+constexpr double farthest_out = -1;     // barycentric, of a step
 // How near to the point a ray has to come, for the length of its way.
 constexpr double miss_tolerance = 1e-10;
 constexpr double double_rounding = 4 * std::numeric_limits<double>::epsilon();
@@ -35,12 +36,16 @@ bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& poin
     const auto corners = set_.triangle(set_.beams[beam], triangle);
     const auto plane = ArrivalPlane::at(point, corners);
     if (!plane) return true;
-    const auto model = ImageModel::of(*plane, corners, set_.middles_of(beam, triangle));
+    const bool has_dark_part = set_.beams[beam].has_dark_part;
+    const auto model =
+        ImageModel::of(*plane, corners, set_.middles_of(beam, triangle), has_dark_part);
     if (!model) return true;
     const FirstPolygon polygon(scene_, set_, exact_, set_.beams[beam], triangle);
+    // The model of a polygon with a dark part is rough.
     ImageModel::Solutions known;
-    for (const Vec2d& from : model->solutions()) {
-        const auto found = polish(polygon, *plane, from);
+    for (const Vec2d& from : has_dark_part ? ImageModel::everywhere() : model->solutions()) {
+        const auto found =
+            polish(polygon, *plane, from, has_dark_part ? most_steps_in_part : most_steps);
         if (!found) continue;
         const bool is_known = std::any_of(known.begin(), known.end(), [&](const Vec2d& other) {
             return (other - found->at).norm() <= same_root;
@@ -49,14 +54,21 @@ bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& poin
         known.at[known.count++] = found->at;
         add(polygon, *found, roots);
     }
-    return known.count > 0 || !model->surely_holds();
+    return known.count > 0 || has_dark_part || !model->surely_holds();
 }
 
 std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
-                                                    const ArrivalPlane& plane, Vec2d at) const {
-    for (int step = 0; step < most_steps && least_weight(at) >= farthest_out; ++step) {
+                                                    const ArrivalPlane& plane, Vec2d at,
+                                                    int steps) const {
+    std::optional<Vec2d> lit;
+    for (int step = 0; step < steps && least_weight(at) >= farthest_out; ++step) {
         const auto ray = chain_.ray(polygon.start(at));
-        if (!ray || !(plane.steepness(ray->direction) > 0)) return {};
+        if (!ray || !(plane.steepness(ray->direction) > 0)) {
+            if (!lit) return {};
+            at = (at + *lit) / 2;
+            continue;
+        }
+        lit = at;
         const Vec2d miss = plane.miss(ray->position, ray->direction);
         const Eigen::Matrix2d change = plane.miss_change(*ray);
         const double way = plane.way(ray->position, ray->direction);

@@ -43,8 +43,9 @@ private:
         ChainRay ray;
         double density;
     };
-    std::optional<Found> polish(const FirstPolygon& polygon, const ArrivalPlane& plane,
-                                Vec2d at) const;
+    /// By Newton's method. Steps to where the light does not go the set's way are halved.
+    std::optional<Found> polish(const FirstPolygon& polygon, const ArrivalPlane& plane, Vec2d at,
+                                int steps) const;
     void add(const FirstPolygon& polygon, const Found& found, std::vector<Root>& roots) const;
 
     const Scene& scene_;

@@ -91,7 +91,8 @@ public:
         keep_only(set, kept);
         if (settings_.intensity == Intensity::refined && !set.drifts() &&
             set.path.size() <= most_events_of_roots)
-            prepare_roots(scene_, level.traced.origins, settings_.threads, set);
+            prepare_roots(scene_, surface_.caster().mesh, level.traced.origins, settings_.threads,
+                          set);
         traced_.sets[place] = std::move(set);
     }
 

@@ -323,7 +323,7 @@ TracedBeams trace_beams(const Scene& scene, const SceneBoxes& boxes, const Caste
                 refine(set, origins, *neighbours, kept, settings.threads, part.of(0.05));
             keep_only(set, kept);
             if (settings.intensity == Intensity::refined)
-                prepare_roots(scene, origins, settings.threads, set);
+                prepare_roots(scene, caster.mesh, origins, settings.threads, set);
             traced.sets.push_back(std::move(set));
         }
     }

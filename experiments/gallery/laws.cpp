@@ -108,10 +108,11 @@ GalleryScene nearest_photons() {
     for (const Vec2d& p : spread(400, {0, -0.5}, 1.2))
         scene.points.push_back(
             {{p.x(), p.y(), 0}, Vec3d::UnitZ(), Vec3d::Zero(), irradiance * std::sqrt(0.5)});
-    Series series{"photonmap", {}, 2, 1.1 / std::sqrt(318.0), 0, {}};
+    Series series{"photonmap", {}, 2, 1.1 / std::sqrt(318.0), 0, "kernel=point"};
     for (const int nearest : {20, 80, 320})
-        series.efforts.push_back(
-            {0, {"photons=400000", "emission=random", fmt::format("nearest={}", nearest)}});
+        series.efforts.push_back({0,
+                                  {"photons=400000", "emission=random", "kernel=point",
+                                   fmt::format("nearest={}", nearest)}});
     scene.series = {series, beam_tree(2, 0.001), caustic_polygons(2, 0.001)};
     return scene;
 }

@@ -35,15 +35,22 @@ std::vector<Setting> settings(Dice& dice) {
     const std::string emitted = fmt::format("emitted={}", dice.pick({70, 500, 2000, 4500}));
     const std::string nearest = fmt::format("nearest={}", dice.pick({5, 16, 20, 33, 70}));
     for (const char* const tree : {"balanced", "unbalanced", "packed"}) {
-        all.push_back({"photons", "photonmap", {emitted, nearest, fmt::format("tree={}", tree)}});
+        all.push_back({"photons",
+                       "photonmap",
+                       {emitted, nearest, "kernel=point", fmt::format("tree={}", tree)}});
         all.push_back({"stratified photons",
                        "photonmap",
                        {emitted, "emission=stratified", "interaction=split", "nearest=9",
-                        "filter=cone", fmt::format("tree={}", tree)}});
+                        "filter=cone", "kernel=point", fmt::format("tree={}", tree)}});
         all.push_back({"adaptive photons",
                        "photonmap",
                        {emitted, "adaptive=true", "nearest=60", fmt::format("tree={}", tree)}});
     }
+    all.push_back({"photons' own discs", "photonmap", {emitted, nearest}});
+    all.push_back({"photons' own cones at points",
+                   "photonmap",
+                   {emitted, "filter=cone", "pixel_footprint=false", "nearest=9"}});
+    all.push_back({"photons' own discs over squares", "photonmap", {emitted, "footprint=0.05"}});
     const std::vector<std::string> few = {
         fmt::format("mesh_resolution={}", dice.whole(2, 5)),
         fmt::format("light_samples={}", dice.pick({1, 1, 2})),

@@ -55,9 +55,12 @@ experiments::Method method_of(const std::string& name, std::vector<std::string> 
 struct Gap {
     Difference whole;         ///< in the brightest channel
     Difference worst_square;  ///< of all squares and channels that can be judged
-    bool is_within = true;
+    bool is_off = false;      ///< by more than the limit, in all or in a square
+    bool is_noticed = false;  ///< in all by more than its error explains
     bool can_judge = true;
     std::string text;
+
+    bool is_within() const { return !is_off && !is_noticed; }
 };
 
 Limit limit_of(std::size_t cell) {
@@ -90,7 +93,8 @@ Gap gap(const Comparison& found, bool in_all_only) {
             const bool is_noticed =
                 cell == FloorCells::all && std::abs(d.value) > Limit::errors * d.error + rounding;
             if (is_off) gap.can_judge = true;
-            gap.is_within = gap.is_within && !is_off && !is_noticed;
+            gap.is_off = gap.is_off || is_off;
+            gap.is_noticed = gap.is_noticed || is_noticed;
             if (cell != FloorCells::all && limit.can_judge(d) &&
                 std::abs(d.value) > std::abs(gap.worst_square.value))
                 gap.worst_square = d;
@@ -133,9 +137,12 @@ private:
 
     Comparison over_discs(const std::string& name, const std::string& paths_key,
                           Stage stage) const {
-        const auto method =
-            method_of(name, {fmt::format("radius={}", floor_.disc_radius()), "emission=random",
-                             fmt::format("{}={}", paths_key, paths())});
+        std::vector<std::string> parameters = {fmt::format("radius={}", floor_.disc_radius()),
+                                               "emission=random",
+                                               fmt::format("{}={}", paths_key, paths())};
+        // The particles are counted in discs.
+        if (name == "photonmap") parameters.emplace_back("filter=none");
+        const auto method = method_of(name, parameters);
         return floor_.over_discs(method, stage, paths());
     }
 
@@ -160,7 +167,8 @@ private:
     int effort_;
 };
 
-/// Whether more work brings a method that is off within the limits, and as its order says.
+/// Whether more work brings a method that is off within the limits, and as its order says. A difference that is within
+/// the limit from the start, and noticed, may also vanish.
 Agreement with_more_work(const std::vector<Gap>& gaps, std::string& text) {
     std::array<Difference, experiments::work_steps> whole;
     for (std::size_t i = 0; i < gaps.size(); ++i) whole[i] = gaps[i].whole;
@@ -169,8 +177,9 @@ Agreement with_more_work(const std::vector<Gap>& gaps, std::string& text) {
     const auto is_small = [](const Gap& gap) {
         return std::abs(gap.whole.value) <= limit_in_all.share;
     };
-    const bool shrinks = found.shrinks || std::ranges::all_of(gaps, is_small);
-    return gaps.back().is_within && shrinks ? Agreement::converges : Agreement::fails;
+    const bool vanishes = std::ranges::all_of(gaps, is_small) && !gaps.back().is_noticed;
+    return !gaps.back().is_off && (found.shrinks || vanishes) ? Agreement::converges
+                                                              : Agreement::fails;
 }
 
 }  // namespace
@@ -205,7 +214,7 @@ Verdict LightCheck::verdict(const std::string& method) {
             gaps.push_back(gap(answer, method == "illuminationmap"));
             if (!gaps.back().text.empty())
                 found.text += (found.text.empty() ? "" : "; ") + gaps.back().text;
-            if (effort == 0 && (gaps[0].is_within || !gaps[0].can_judge)) break;
+            if (effort == 0 && (gaps[0].is_within() || !gaps[0].can_judge)) break;
         }
     } catch (const UnsupportedScene&) {
         return found;
@@ -215,7 +224,7 @@ Verdict LightCheck::verdict(const std::string& method) {
     found.whole = gaps.front().whole;
     if (!gaps.front().can_judge)
         found.agreement = Agreement::unsure;
-    else if (!gaps.front().is_within)
+    else if (!gaps.front().is_within())
         found.agreement = with_more_work(gaps, found.text);
     found.cpu_seconds = watch.total().cpu;
     return found;

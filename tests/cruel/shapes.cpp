@@ -75,10 +75,15 @@ void spoil(TriangleMesh& mesh, Dice& dice, bool closed) {
 Json Parts::mesh_file(bool closed) {
     TriangleMesh mesh = tessellate_sphere(dice_.whole(4, 8));
     spoil(mesh, dice_, closed);
+    const bool orient = dice_.chance(0.3);
+    if (orient)
+        for (auto& t : mesh.triangles)
+            if (dice_.chance(0.3)) std::swap(t[1], t[2]);
     const std::string type = dice_.pick({"ply", "obj"});
     const auto file = new_file("." + type);
     std::ofstream(file) << (type == "ply" ? ply_text(mesh) : obj_text(mesh));
     Json shape = {{"type", type}, {"filename", file.filename().string()}};
+    if (orient) shape["orient"] = true;
     if (measured() || dice_.chance(0.5)) shape["face_normals"] = true;
     return shape;
 }
