@@ -84,16 +84,11 @@ public:
                 out_.beams.back().beam.corners[i] = corners[i].number;
             return;
         }
-        if (quarters == 0 || is_nearly_straight(corners, middles)) {
-            add(corners, middles, beam);
-            out_.beams.back().beam.has_dark_part = !are_lit(middles);
-            return;
-        }
         const std::array<RootNode, 3> quarter_nodes = {quarter(corners[0], corners[1]),
                                                        quarter(corners[1], corners[2]),
                                                        quarter(corners[2], corners[0])};
         const bool has_dark_part = !are_lit(middles) || !are_lit(quarter_nodes);
-        if (has_dark_part || !is_rough(corners, middles, quarter_nodes)) {
+        if (has_dark_part || quarters == 0 || !is_rough(corners, middles, quarter_nodes)) {
             add(corners, middles, beam);
             out_.beams.back().beam.has_dark_part = has_dark_part;
             return;
@@ -163,21 +158,6 @@ private:
     }
     static bool are_lit(const std::array<RootNode, 3>& nodes) {
         return std::ranges::all_of(nodes, &RootNode::is_lit);
-    }
-    // Whether directions are so near to straight between the corners that they are nearer still to a quadratic.
-    static bool is_nearly_straight(const std::array<RootNode, 3>& corners,
-                                   const std::array<RootNode, 3>& middles) {
-        constexpr float most_bulge = 0.1F;  // of how far the corners' directions part
-        if (!are_lit(middles)) return false;
-        float bulge = 0;
-        float apart = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3& a = corners[i].ray.direction;
-            const Vec3& b = corners[(i + 1) % 3].ray.direction;
-            bulge = std::max(bulge, (middles[i].ray.direction - (a + b) / 2).norm());
-            apart = std::max(apart, (b - a).norm());
-        }
-        return bulge <= most_bulge * apart;
     }
     // A quarter along an edge, where a cubic is off its quadratic most.
     RootNode quarter(const RootNode& a, const RootNode& b) const {
