@@ -192,6 +192,14 @@ std::vector<std::string> notes_on_light(const Method& method, const BuildReport&
     return all;
 }
 
+std::string balance_text(const LightLedger& light) {
+    return fmt::format(
+        "sent {:.4g} W = arrived {:.4g} + cut at max_bounces {:.4g} + pruned {:.4g} + lost by "
+        "shading normals {:.4g} + absorbed {:.4g} + escaped {:.4g}",
+        light.sent, light.arrived, light.cut, light.pruned, light.misdirected, light.absorbed,
+        light.escaped);
+}
+
 std::vector<std::string> lines_of(const Scene& scene, const LightSurvey& survey) {
     const LightLedger& light = survey.light;
     if (!(light.sent > 0)) return {};

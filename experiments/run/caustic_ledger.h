@@ -53,6 +53,9 @@ nlohmann::json to_json(const CausticLedger& ledger);
 std::vector<std::string> notes_on_light(const Method& method, const BuildReport& report,
                                         const CausticLedger& ledger);
 
+/// The ledger in one line: "sent 2 W = arrived 1.5 + cut 0.1 + ...".
+std::string balance_text(const LightLedger& light);
+
 /// The ledger for a person, a line each: what is sent, what becomes of it, and how much arrives on which receiver.
 std::vector<std::string> lines_of(const Scene& scene, const LightSurvey& survey);
 

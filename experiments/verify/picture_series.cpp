@@ -33,8 +33,13 @@ double share_done(std::size_t count, const SeriesLength& length, double excess, 
 
 }  // namespace
 
-Film picture_of(const Scene& scene, const Method& method, const RunOptions& options) {
-    const auto build_pass = [&](int pass) { return build(scene, method, options, pass); };
+Film picture_of(const Scene& scene, const Method& method, const RunOptions& options,
+                const std::function<void(const BuildReport&)>& built) {
+    const auto build_pass = [&](int pass) {
+        auto estimator = build(scene, method, options, pass);
+        if (pass == 0 && built) built(estimator->build_report());
+        return estimator;
+    };
     return render(scene, {pass_count(method), build_pass}, options).film;
 }
 

@@ -41,7 +41,8 @@ private:
     std::vector<Film> films_;
 };
 
-/// A picture with all its layers.
-Film picture_of(const Scene& scene, const Method& method, const RunOptions& options);
+/// A picture with all its layers. `built` gets the report of the method's first pass.
+Film picture_of(const Scene& scene, const Method& method, const RunOptions& options,
+                const std::function<void(const BuildReport&)>& built = {});
 
 }  // namespace caustics::experiments

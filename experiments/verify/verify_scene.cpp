@@ -14,6 +14,7 @@
 #include "experiments/base/step_progress.h"
 #include "experiments/base/stopwatch.h"
 #include "experiments/picture/metrics.h"
+#include "experiments/run/caustic_ledger.h"
 #include "experiments/run/caustic_survey.h"
 #include "experiments/run/mesh_notes.h"
 #include "experiments/run/methods.h"
@@ -201,7 +202,9 @@ private:
         options.threads = 1;
         options.progress = [&](double) { progress.share(0); };
         const Stopwatch watch;
-        const Film alone = picture_of(scene_, method, options);
+        const Film alone = picture_of(scene_, method, options, [&](const BuildReport& report) {
+            account_for(method, report);
+        });
         seconds_of_picture_[method.name] = watch.total().wall;
         options.progress = [&](double) { progress.share(0.5); };
         bool same = true;
@@ -215,6 +218,16 @@ private:
         add("threads: " + method.name, verdict(same),
             same ? "the same picture with one and more" : "pictures with one and more differ");
         if (is_compared(given)) served_.push_back(given);
+    }
+
+    /// The light that a biased method sent, and what became of it. An unbiased one loses none.
+    void account_for(const Method& method, const BuildReport& report) {
+        if (method.facts().is_unbiased) return;
+        const auto ledger = caustic_ledger(scene_, method, report);
+        if (!ledger) return;
+        add("light of " + method.name, {}, balance_text(ledger->light));
+        for (const std::string& note : notes_on_light(method, report, *ledger))
+            add("light of " + method.name, {}, note);
     }
 
     /// Seconds that the least number of pictures of a method take, as far as one was timed.

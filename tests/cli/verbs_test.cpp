@@ -375,6 +375,7 @@ TEST(Verify, ASceneHoldsAndSaysWhatWasChecked) {
     EXPECT_EQ(result.exit_code, 0) << result.out;
     for (const std::string what :
          {"holds     light: ", "caustic: casters", "holds     threads: beamtree",
+          "light of beamtree ", "sent ", " W = arrived ",
           "holds     against the reference: beamtree", "verify: all holds"})
         EXPECT_NE(result.out.find(what), std::string::npos) << what << "\n" << result.out;
 }

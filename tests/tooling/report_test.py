@@ -385,6 +385,18 @@ class Page(unittest.TestCase):
         self.assertEqual([scene["name"] for scene in data["scenes"]], ["pool", "ring"])
         self.assertEqual([table["folder"] for table in data["tables"]], ["sweep", "other"])
 
+    def test_light_that_a_caustic_lacks_is_told_from_1_percent_on(self):
+        shares = {"caustic_missed_by_cut": "0.117", "caustic_missed_by_pruning": "0.009"}
+        rows = [{**row, **shares} for row in self.rows]
+        with open(self.sweep / "records.csv", "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, rows[0])
+            writer.writeheader()
+            writer.writerows(rows)
+        missed = self.page(self.sweep)["scenes"][0]["missed"]
+        self.assertEqual({text.split(": ")[1] for text in missed}, {"the caustic lacks 11.7 % cut at max_bounces"})
+        self.assertIn("the caustic lacks 11.7 % cut at max_bounces.",
+                      record_tables.summary_md(records.read(self.sweep / "records.csv")))
+
     def test_trials_that_are_not_done_are_named_with_their_reason(self):
         self.rows[0].update(status="unsupported", message="no way")
         sweep.write_table(self.sweep, self.rows)

@@ -5,7 +5,7 @@ import io
 import os
 import urllib.parse
 
-from report.records import FORMULAS, UNITS, table_head
+from report.records import FORMULAS, UNITS, missed_text, table_head
 
 SUMMARISED = ("rmse", "relmse", "mean_ratio", "total_s", "precompute_s", "render_s", "photons_stored",
               "reference_stderr")
@@ -48,7 +48,7 @@ tbody tr:last-child td {{ border-bottom: 2px solid; }}
 <div class="table">
 {table}
 </div>
-<h2>Figures</h2>
+{missed}<h2>Figures</h2>
 {figures}
 </body>
 </html>
@@ -112,11 +112,22 @@ def heading(records):
     return ["scene", "method", *shown_parameters(records), "seeds"] + [f"{name} [{UNITS[name]}]" for name in PRINTED]
 
 
+def missed_light(records):
+    """A sentence for each cell whose caustic lacks light."""
+    for cell in records.cells:
+        told = missed_text(cell.records)
+        if told:
+            named = [f"{name} {cell.parameters[name]}" for name in shown_parameters(records) if name in cell.parameters]
+            yield f"{', '.join([cell.scene, cell.method, *named])}: {told}."
+
+
 def summary_md(records):
     line = lambda fields: "| " + " | ".join(field.replace("|", r"\|") for field in fields) + " |\n"
     titles = heading(records)
     return (CAPTION + said_of_shared(records) + "\n\n" + line(titles) + "|" + "---|" * len(titles) + "\n"
-            + "".join(line(row) for row in body(records)))
+            + "".join(line(row) for row in body(records))
+            + "".join(["\nLight that caustics lack:\n\n"] * any(missed_light(records)))
+            + "".join(f"* {sentence}\n" for sentence in missed_light(records)))
 
 
 def summary_tex(records):
@@ -153,4 +164,5 @@ def page(records, plots, figures):
         counts=html.escape(f"{done} trials done" + (f"; {left_out}" if left_out else "") + "."),
         plots="\n".join(picture(path, caption) for path, caption in plots) or "<p>None.</p>",
         table=table,
+        missed="".join(f"<p>{html.escape(sentence)}</p>\n" for sentence in missed_light(records)),
         figures="\n".join(picture(path, os.path.basename(path)) for path in figures) or "<p>None.</p>")

@@ -117,7 +117,8 @@ function drawNotDone() {
     const text = `${each.method}: ${each.status}${each.message ? `: ${each.message}` : ""}`;
     reasons.set(text, (reasons.get(text) ?? 0) + 1);
   }
-  byId("not-done").replaceChildren(...[...reasons].map(([text, count]) => make("li", {}, `${count} trial${count > 1 ? "s" : ""} of ${text}`)));
+  byId("not-done").replaceChildren(...[...reasons].map(([text, count]) => make("li", {}, `${count} trial${count > 1 ? "s" : ""} of ${text}`)),
+    ...scene().missed.map((text) => make("li", {}, text)));
 }
 
 /** The list of pictures shown, each with what makes it again, and those that may be added. */

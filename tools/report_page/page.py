@@ -6,7 +6,7 @@ import pathlib
 import shlex
 
 from report.intervals import student
-from report.records import FORMULAS, same
+from report.records import FORMULAS, missed_text, same
 from report import exr
 from report_page import pictures
 from report_page.scenes import COSTS, ERRORS, best_of, rank, seeds_text
@@ -201,6 +201,7 @@ class SceneData:
                           "best": [cells.index(cell) for cell in best]}
                          for seconds, picks, best in self.scene.contests()],
             "contest": self.scene.usual_contest(),
+            "missed": [f"{cell.label}: {text}" for cell in cells if (text := missed_text(cell.rows))],
             "not_done": [{"trial": row["trial"], "status": row["status"], "method": row["method"],
                           "message": row.get("message", "")}
                          for sweep in {id(cell.sweep): cell.sweep for cell in cells}.values()
