@@ -127,9 +127,13 @@ private:
         }
         return found;
     }
+    // Its ray starts a little inside the triangle: an edge may lie along one of the next surface, behind which normals are
+    // another facet's.
     RootNode node(const Vec2d& at) const {
+        constexpr double inset = 1e-4;
+        const Vec2d middle = Vec2d::Constant(1.0 / 3);
         RootNode node{at, polygon_.position(at).cast<float>(), {}};
-        const auto ray = chain_.ray(polygon_.start(at));
+        const auto ray = chain_.ray(polygon_.start(at + inset * (middle - at)));
         node.is_lit = ray.has_value();
         if (!ray) return node;
         node.ray = {ray->position.cast<float>(), ray->direction.cast<float>()};

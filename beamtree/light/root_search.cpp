@@ -8,6 +8,7 @@ namespace caustics::beamtree {
 namespace {
 
 constexpr int most_steps = 14;
+constexpr int most_returns = 3;         // into the polygon
 constexpr int most_steps_in_part = 40;  // of a polygon with a dark part
 constexpr double longest_step = 0.5;    // of the polygon's sides
 constexpr double farthest_out = -1;     // barycentric, of a step
@@ -26,10 +27,27 @@ double least_image(const ArrivalPlane& plane) {
     return side * side;
 }
 
+// The nearest place of the polygon that is off its edges.
+Vec2d just_inside(const Vec2d& at) {
+    constexpr double inset = 1e-5;
+    const Vec3d weights = Vec3d(1 - at.x() - at.y(), at.x(), at.y()).cwiseMax(0);
+    return (1 - inset) * weights.tail<2>() / weights.sum() + Vec2d::Constant(inset / 3);
+}
+
+bool has_mesh_after_first(const Scene& scene, const BeamSet& set) {
+    return std::any_of(set.path.begin() + 1, set.path.end(), [&](const SpecularEvent& event) {
+        return scene.shapes()[event.shape].primitive == Primitive::mesh;
+    });
+}
+
 }  // namespace
 
 RootSearch::RootSearch(const Scene& scene, const BeamSet& set)
-    : scene_(scene), set_(set), chain_(scene, set), exact_(first_exact_surface(scene, set)) {}
+    : scene_(scene),
+      set_(set),
+      chain_(scene, set),
+      exact_(first_exact_surface(scene, set)),
+      meets_mesh_(has_mesh_after_first(scene, set)) {}
 
 bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& point,
                       std::vector<Root>& roots) const {
@@ -61,6 +79,8 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
                                                     const ArrivalPlane& plane, Vec2d at,
                                                     int steps) const {
     std::optional<Vec2d> lit;
+    // Beyond the polygon's edges the light may meet other facets, from which no step leads back.
+    int returns = 0;
     for (int step = 0; step < steps && least_weight(at) >= farthest_out; ++step) {
         const auto ray = chain_.ray(polygon.start(at));
         if (!ray || !(plane.steepness(ray->direction) > 0)) {
@@ -86,6 +106,10 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
         const double length = by.norm();
         if (!(length < std::numeric_limits<double>::infinity())) return {};
         at -= std::min(1.0, longest_step / length) * by;
+        if (meets_mesh_ && returns < most_returns && least_weight(at) < -edge_width) {
+            at = just_inside(at);
+            ++returns;
+        }
     }
     return {};
 }

@@ -52,6 +52,7 @@ private:
     const BeamSet& set_;
     LightChain chain_;
     std::optional<SpecularSurface> exact_;
+    bool meets_mesh_;  ///< after the first event
 };
 
 }  // namespace caustics::beamtree
