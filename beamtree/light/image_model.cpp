@@ -69,8 +69,9 @@ std::optional<ImageModel> ImageModel::of(const ArrivalPlane& plane,
         arrives = arrives || plane.way(position, direction) > 0;
     }
     if (!arrives) return {};
-    const ImageModel model(misses);
+    ImageModel model(misses);
     if (!model.may_hold(has_dark_part ? model_error_in_part : model_error)) return {};
+    model.find_areas();
     return model;
 }
 
@@ -110,16 +111,24 @@ Eigen::Matrix2d ImageModel::change(const Vec2d& at) const {
     return change;
 }
 
-bool ImageModel::folds() const {
-    double least = std::numeric_limits<double>::infinity();
-    double most = -least;
+void ImageModel::find_areas() {
+    least_area_ = std::numeric_limits<double>::infinity();
+    most_area_ = -least_area_;
     for (const auto& [u, v] : places) {
         const double area = change({u, v}).determinant();
-        least = std::min(least, area);
-        most = std::max(most, area);
+        least_area_ = std::min(least_area_, area);
+        most_area_ = std::max(most_area_, area);
     }
+}
+
+bool ImageModel::folds() const {
     constexpr double nearly = 0.05;
-    return !(least > nearly * most || most < nearly * least);
+    return !(least_area_ > nearly * most_area_ || most_area_ < nearly * least_area_);
+}
+
+bool ImageModel::is_beside_fold(double area) const {
+    constexpr double near = 0.3;
+    return folds() || std::abs(area) < near * std::max(std::abs(least_area_), std::abs(most_area_));
 }
 
 // The point's coordinates in the straight-sided image; the polygon's middle where that has no area.
@@ -151,10 +160,18 @@ ImageModel::Solutions ImageModel::everywhere() {
 ImageModel::Solutions ImageModel::solutions() const {
     Solutions found;
     const double size = (misses_[1] - misses_[0]).norm() + (misses_[2] - misses_[0]).norm();
+    // Beside a fold the model may pass the point where the image does not.
+    std::optional<Vec2d> nearest;
+    double least_miss = bulge_;
     const auto try_from = [&](const Vec2d& from) {
         const Vec2d at = solve(from);
         if (!(least_weight(at) >= -model_reach)) return;
-        if (!(miss(at).norm() <= model_error * bulge_ + 1e-6 * size)) return;
+        const double missed = miss(at).norm();
+        if (!(missed <= model_error * bulge_ + 1e-6 * size)) {
+            if (missed < least_miss) nearest = at;
+            least_miss = std::min(least_miss, missed);
+            return;
+        }
         for (const Vec2d& other : found)
             if ((other - at).norm() < same_solution) return;
         found.at[found.count++] = at;
@@ -163,6 +180,7 @@ ImageModel::Solutions ImageModel::solutions() const {
         try_from(clamped(straight()));
     else
         for (const auto& [u, v] : places) try_from({u, v});
+    if (found.count == 0 && nearest) found.at[found.count++] = *nearest;
     return found;
 }
 

@@ -43,7 +43,7 @@ class ImageModel {
 public:
     /// Places of the polygon near which a ray may reach the point.
     struct Solutions {
-        std::array<Vec2d, 7> at;
+        std::array<Vec2d, 14> at;
         std::size_t count = 0;
 
         const Vec2d* begin() const { return at.data(); }
@@ -57,6 +57,8 @@ public:
                                         const EdgeMiddles& middles, bool has_dark_part);
     /// Places all over any polygon.
     static Solutions everywhere();
+    /// Whether the image folds at or near a place where its change has this determinant.
+    bool is_beside_fold(double area) const;
     /// One where the image does not turn over; else all that are found from places all over the polygon.
     Solutions solutions() const;
     /// True where the straight-sided image holds the point deeper inside than the image bulges: then a ray reaches it.
@@ -65,6 +67,7 @@ public:
 private:
     explicit ImageModel(const std::array<Vec2d, 6>& misses);
     bool may_hold(double error) const;
+    void find_areas();
     bool folds() const;
     Vec2d straight() const;
     Vec2d solve(Vec2d at) const;
@@ -75,7 +78,9 @@ private:
         misses_;  ///< of the corners, and of the middles of (0, 1), (1, 2) and (2, 0)
     std::array<Vec2d, 3> bulges_;  ///< of the edges, from the middles of their ends
     double bulge_ = 0;             ///< the largest [m]
-    Vec2d u_, v_, uu_, uv_, vv_;   ///< coefficients
+    double least_area_ = 0;        ///< of the determinants of change() all over the polygon
+    double most_area_ = 0;
+    Vec2d u_, v_, uu_, uv_, vv_;  ///< coefficients
 };
 
 /// The least of a place's barycentric coordinates (1 - u - v, u, v).

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Eigenvalues>
+
 namespace caustics::beamtree {
 namespace {
 
@@ -61,18 +63,31 @@ bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& poin
     const FirstPolygon polygon(scene_, set_, exact_, set_.beams[beam], triangle);
     // The model of a polygon with a dark part is rough.
     ImageModel::Solutions known;
-    for (const Vec2d& from : has_dark_part ? ImageModel::everywhere() : model->solutions()) {
+    bool is_any_inside = false;
+    // A ray that starts beside the polygon belongs to another one.
+    const auto look_from = [&](const Vec2d& from) -> std::optional<Found> {
         const auto found =
             polish(polygon, *plane, from, has_dark_part ? most_steps_in_part : most_steps);
-        if (!found) continue;
+        if (!found || known.count == known.at.size()) return {};
         const bool is_known = std::any_of(known.begin(), known.end(), [&](const Vec2d& other) {
             return (other - found->at).norm() <= same_root;
         });
-        if (is_known) continue;
+        if (is_known) return {};
         known.at[known.count++] = found->at;
-        add(polygon, *found, roots);
+        if (least_weight(found->at) >= -edge_width) {
+            is_any_inside = true;
+            add(polygon, *found, roots);
+        }
+        return found;
+    };
+    const ImageModel::Solutions starts =
+        has_dark_part ? ImageModel::everywhere() : model->solutions();
+    for (const Vec2d& from : starts) {
+        const auto found = look_from(from);
+        if (!found || !model->is_beside_fold(found->change.determinant())) continue;
+        if (const auto other = partner(polygon, *plane, *found)) look_from(*other);
     }
-    return known.count > 0 || has_dark_part || !model->surely_holds();
+    return is_any_inside || has_dark_part || !model->surely_holds();
 }
 
 std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
@@ -97,10 +112,10 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
                                 (ray->first.position.norm() + plane.point().norm()) *
                                 (1 + change.norm() / polygon.size());
         if (miss.norm() <= miss_tolerance * std::abs(way) + rounding) {
-            if (!(least_weight(at) >= -edge_width) || !(way > 0)) return {};
+            if (!(way > 0)) return {};
             const double area = std::max(std::abs(change.determinant()), least_image(plane)) *
                                 plane.steepness(ray->direction);
-            return Found{at, *ray, ray->light_area / area};
+            return Found{at, *ray, change, ray->light_area / area};
         }
         const Vec2d by = change.inverse() * miss;
         const double length = by.norm();
@@ -112,6 +127,25 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
         }
     }
     return {};
+}
+
+// Along the direction in which the image does not move the determinant goes through zero at the fold, midway between the
+// two.
+std::optional<Vec2d> RootSearch::partner(const FirstPolygon& polygon, const ArrivalPlane& plane,
+                                         const Found& found) const {
+    constexpr double step = 0.01;
+    constexpr double farthest = 0.3;  // beyond the polygon
+    const Eigen::Matrix2d square = found.change.transpose() * found.change;
+    const Vec2d still =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>().computeDirect(square).eigenvectors().col(
+            0);
+    const auto beside = chain_.ray(polygon.start(found.at + step * still));
+    if (!beside) return {};
+    const double area = found.change.determinant();
+    const double slope = (plane.miss_change(*beside).determinant() - area) / step;
+    const Vec2d other = found.at - 2 * area / slope * still;
+    if (!(least_weight(other) >= -farthest)) return {};
+    return other;
 }
 
 void RootSearch::add(const FirstPolygon& polygon, const Found& found,

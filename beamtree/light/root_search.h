@@ -41,11 +41,15 @@ private:
     struct Found {
         Vec2d at;  ///< on the polygon
         ChainRay ray;
+        Eigen::Matrix2d change;  ///< of the miss
         double density;
     };
     /// By Newton's method. Steps to where the light does not go the set's way are halved.
     std::optional<Found> polish(const FirstPolygon& polygon, const ArrivalPlane& plane, Vec2d at,
                                 int steps) const;
+    /// Beside a fold two rays reach the point: where the other one may be.
+    std::optional<Vec2d> partner(const FirstPolygon& polygon, const ArrivalPlane& plane,
+                                 const Found& found) const;
     void add(const FirstPolygon& polygon, const Found& found, std::vector<Root>& roots) const;
 
     const Scene& scene_;

@@ -124,7 +124,7 @@ KnownScene pool(std::uint64_t seed) {
     Rng rng(seed, Stage::test, 1);
     constexpr double n = 1.33, half = 2;
     const Waves water = random_waves(rng, 1 + static_cast<int>(seed % 3), 0.8, half,
-                                     0.3 + 0.2 * static_cast<double>(rng.next()), 16);
+                                     0.3 + 0.2 * static_cast<double>(rng.next()), 30);
     KnownLight light;
     if (seed % 2 == 0) light.position = Vec3d(0.3, -0.2, 3);
     light.sun = Vec3d(0.1, 0.15, -1).normalized();
@@ -140,7 +140,7 @@ KnownScene pool(std::uint64_t seed) {
         return LandedRay{*lands, passed * light.power(p, 2 * half * Vec3d(1, 0, s.x()),
                                                       2 * half * Vec3d(0, 1, s.y()))};
     };
-    KnownScene known{"pool " + std::to_string(seed), {}, {map}, 0.9, 1, 64};
+    KnownScene known{"pool " + std::to_string(seed), {}, {map}, 0.9, 1, 128};
     known.desc.shapes = {water.shape("water", n), floor_of(1)};
     known.desc.lights = {light.light()};
     return known;
