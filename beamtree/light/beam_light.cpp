@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "beamtree/beams/caster_mesh.h"
 #include "beamtree/light/refined_density.h"
+#include "beamtree/light/resolvable_area.h"
 #include "core/material/optics.h"
 #include "core/scene/same_surface.h"
 
 namespace caustics::beamtree {
 namespace {
-
-// Areas between float positions mean nothing below this. At a perfect focus, where a caustic polygon
-// shrinks to a point, the irradiance is large with it, and finite.
-double resolvable_area(const Vec3& point) {
-    const double side = static_cast<double>(std::numeric_limits<float>::epsilon() *
-                                            std::max(point.cwiseAbs().maxCoeff(), 1e-6F));
-    return side * side;
-}
 
 /// The ray of a hit that arrives at the point.
 struct ArrivingRay {

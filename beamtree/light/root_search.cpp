@@ -6,6 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "beamtree/light/resolvable_area.h"
+
 namespace caustics::beamtree {
 namespace {
 
@@ -21,13 +23,6 @@ constexpr double double_rounding = 4 * std::numeric_limits<double>::epsilon();
 // polygons that are divided differently. Both neighbours find such a root, and BeamLight counts it once.
 constexpr double edge_width = 1e-6;
 constexpr double same_root = 1e-5;  // barycentric distance
-
-// Areas between float positions mean nothing below this: at a perfect focus the irradiance is large, and finite.
-double least_image(const ArrivalPlane& plane) {
-    const double side = static_cast<double>(std::numeric_limits<float>::epsilon()) *
-                        std::max(plane.point().cwiseAbs().maxCoeff(), 1e-6);
-    return side * side;
-}
 
 // The nearest place of the polygon that is off its edges.
 Vec2d just_inside(const Vec2d& at) {
@@ -113,7 +108,8 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
                                 (1 + change.norm() / polygon.size());
         if (miss.norm() <= miss_tolerance * std::abs(way) + rounding) {
             if (!(way > 0)) return {};
-            const double area = std::max(std::abs(change.determinant()), least_image(plane)) *
+            const double area = std::max(std::abs(change.determinant()),
+                                         resolvable_area(plane.point().cast<float>())) *
                                 plane.steepness(ray->direction);
             return Found{at, *ray, change, ray->light_area / area};
         }
