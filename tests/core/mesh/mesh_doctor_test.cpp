@@ -56,13 +56,13 @@ TEST(MeshDoctor, FindsNothingWrongWithClosedMeshes) {
 // A turned face is no hole: it was told as six open edges.
 TEST(MeshDoctor, TellsTurnedFacesFromHoles) {
     TriangleMesh cube = tessellate_cube(1);
-    for (const std::size_t t : {0, 1, 4, 5, 9}) turn(cube, t);
+    for (const std::size_t t : {0U, 1U, 4U, 5U, 9U}) turn(cube, t);
     const MeshDiagnosis turned = diagnose(cube);
     EXPECT_EQ(turned.open_edges, 0U);
     EXPECT_EQ(turned.closed_parts, 1U);
     EXPECT_EQ(turned.mixed_parts, 1U);
     EXPECT_EQ(turned.turned_triangles, 5U);
-    for (const std::size_t t : {0, 1, 4, 5, 9}) EXPECT_TRUE(turned.turned[t]);
+    for (const std::size_t t : {0U, 1U, 4U, 5U, 9U}) EXPECT_TRUE(turned.turned[t]);
     cube = tessellate_cube(1);
     cube.triangles.erase(cube.triangles.begin(), cube.triangles.begin() + 2);
     const MeshDiagnosis holed = diagnose(cube);
@@ -185,7 +185,7 @@ TEST(MeshDoctor, OrientsWhatWasTurnedAtRandom) {
 
 TEST(MeshDoctor, OpenPartsKeepTheSideOfMostOfTheirArea) {
     TriangleMesh sheet = tessellate_rectangle({4, 4});
-    for (const std::size_t t : {3, 8, 9, 20}) turn(sheet, t);
+    for (const std::size_t t : {3U, 8U, 9U, 20U}) turn(sheet, t);
     EXPECT_EQ(diagnose(sheet).turned_triangles, 4U);
     orient(sheet);
     for (std::size_t t = 0; t < sheet.triangles.size(); ++t)

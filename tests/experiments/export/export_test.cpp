@@ -186,7 +186,7 @@ TEST(PovrayScene, FollowsAsLongChainsAsPovrayCan) {
     const auto text_of = [&](int max_bounces) {
         return file(to_povray(small_scene(), {.max_bounces = max_bounces}), "scene.pov");
     };
-    EXPECT_NE(text_of(1000).find("max_trace_level 256\n  adc_bailout 0.0001\n"), std::string::npos);
+    EXPECT_NE(text_of(1000).find("max_trace_level 64\n  adc_bailout 0.0001\n"), std::string::npos);
     EXPECT_NE(text_of(16).find("max_trace_level 18\n  adc_bailout 0\n"), std::string::npos);
 }
 

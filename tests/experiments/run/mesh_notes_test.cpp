@@ -40,7 +40,7 @@ bool has_words(const std::string& text, const std::string& words) {
 TriangleMesh cube_with_turned_faces() {
     TriangleMesh cube = tessellate_cube(1);
     cube.normals.clear();
-    for (const std::size_t t : {0, 1, 4, 5, 8})
+    for (const std::size_t t : {0U, 1U, 4U, 5U, 8U})
         std::swap(cube.triangles[t][1], cube.triangles[t][2]);
     return cube;
 }

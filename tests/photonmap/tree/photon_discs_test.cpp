@@ -195,14 +195,14 @@ TEST(PhotonDiscs, KeepTheSumOfUnevenLightWhereNearestNDoesNot) {
             found.push_back(static_cast<double>(value.mean()));
         return found;
     };
-    EXPECT_GT(integral(by_nearest, count, far), 1.03);
+    EXPECT_GT(integral(by_nearest, count, static_cast<double>(far)), 1.03);
     for (const FilterKind filter : filters) {
         const DiscMap map(photons, {.nearest = 50, .max_radius = far}, filter);
         const auto by_discs = [&](const std::vector<ReceiverPoint>& points) {
             return map.irradiance(points);
         };
         // What is left is the grid's, whose squares are wider than some discs.
-        EXPECT_NEAR(integral(by_discs, count, far), 1, 0.01);
+        EXPECT_NEAR(integral(by_discs, count, static_cast<double>(far)), 1, 0.01);
     }
 }
 
