@@ -98,13 +98,16 @@ std::vector<LightAtPoint> brute_force_light(const std::vector<RayMap>& maps, int
                                             const std::vector<Vec2d>& floor) {
     std::vector<LightAtPoint> light(floor.size());
     const Bins bins(floor);
-    const auto place = [side](int i, int j) -> Vec2d { return Vec2d(i, j) / side; };
+    const auto place = [side](std::size_t i, std::size_t j) -> Vec2d {
+        return Vec2d(static_cast<double>(i), static_cast<double>(j)) / side;
+    };
     for (const RayMap& map : maps) {
         Found found{std::vector<std::vector<Vec2d>>(floor.size()), light};
-        std::vector<std::optional<LandedRay>> row(side + 1), before(side + 1);
-        for (int j = 0; j <= side; ++j) {
-            for (int i = 0; i <= side; ++i) row[i] = map(place(i, j));
-            for (int i = 0; j > 0 && i < side; ++i) {
+        const auto cells = static_cast<std::size_t>(side);
+        std::vector<std::optional<LandedRay>> row(cells + 1), before(cells + 1);
+        for (std::size_t j = 0; j <= cells; ++j) {
+            for (std::size_t i = 0; i <= cells; ++i) row[i] = map(place(i, j));
+            for (std::size_t i = 0; j > 0 && i < cells; ++i) {
                 Eigen::AlignedBox2d box;
                 for (const auto* const corner : {&row[i], &row[i + 1], &before[i], &before[i + 1]})
                     if (*corner) box.extend((*corner)->floor);

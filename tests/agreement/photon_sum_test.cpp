@@ -52,7 +52,7 @@ support::Moments shares(const Scene& scene, const PhotonMapParams& params, const
 TEST(PhotonSum, OfAFoldedPoolIsThatOfLightTracing) {
     const Scene scene(folded_pool());
     const Film truth = traced(scene);
-    for (const std::uint64_t photons : {40'000, 120'000}) {
+    for (const std::uint64_t photons : {40'000U, 120'000U}) {
         const support::Moments own = shares(scene, {.photons = photons}, truth);
         EXPECT_NEAR(own.mean(), 1, 0.01) << photons;
         EXPECT_LT(own.standard_error(), 0.004);

@@ -74,7 +74,7 @@ public:
     double irradiance(const Vec2d& floor) const {
         const double q = floor.dot(along_);
         double sum = 0;
-        for (int i = 0; i < count; ++i) {
+        for (std::size_t i = 0; i < count; ++i) {
             if ((landings_[i] < q) == (landings_[i + 1] < q)) continue;
             double low = places_[i];
             double high = places_[i + 1];
