@@ -74,7 +74,7 @@ CutTriangles::Whole whole_triangle(const TriangleMesh& mesh, std::uint32_t trian
     return whole;
 }
 
-/// What a set's beams cover of a mesh.
+/// The triangles of a mesh that a set's beams cover.
 struct Coverage {
     std::vector<bool> triangles;
     std::vector<std::uint32_t> beam_at;  ///< one a vertex: the first beam on a triangle there

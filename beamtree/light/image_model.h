@@ -57,7 +57,7 @@ public:
                                         const EdgeMiddles& middles, bool has_dark_part);
     /// Places all over any polygon.
     static Solutions everywhere();
-    /// Whether the image folds at or near a place where its change has this determinant.
+    /// True if the image folds at or near a place where its change has this determinant.
     bool is_beside_fold(double area) const;
     /// One where the image does not turn over; else all that are found from places all over the polygon.
     Solutions solutions() const;

@@ -56,7 +56,6 @@ bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& poin
         ImageModel::of(*plane, corners, set_.middles_of(beam, triangle), has_dark_part);
     if (!model) return true;
     const FirstPolygon polygon(scene_, set_, exact_, set_.beams[beam], triangle);
-    // The model of a polygon with a dark part is rough.
     ImageModel::Solutions known;
     bool is_any_inside = false;
     // A ray that starts beside the polygon belongs to another one.
@@ -75,6 +74,7 @@ bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& poin
         }
         return found;
     };
+    // The model of a polygon with a dark part is rough.
     const ImageModel::Solutions starts =
         has_dark_part ? ImageModel::everywhere() : model->solutions();
     for (const Vec2d& from : starts) {

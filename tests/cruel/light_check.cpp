@@ -167,8 +167,8 @@ private:
     int effort_;
 };
 
-/// Whether more work brings a method that is off within the limits, and as its order says. A difference that is within
-/// the limit from the start, and noticed, may also vanish.
+/// Judges a method that is off by its differences at growing work: it converges if they shrink as its order says, or if
+/// they were within the limit from the start and the last one is not noticed.
 Agreement with_more_work(const std::vector<Gap>& gaps, std::string& text) {
     std::array<Difference, experiments::work_steps> whole;
     for (std::size_t i = 0; i < gaps.size(); ++i) whole[i] = gaps[i].whole;
