@@ -47,6 +47,9 @@ struct Beam {
     bool is_cell = false;  ///< a cell of a grid: its second triangle is the mesh's next
     /// Light of a part of the polygon does not go the set's way, as beyond the horizon of a curved surface.
     bool has_dark_part = false;
+    /// Its edge opposite the first corner is a chord of the horizon: the light of the polygon begins by this share of the
+    /// distance from the corner beyond it.
+    float beyond = 0;
     bool front = true;  ///< where roots are searched: the light comes to the first caster's front
 
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "beamtree/light/drifting_beam.h"
+#include "beamtree/light/image_model.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -17,7 +18,9 @@ void find_roots_in_beam(const BeamSet& set, const std::array<const VertexRay*, 4
         const bool has_roots = set.has_roots(number.beam, i);
         if (test_triangle(corners, i, plane, hits)) {
             hits.back().flux_share *= beam.share_of(i);
-        } else if (!has_roots) {
+        } else if (!has_roots ||
+                   !may_have_image(plane.point().cast<float>(), corners,
+                                   set.middles_of(number.beam, i), beam.has_dark_part)) {
             continue;
         } else {
             hits.emplace_back().winding = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -13,6 +14,13 @@ inline std::optional<SpecularSurface> first_exact_surface(const Scene& scene, co
     const Shape& shape = scene.shapes()[set.caster];
     if (shape.primitive == Primitive::mesh) return {};
     return SpecularSurface(shape);
+}
+
+/// True where a set's light meets a mesh after its first event: neighbouring rays may meet different facets.
+inline bool meets_mesh_after_first(const Scene& scene, const BeamSet& set) {
+    return std::any_of(set.path.begin() + 1, set.path.end(), [&](const SpecularEvent& event) {
+        return scene.shapes()[event.shape].primitive == Primitive::mesh;
+    });
 }
 
 /// Where the corners of one of a beam's triangles lie on the first surface's mesh.

@@ -196,4 +196,43 @@ bool ImageModel::surely_holds() const {
     return area != 0;
 }
 
+// By the same hull, in those two of the scene's coordinates along which the plane is steepest.
+bool may_have_image(const Vec3& point, const std::array<const VertexRay*, 3>& corners,
+                    const EdgeMiddles& middles, bool has_dark_part) {
+    constexpr float rounding = 1e-5F;  // of the way to the plane
+    const Vec3 across = corners[0]->direction + corners[1]->direction + corners[2]->direction;
+    Eigen::Index left_out = 0;
+    across.cwiseAbs().maxCoeff(&left_out);
+    const Eigen::Index u = (left_out + 1) % 3;
+    const Eigen::Index v = (left_out + 2) % 3;
+    const float least = static_cast<float>(least_steep) * across.norm();
+    std::array<Vec2, 6> misses;
+    float farthest = 0;
+    bool arrives = false;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const VertexRay& ray = i < 3 ? *corners[i] : middles[i - 3];
+        const float steepness = across.dot(ray.direction);
+        if (!(steepness > least * (1 - rounding))) return false;
+        const Vec3 from = ray.position - point;
+        const float way = -across.dot(from) / steepness;
+        misses[i] = {from[u] + way * ray.direction[u], from[v] + way * ray.direction[v]};
+        farthest = std::max(farthest, std::abs(way));
+        arrives = arrives || way > -rounding * from.norm();
+    }
+    if (!arrives) return false;
+    Vec2 low = misses[0];
+    Vec2 high = misses[0];
+    Vec2 bulge = Vec2::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec2 off = misses[3 + i] - (misses[i] + misses[(i + 1) % 3]) / 2;
+        const Vec2 control = misses[3 + i] + off;
+        low = low.cwiseMin(misses[i]).cwiseMin(control);
+        high = high.cwiseMax(misses[i]).cwiseMax(control);
+        bulge = bulge.cwiseMax(off.cwiseAbs());
+    }
+    const auto error = static_cast<float>(has_dark_part ? model_error_in_part : model_error);
+    const Vec2 room = error * bulge + Vec2::Constant(rounding * farthest);
+    return (low.array() <= room.array()).all() && (high.array() >= -room.array()).all();
+}
+
 }  // namespace caustics::beamtree

@@ -83,9 +83,13 @@ private:
     Vec2d u_, v_, uu_, uv_, vv_;  ///< coefficients
 };
 
-/// The least of a place's barycentric coordinates (1 - u - v, u, v).
-inline double least_weight(const Vec2d& at) {
-    return std::min({at.x(), at.y(), 1 - at.x() - at.y()});
+/// False where ImageModel::of() would be empty on the plane at this point: in float, for a few candidates of many.
+bool may_have_image(const Vec3& point, const std::array<const VertexRay*, 3>& corners,
+                    const EdgeMiddles& middles, bool has_dark_part);
+
+/// The least of a place's barycentric coordinates (1 - u - v, u, v), the first of which may be less by `beyond`.
+inline double least_weight(const Vec2d& at, double beyond = 0) {
+    return std::min({at.x(), at.y(), 1 - at.x() - at.y() + beyond});
 }
 
 }  // namespace caustics::beamtree

@@ -2,12 +2,14 @@
 
 #include "beamtree/light/cut_triangles.h"
 #include "beamtree/light/first_polygon.h"
+#include "beamtree/light/projected.h"
 #include "core/base/parallel.h"
 
 namespace caustics::beamtree {
 namespace {
 
 constexpr int most_root_quarters = 3;
+constexpr int most_cut_quarters = 1;
 // By how much an image may be off its quadratic where light has gone as far as the scene is wide, over the polygon's
 // size on the first surface: less does no harm. Directions may be off by this share of how far they part, whatever the
 // scene: a wave of two radians a polygon has 0.03, and half the polygon a quarter of that.
@@ -53,24 +55,28 @@ struct RootBeams {
 /// Divides one triangle of a beam.
 class Divider {
 public:
-    /// New rays are numbered from `first_number` on.
-    Divider(const LightChain& chain, const FirstPolygon& polygon, double reach,
+    /// New rays are numbered from `first_number` on. What is lit of a triangle has a smooth border unless its light
+    /// `meets_mesh` after the first surface.
+    Divider(const LightChain& chain, const FirstPolygon& polygon, double reach, bool meets_mesh,
             std::uint32_t first_number, RootBeams& out)
-        : chain_(chain), polygon_(polygon), reach_(reach), first_number_(first_number), out_(out) {}
+        : chain_(chain),
+          polygon_(polygon),
+          reach_(reach),
+          meets_mesh_(meets_mesh),
+          first_number_(first_number),
+          out_(out) {}
 
-    /// A triangle with a dark part, of whose corners the rays are not known, and a place whose light goes the set's way.
-    void add_cut(const RootBeam& beam, const std::array<Vec3, 3>& origins,
-                 const Vec2d& lit_middle) {
+    /// A triangle with a dark part, and a place whose light goes the set's way.
+    void add_cut(const RootBeam& beam, const std::array<Vec3, 3>& origins, const Vec2d& lit) {
         std::array<RootNode, 3> corners;
         for (std::size_t i = 0; i < 3; ++i) {
-            corners[i] = last_lit(unit_corners[i], lit_middle);
+            corners[i] = node(unit_corners[i]);
             corners[i].origin = origins[i];
-            number(corners[i]);
         }
-        std::array<RootNode, 3> middles;
-        for (std::size_t i = 0; i < 3; ++i)
-            middles[i] = last_lit((unit_corners[i] + unit_corners[(i + 1) % 3]) / 2, lit_middle);
-        add(corners, middles, beam);
+        if (meets_mesh_)
+            add_dark(corners, beam, lit);
+        else
+            divide_cut(corners, beam, lit, most_cut_quarters);
     }
 
     void divide(const std::array<RootNode, 3>& corners, const RootBeam& beam, int quarters) {
@@ -87,17 +93,22 @@ public:
         const std::array<RootNode, 3> quarter_nodes = {quarter(corners[0], corners[1]),
                                                        quarter(corners[1], corners[2]),
                                                        quarter(corners[2], corners[0])};
-        const bool has_dark_part = !are_lit(middles) || !are_lit(quarter_nodes);
-        if (has_dark_part || quarters == 0 || !is_rough(corners, middles, quarter_nodes)) {
+        if (!are_lit(middles) || !are_lit(quarter_nodes)) {
+            if (!meets_mesh_ &&
+                divide_cut({node(corners[0].at), node(corners[1].at), node(corners[2].at)}, beam,
+                           {}, std::min(quarters, most_cut_quarters)))
+                return;
             add(corners, middles, beam);
-            out_.beams.back().beam.has_dark_part = has_dark_part;
+            out_.beams.back().beam.has_dark_part = true;
+            return;
+        }
+        if (quarters == 0 || !is_rough(corners, middles, quarter_nodes)) {
+            add(corners, middles, beam);
             return;
         }
         std::array<RootNode, 3> m = middles;
         for (RootNode& node : m) number(node);
-        const auto& [a, b, c] = corners;
-        const std::array<std::array<RootNode, 3>, 4> parts = {
-            {{a, m[0], m[2]}, {m[0], b, m[1]}, {m[2], m[1], c}, {m[0], m[1], m[2]}}};
+        const std::array<std::array<RootNode, 3>, 4> parts = quartered(corners, m);
         std::array<double, 4> area;
         double sum = 0;
         for (std::size_t i = 0; i < 4; ++i) {
@@ -113,17 +124,138 @@ public:
     }
 
 private:
-    // The node at a place, with the ray of the last place towards it from a lit one.
-    RootNode last_lit(const Vec2d& at, const Vec2d& lit) const {
-        RootNode found = node(at);
-        if (found.is_lit) return found;
+    static std::array<std::array<RootNode, 3>, 4> quartered(const std::array<RootNode, 3>& corners,
+                                                            const std::array<RootNode, 3>& m) {
+        const auto& [a, b, c] = corners;
+        return {{{a, m[0], m[2]}, {m[0], b, m[1]}, {m[2], m[1], c}, {m[0], m[1], m[2]}}};
+    }
+    // The parts that have light share the beam's flux; false if there are none. `lit`: see add_cut.
+    bool divide_cut(const std::array<RootNode, 3>& corners, const RootBeam& beam,
+                    const std::optional<Vec2d>& lit, int quarters) {
+        const std::size_t before = out_.beams.size();
+        RootBeam part = beam;
+        part.is_part = true;
+        cut(corners, part, lit, quarters);
+        Spectrum sum = black();
+        for (std::size_t i = before; i < out_.beams.size(); ++i) sum += out_.beams[i].beam.flux;
+        for (std::size_t i = before; i < out_.beams.size(); ++i)
+            for (Eigen::Index k = 0; k < sum.size(); ++k)
+                if (sum[k] > 0) out_.beams[i].beam.flux[k] *= beam.beam.flux[k] / sum[k];
+        return out_.beams.size() > before;
+    }
+    // A part that is dark all along its edges is left out, unless it has the place `lit`. One that is lit there is like any
+    // other beam.
+    void cut(const std::array<RootNode, 3>& corners, RootBeam beam, const std::optional<Vec2d>& lit,
+             int quarters) {
+        std::array<RootNode, 12> edges;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const RootNode& a = corners[i];
+            const RootNode& b = corners[(i + 1) % 3];
+            edges[4 * i] = a;
+            edges[4 * i + 1] = quarter(a, b);
+            edges[4 * i + 2] = node((a.at + b.at) / 2);
+            edges[4 * i + 3] = quarter(b, a);
+        }
+        const bool is_lit_inside = lit && holds(corners, *lit);
+        const auto is_lit = [](const RootNode& node) { return node.is_lit; };
+        if (std::ranges::none_of(edges, is_lit) && !is_lit_inside) return;
+        if (std::ranges::all_of(edges, is_lit)) {
+            std::array<RootNode, 3> numbered = corners;
+            for (RootNode& corner : numbered) number(corner);
+            beam.beam.has_dark_part = false;
+            divide(numbered, beam, quarters);
+        } else if (quarters > 0) {
+            beam.beam.flux /= 4;
+            for (const std::array<RootNode, 3>& part :
+                 quartered(corners, {edges[2], edges[6], edges[10]}))
+                cut(part, beam, lit, quarters - 1);
+        } else if (changes(edges) != 2 || !add_lit_side(corners, beam)) {
+            const auto first = std::ranges::find_if(edges, is_lit);
+            add_dark(corners, beam, first == edges.end() ? *lit : first->at);
+        }
+    }
+    // How often light begins or ends to go the set's way round a triangle.
+    static int changes(const std::array<RootNode, 12>& edges) {
+        int count = 0;
+        for (std::size_t i = 0; i < edges.size(); ++i)
+            count += edges[i].is_lit != edges[(i + 1) % edges.size()].is_lit ? 1 : 0;
+        return count;
+    }
+    // What is lit of a triangle that the horizon cuts once. False where that is not known well enough.
+    bool add_lit_side(const std::array<RootNode, 3>& corners, const RootBeam& beam) {
+        const auto lit = std::ranges::count_if(corners, &RootNode::is_lit);
+        if (lit == 0 || lit == 3) return false;
+        // The only lit corner, or the one after the only dark one.
+        std::size_t first = 0;
+        while (lit == 1 ? !corners[first].is_lit : corners[(first + 2) % 3].is_lit) ++first;
+        const RootNode& a = corners[first];
+        const RootNode& b = corners[(first + 1) % 3];
+        const RootNode& c = corners[(first + 2) % 3];
+        const RootNode beside_a = horizon(a.at, c.at);
+        if (lit == 1) return add_to_horizon({a, horizon(a.at, b.at), beside_a}, beam);
+        const RootNode beside_b = horizon(b.at, c.at);
+        if (!add_to_horizon({a, beside_b, beside_a}, beam)) return false;
+        add_lit({a, b, beside_b}, beam);
+        return true;
+    }
+    // Its second edge is a chord of the horizon, beyond which there is light.
+    bool add_to_horizon(const std::array<RootNode, 3>& corners, const RootBeam& beam) {
+        constexpr double most_beyond = 0.2;
+        constexpr double room = 1e-3;  // more than the last halving
+        const Vec2d chord = (corners[1].at + corners[2].at) / 2;
+        const Vec2d out = chord - corners[0].at;
+        const Vec2d farthest = chord + most_beyond * out;
+        if (node(farthest).is_lit) return false;
+        const bool is_chord_lit = node(chord).is_lit;
+        const RootNode middle =
+            is_chord_lit ? horizon(chord, farthest) : horizon(corners[0].at, chord);
+        add_lit(corners, beam);
+        out_.beams.back().middles[0][1] = middle.ray;
+        out_.beams.back().beam.beyond = static_cast<float>(
+            room + (is_chord_lit ? 1.5 * (middle.at - chord).norm() / out.norm() : 0));
+        return true;
+    }
+    void add_lit(std::array<RootNode, 3> corners, const RootBeam& beam) {
+        std::array<RootNode, 3> middles;
+        for (std::size_t i = 0; i < 3; ++i) middles[i] = between(corners[i], corners[(i + 1) % 3]);
+        for (RootNode& corner : corners) number(corner);
+        add(corners, middles, beam);
+        out_.beams.back().beam.has_dark_part = false;
+    }
+    static bool holds(const std::array<RootNode, 3>& corners, const Vec2d& at) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec2d side = corners[(i + 1) % 3].at - corners[i].at;
+            const Vec2d way = at - corners[i].at;
+            const Vec2d across = corners[(i + 2) % 3].at - corners[i].at;
+            least = std::min(least, cross(side, way) / cross(side, across));
+        }
+        return least >= 0;
+    }
+    // The rays of dark places are those of the last lit ones towards them.
+    void add_dark(std::array<RootNode, 3> corners, const RootBeam& beam, const Vec2d& lit) {
+        std::array<RootNode, 3> middles;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec2d at = (corners[i].at + corners[(i + 1) % 3].at) / 2;
+            middles[i] = node(at).is_lit ? node(at) : horizon(lit, at);
+        }
+        for (RootNode& corner : corners) {
+            if (!corner.is_lit) corner.ray = horizon(lit, corner.at).ray;
+            number(corner);
+        }
+        add(corners, middles, beam);
+        out_.beams.back().beam.has_dark_part = true;
+    }
+    // The last place from a lit one towards a dark one of which the light goes the set's way.
+    RootNode horizon(const Vec2d& lit, const Vec2d& dark) const {
+        RootNode found = node(lit);
         double low = 0;
         double high = 1;
         for (int halving = 0; halving < most_lit_halvings; ++halving) {
             const double middle = (low + high) / 2;
-            const RootNode here = node(lit + middle * (at - lit));
+            const RootNode here = node(lit + middle * (dark - lit));
             (here.is_lit ? low : high) = middle;
-            if (here.is_lit) found.ray = here.ray;
+            if (here.is_lit) found = here;
         }
         return found;
     }
@@ -209,6 +341,7 @@ private:
     const LightChain& chain_;
     const FirstPolygon& polygon_;
     double reach_;
+    bool meets_mesh_;
     std::uint32_t first_number_;
     RootBeams& out_;
 };
@@ -225,7 +358,8 @@ public:
           cut_(exact_ ? CutTriangles(polygons, origins, set,
                                      [this](CutTriangles::Whole& whole) { return find_lit(whole); })
                       : CutTriangles(set)),
-          reach_(static_cast<double>(scene.diameter())) {}
+          reach_(static_cast<double>(scene.diameter())),
+          meets_mesh_(meets_mesh_after_first(scene, set)) {}
 
     RootBeams run(const Chunk& beams) const {
         RootBeams out;
@@ -274,7 +408,8 @@ private:
                      whole.lit);
     }
     Divider divider(const FirstPolygon& polygon, RootBeams& out) const {
-        return {chain_, polygon, reach_, static_cast<std::uint32_t>(set_.rays.size()), out};
+        return {chain_, polygon, reach_, meets_mesh_, static_cast<std::uint32_t>(set_.rays.size()),
+                out};
     }
 
     void divide(std::uint32_t number, std::size_t which, RootBeams& out) const {
@@ -302,6 +437,7 @@ private:
     std::optional<SpecularSurface> exact_;
     CutTriangles cut_;
     double reach_;
+    bool meets_mesh_;
 };
 
 /// Puts prepared beams in the place of a set's.

@@ -15,6 +15,7 @@ constexpr int most_steps = 14;
 constexpr int most_returns = 3;         // into the polygon
 constexpr int most_steps_in_part = 40;  // of a polygon with a dark part
 constexpr double longest_step = 0.5;    // of the polygon's sides
+constexpr double last_step = 2e-7;      // of Newton's method, barycentric
 constexpr double farthest_out = -1;     // barycentric, of a step
 // How near to the point a ray has to come, for the length of its way.
 constexpr double miss_tolerance = 1e-10;
@@ -31,12 +32,6 @@ Vec2d just_inside(const Vec2d& at) {
     return (1 - inset) * weights.tail<2>() / weights.sum() + Vec2d::Constant(inset / 3);
 }
 
-bool has_mesh_after_first(const Scene& scene, const BeamSet& set) {
-    return std::any_of(set.path.begin() + 1, set.path.end(), [&](const SpecularEvent& event) {
-        return scene.shapes()[event.shape].primitive == Primitive::mesh;
-    });
-}
-
 }  // namespace
 
 RootSearch::RootSearch(const Scene& scene, const BeamSet& set)
@@ -44,31 +39,49 @@ RootSearch::RootSearch(const Scene& scene, const BeamSet& set)
       set_(set),
       chain_(scene, set),
       exact_(first_exact_surface(scene, set)),
-      meets_mesh_(has_mesh_after_first(scene, set)) {}
+      meets_mesh_(meets_mesh_after_first(scene, set)) {}
 
-bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& point,
+/// A triangle of a beam, as a point sees it.
+struct RootSearch::Image {
+    const FirstPolygon& polygon;
+    const ArrivalPlane& plane;
+    const ImageModel& model;
+    bool has_dark_part;
+    double beyond;  ///< Beam::beyond
+
+    // A ray that starts beside the polygon belongs to another one.
+    bool holds(const Vec2d& at) const { return least_weight(at, beyond) >= -edge_width; }
+    // True where Newton's method, of which a step of this length led here, ends beside the polygon.
+    bool is_left(const Vec2d& at, double step) const {
+        constexpr double longest = 0.1;
+        constexpr double most_steps_left = 4;
+        return step < longest && least_weight(at, beyond) < -most_steps_left * step - edge_width;
+    }
+};
+
+bool RootSearch::find(std::uint32_t number, std::size_t triangle, const Vec3& point,
                       std::vector<Root>& roots) const {
-    const auto corners = set_.triangle(set_.beams[beam], triangle);
+    const Beam& beam = set_.beams[number];
+    const auto corners = set_.triangle(beam, triangle);
     const auto plane = ArrivalPlane::at(point, corners);
     if (!plane) return true;
-    const bool has_dark_part = set_.beams[beam].has_dark_part;
     const auto model =
-        ImageModel::of(*plane, corners, set_.middles_of(beam, triangle), has_dark_part);
+        ImageModel::of(*plane, corners, set_.middles_of(number, triangle), beam.has_dark_part);
     if (!model) return true;
-    const FirstPolygon polygon(scene_, set_, exact_, set_.beams[beam], triangle);
+    const FirstPolygon polygon(scene_, set_, exact_, beam, triangle);
+    const Image image{polygon, *plane, *model, beam.has_dark_part,
+                      static_cast<double>(beam.beyond)};
     ImageModel::Solutions known;
     bool is_any_inside = false;
-    // A ray that starts beside the polygon belongs to another one.
     const auto look_from = [&](const Vec2d& from) -> std::optional<Found> {
-        const auto found =
-            polish(polygon, *plane, from, has_dark_part ? most_steps_in_part : most_steps);
+        const auto found = polish(image, from);
         if (!found || known.count == known.at.size()) return {};
         const bool is_known = std::any_of(known.begin(), known.end(), [&](const Vec2d& other) {
             return (other - found->at).norm() <= same_root;
         });
         if (is_known) return {};
         known.at[known.count++] = found->at;
-        if (least_weight(found->at) >= -edge_width) {
+        if (image.holds(found->at)) {
             is_any_inside = true;
             add(polygon, *found, roots);
         }
@@ -76,23 +89,23 @@ bool RootSearch::find(std::uint32_t beam, std::size_t triangle, const Vec3& poin
     };
     // The model of a polygon with a dark part is rough.
     const ImageModel::Solutions starts =
-        has_dark_part ? ImageModel::everywhere() : model->solutions();
+        beam.has_dark_part ? ImageModel::everywhere() : model->solutions();
     for (const Vec2d& from : starts) {
         const auto found = look_from(from);
         if (!found || !model->is_beside_fold(found->change.determinant())) continue;
-        if (const auto other = partner(polygon, *plane, *found)) look_from(*other);
+        if (const auto other = partner(image, *found)) look_from(*other);
     }
-    return is_any_inside || has_dark_part || !model->surely_holds();
+    return is_any_inside || beam.has_dark_part || !model->surely_holds();
 }
 
-std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
-                                                    const ArrivalPlane& plane, Vec2d at,
-                                                    int steps) const {
+std::optional<RootSearch::Found> RootSearch::polish(const Image& image, Vec2d at) const {
+    const ArrivalPlane& plane = image.plane;
+    const int steps = image.has_dark_part ? most_steps_in_part : most_steps;
     std::optional<Vec2d> lit;
     // Beyond the polygon's edges the light may meet other facets, from which no step leads back.
     int returns = 0;
     for (int step = 0; step < steps && least_weight(at) >= farthest_out; ++step) {
-        const auto ray = chain_.ray(polygon.start(at));
+        const auto ray = chain_.ray(image.polygon.start(at));
         if (!ray || !(plane.steepness(ray->direction) > 0)) {
             if (!lit) return {};
             at = (at + *lit) / 2;
@@ -105,18 +118,21 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
         // Rounding of the first place, as far as the miss moves with it.
         const double rounding = double_rounding *
                                 (ray->first.position.norm() + plane.point().norm()) *
-                                (1 + change.norm() / polygon.size());
-        if (miss.norm() <= miss_tolerance * std::abs(way) + rounding) {
+                                (1 + change.norm() / image.polygon.size());
+        const Vec2d by = change.inverse() * miss;
+        const double length = by.norm();
+        if (miss.norm() <= miss_tolerance * std::abs(way) + rounding || length <= last_step) {
             if (!(way > 0)) return {};
             const double area = std::max(std::abs(change.determinant()),
                                          resolvable_area(plane.point().cast<float>())) *
                                 plane.steepness(ray->direction);
             return Found{at, *ray, change, ray->light_area / area};
         }
-        const Vec2d by = change.inverse() * miss;
-        const double length = by.norm();
         if (!(length < std::numeric_limits<double>::infinity())) return {};
         at -= std::min(1.0, longest_step / length) * by;
+        if (!meets_mesh_ && image.is_left(at, length) &&
+            !image.model.is_beside_fold(change.determinant()))
+            return {};
         if (meets_mesh_ && returns < most_returns && least_weight(at) < -edge_width) {
             at = just_inside(at);
             ++returns;
@@ -127,18 +143,17 @@ std::optional<RootSearch::Found> RootSearch::polish(const FirstPolygon& polygon,
 
 // Along the direction in which the image does not move the determinant goes through zero at the fold, midway between the
 // two.
-std::optional<Vec2d> RootSearch::partner(const FirstPolygon& polygon, const ArrivalPlane& plane,
-                                         const Found& found) const {
+std::optional<Vec2d> RootSearch::partner(const Image& image, const Found& found) const {
     constexpr double step = 0.01;
     constexpr double farthest = 0.3;  // beyond the polygon
     const Eigen::Matrix2d square = found.change.transpose() * found.change;
     const Vec2d still =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>().computeDirect(square).eigenvectors().col(
             0);
-    const auto beside = chain_.ray(polygon.start(found.at + step * still));
+    const auto beside = chain_.ray(image.polygon.start(found.at + step * still));
     if (!beside) return {};
     const double area = found.change.determinant();
-    const double slope = (plane.miss_change(*beside).determinant() - area) / step;
+    const double slope = (image.plane.miss_change(*beside).determinant() - area) / step;
     const Vec2d other = found.at - 2 * area / slope * still;
     if (!(least_weight(other) >= -farthest)) return {};
     return other;

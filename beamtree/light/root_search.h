@@ -44,12 +44,11 @@ private:
         Eigen::Matrix2d change;  ///< of the miss
         double density;
     };
+    struct Image;
     /// By Newton's method. Steps to where the light does not go the set's way are halved.
-    std::optional<Found> polish(const FirstPolygon& polygon, const ArrivalPlane& plane, Vec2d at,
-                                int steps) const;
+    std::optional<Found> polish(const Image& image, Vec2d at) const;
     /// Beside a fold two rays reach the point: where the other one may be.
-    std::optional<Vec2d> partner(const FirstPolygon& polygon, const ArrivalPlane& plane,
-                                 const Found& found) const;
+    std::optional<Vec2d> partner(const Image& image, const Found& found) const;
     void add(const FirstPolygon& polygon, const Found& found, std::vector<Root>& roots) const;
 
     const Scene& scene_;

@@ -21,7 +21,7 @@ std::vector<beamtree::BeamTreeParams> all_params() {
             beamtree::BeamTreeParams params;
             params.leaf = leaf;
             params.bound = bound;
-            params.mesh_resolution = 128;
+            params.mesh_resolution = 48;
             all.push_back(params);
         }
     return all;
@@ -68,7 +68,7 @@ double mirrored(const Vec3d& p, const Vec3d& normal) {
 Scene beam_mirror_scene(const Bsdf& bsdf, bool mesh) {
     SceneDesc desc;
     Shape mirror = support::rectangle("mirror", {0, 1, 1}, {1, 0, 0}, {0, 0, 1}, bsdf);
-    if (mesh) mirror = support::mesh("mirror", tessellate_rectangle(128), mirror.to_world, bsdf);
+    if (mesh) mirror = support::mesh("mirror", tessellate_rectangle(48), mirror.to_world, bsdf);
     desc.shapes = {support::horizontal("floor", 0, 6, true, support::diffuse(0.5F)), mirror,
                    support::sphere("ball", {0.2, -0.4, 0.5}, 0.3, support::diffuse(0.5F))};
     desc.lights = {support::point_light(lamp_position, static_cast<float>(lamp_intensity))};
@@ -132,7 +132,7 @@ TEST(BeamFlatMirror, LightsACurvedReceiver) {
 TEST(BeamFlatMirror, AGlassSheetReflectsByFresnel) {
     const Scene scene = beam_mirror_scene(support::glass(1.5F), false);
     beamtree::BeamTreeParams params;
-    params.mesh_resolution = 128;
+    params.mesh_resolution = 48;
     const auto method = build(scene, params, RunOptions{});
     for (int i = 0; i < 24; ++i) {
         const Vec3d p(-0.3 + 0.2 * (i % 6), -0.6 + 0.35 * (i / 6), 0);
@@ -205,7 +205,7 @@ TEST(BeamFlatPool, IsTheClosedForm) {
     for (const bool mesh : {false, true}) {
         SceneDesc desc;
         Shape water = support::horizontal("water", 0, 6, true, {});
-        if (mesh) water = support::mesh("water", tessellate_rectangle(192), water.to_world, {});
+        if (mesh) water = support::mesh("water", tessellate_rectangle(48), water.to_world, {});
         water.bsdf =
             support::glass(static_cast<float>(water_index), 1, Spectrum::Constant(absorption));
         desc.shapes = {support::horizontal("floor", -water_depth, 12, true, support::diffuse(0.5F)),
@@ -213,7 +213,7 @@ TEST(BeamFlatPool, IsTheClosedForm) {
         desc.lights = {support::point_light({0, 0, lamp_height}, 10)};
         const Scene scene(std::move(desc));
         for (beamtree::BeamTreeParams params : all_params()) {
-            params.mesh_resolution = 192;
+            params.mesh_resolution = 48;
             const auto method = build(scene, params, RunOptions{});
             for (const double r : {0.0, 0.5, 1.0, 2.0, 3.0})
                 expect_cell(scene, *method, {r * 0.8, r * 0.6, -water_depth}, [&](const Vec3d& p) {
@@ -235,7 +235,7 @@ TEST(BeamFlat, LampOnTheFloor) {
     desc.lights = {support::point_light(lamp, static_cast<float>(lamp_intensity))};
     const Scene scene(std::move(desc));
     beamtree::BeamTreeParams params;
-    params.mesh_resolution = 128;
+    params.mesh_resolution = 48;
     const auto method = build(scene, params, RunOptions{});
     for (const double x : {-0.9, -0.2, 0.3, 1.1})
         expect_cell(scene, *method, {x, 0.4 * x, 0}, [&](const Vec3d& p) {
