@@ -43,15 +43,17 @@ struct Beam {
     float first_share = 1;                 ///< of the flux, in the first triangle
     float offset = 0;                      ///< rays to and from the polygon end this far off it [m]
     std::uint32_t triangle = 0;            ///< of the first caster's mesh; the first one of a cell
-    bool inside = false;   ///< goes through the medium behind the last caster's front side
-    bool is_cell = false;  ///< a cell of a grid: its second triangle is the mesh's next
+    bool inside : 1 = false;   ///< goes through the medium behind the last caster's front side
+    bool is_cell : 1 = false;  ///< a cell of a grid: its second triangle is the mesh's next
     /// Light of a part of the polygon does not go the set's way, as beyond the horizon of a curved surface.
-    bool has_dark_part = false;
-    /// Its edge opposite the first corner is a chord of the horizon: the light of the polygon begins by this share of the
-    /// distance from the corner beyond it.
-    float beyond = 0;
-    bool front = true;  ///< where roots are searched: the light comes to the first caster's front
+    bool has_dark_part : 1 = false;
+    bool front : 1 =
+        true;  ///< where roots are searched: the light comes to the first caster's front
+    /// Where roots are searched and the edge opposite the first corner is a chord of the horizon: the light of the polygon
+    /// begins so far beyond it, in 65536ths of the distance from that corner.
+    std::uint16_t beyond = 0;
 
+    double share_beyond() const { return static_cast<double>(beyond) / 65536; }
     std::size_t triangle_count() const { return corners[3] == none ? 1 : 2; }
     /// Corners of one of its triangles.
     std::array<std::uint32_t, 3> triangle_corners(std::size_t which) const {

@@ -13,7 +13,8 @@
 namespace caustics::beamtree {
 
 /// Triangles of an exact shape's mesh that a set's beams cover in part, or not at all beside others that they cover: the
-/// horizon cuts them, and the exact shape has its horizon elsewhere than its mesh. The search for roots takes them whole.
+/// horizon cuts them, and the exact shape has its horizon elsewhere than its mesh. The preparation of roots takes them whole and clips
+/// them itself.
 class CutTriangles {
 public:
     struct Whole {

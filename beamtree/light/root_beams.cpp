@@ -211,8 +211,9 @@ private:
             is_chord_lit ? horizon(chord, farthest) : horizon(corners[0].at, chord);
         add_lit(corners, beam);
         out_.beams.back().middles[0][1] = middle.ray;
-        out_.beams.back().beam.beyond = static_cast<float>(
-            room + (is_chord_lit ? 1.5 * (middle.at - chord).norm() / out.norm() : 0));
+        const double beyond =
+            room + (is_chord_lit ? 1.5 * (middle.at - chord).norm() / out.norm() : 0);
+        out_.beams.back().beam.beyond = static_cast<std::uint16_t>(65536 * beyond);
         return true;
     }
     void add_lit(std::array<RootNode, 3> corners, const RootBeam& beam) {

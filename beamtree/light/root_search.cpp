@@ -69,8 +69,7 @@ bool RootSearch::find(std::uint32_t number, std::size_t triangle, const Vec3& po
         ImageModel::of(*plane, corners, set_.middles_of(number, triangle), beam.has_dark_part);
     if (!model) return true;
     const FirstPolygon polygon(scene_, set_, exact_, beam, triangle);
-    const Image image{polygon, *plane, *model, beam.has_dark_part,
-                      static_cast<double>(beam.beyond)};
+    const Image image{polygon, *plane, *model, beam.has_dark_part, beam.share_beyond()};
     ImageModel::Solutions known;
     bool is_any_inside = false;
     const auto look_from = [&](const Vec2d& from) -> std::optional<Found> {
