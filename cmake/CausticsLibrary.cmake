@@ -22,6 +22,13 @@ endif()
 # No fused multiply-add: the same bits from every build of the same source.
 set(CAUSTICS_COMPILE_OPTIONS -ffp-contract=off)
 set(CAUSTICS_LINK_OPTIONS "")
+# Programs read files of strangers: in release, an overrun of a buffer ends the program, and no table of functions
+# can be written to.
+if(NOT CAUSTICS_SANITIZE)
+    list(APPEND CAUSTICS_COMPILE_OPTIONS
+        "$<$<CONFIG:Release>:-fstack-protector-strong;-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=2>")
+    list(APPEND CAUSTICS_LINK_OPTIONS -Wl,-z,relro,-z,now)
+endif()
 # Kernels in AVX2 and AVX-512 are built wherever the processor's family has them.
 string(TOLOWER "${CMAKE_SYSTEM_PROCESSOR}" caustics_processor)
 if(caustics_processor MATCHES "^(x86_64|amd64)$")
@@ -139,10 +146,7 @@ function(caustics_executable name)
     caustics_configure_target(${name})
     caustics_use_precompiled(${name} caustics_precompiled)
     target_link_libraries(${name} PRIVATE ${depends})
-    # A program copied out of its build still finds the modules there.
-    set_target_properties(${name} PROPERTIES
-        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin"
-        BUILD_RPATH "${PROJECT_BINARY_DIR}/${CAUSTICS_MODULE_FOLDER}")
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 endfunction()
 
 # caustics_module(foreign_pictures SOURCES ... DEPENDS ...): a library that programs load when they need it, from

@@ -18,10 +18,9 @@ std::atomic<std::size_t> begun_by_libraries{0};
 void* open_library(const fs::path& library) {
     std::error_code none;
     const fs::path program = fs::read_symlink("/proc/self/exe", none);
-    const fs::path beside = program.parent_path() / library;
-    const bool is_there = !program.empty() && fs::exists(beside, none);
-    // A program that was copied out of its build has that build's folder in its own search path.
-    return dlopen(is_there ? beside.c_str() : library.filename().c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (program.empty())
+        throw std::runtime_error("/proc/self/exe does not tell where this program is");
+    return dlopen((program.parent_path() / library).c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 
 [[noreturn]] void fail_to_load() {

@@ -21,9 +21,10 @@ OpenPicture module() {
 }  // namespace
 
 std::unique_ptr<PictureSource> open_foreign_picture(const std::filesystem::path& file,
-                                                    const std::string& bytes) {
+                                                    const std::string& bytes,
+                                                    const std::string& format) {
     static const OpenPicture open = module();
-    return std::unique_ptr<PictureSource>(open(file.c_str(), bytes));
+    return std::unique_ptr<PictureSource>(open(file.c_str(), bytes, format));
 }
 
 }  // namespace caustics

@@ -13,7 +13,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/base/lower_case.h"
 #include "core/picture/foreign_picture.h"
 #include "core/picture/primaries.h"
 
@@ -96,13 +95,11 @@ public:
 
 class OpenImageIoSource : public PictureSource {
 public:
-    OpenImageIoSource(const std::filesystem::path& file, const std::string& bytes) {
+    OpenImageIoSource(const std::filesystem::path& file, const std::string& bytes,
+                      const std::string& format) {
         const SilentStandardError silent;
-        open_input(file, bytes);
+        open_input(file, bytes, format);
         const OIIO::ImageSpec& spec = input_->spec();
-        const std::string format = input_->format_name();
-        // For trials of the library: black pixels, whatever the file holds.
-        if (format == "null") throw std::runtime_error("");
         if (format == "openexr") require_plain_exr(spec);
         shape_ = {spec.width,
                   spec.height,
@@ -124,30 +121,24 @@ public:
     }
 
 private:
-    void open_input(const std::filesystem::path& file, const std::string& bytes) {
+    void open_input(const std::filesystem::path& file, const std::string& bytes,
+                    const std::string& format) {
         const OIIO::ImageSpec config = reading();
-        std::string format = lower_case(file.extension().string());
-        if (!format.empty()) format.erase(0, 1);
         OIIO::ImageSpec found;
-        std::string why;
-        if (!format.empty()) input_ = OIIO::ImageInput::create(format);
-        if (input_ && input_->supports("ioproxy")) {
+        input_ = OIIO::ImageInput::create(format);
+        if (!input_) throw std::runtime_error(OIIO::geterror());
+        if (input_->supports("ioproxy")) {
             memory_ = std::make_unique<Memory>(bytes.data(), bytes.size());
             input_->set_ioproxy(memory_.get());
-            // A '?' in a file's name would be taken for a query.
             const std::string name = "picture." + format;
             if (input_->open(name, found, config)) return;
-            why = input_->geterror();
+            std::string why = input_->geterror();
             if (const std::size_t at = why.find('"' + name + '"'); at != std::string::npos)
                 why.replace(at, name.size() + 2, "it");
+            throw std::runtime_error(why);
         }
-        // A format that is read by name alone, or another one than the name says.
-        if (file.string().find('?') == std::string::npos)
-            input_ = OIIO::ImageInput::open(file.string(), &config);
-        else
-            input_.reset();
-        const std::string by_name = OIIO::geterror();
-        if (!input_) throw std::runtime_error(why.empty() ? by_name : why);
+        if (!input_->open(file.string(), found, config))
+            throw std::runtime_error(input_->geterror());
     }
 
     // Tiles are read whole, once: all rows are kept.
@@ -171,6 +162,7 @@ private:
 }  // namespace caustics
 
 extern "C" caustics::PictureSource* caustics_open_picture(const char* file,
-                                                          const std::string& bytes) {
-    return new caustics::OpenImageIoSource(file, bytes);
+                                                          const std::string& bytes,
+                                                          const std::string& format) {
+    return new caustics::OpenImageIoSource(file, bytes, format);
 }

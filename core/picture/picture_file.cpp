@@ -10,6 +10,7 @@
 #include "core/picture/exr_file.h"
 #include "core/picture/exr_header.h"
 #include "core/picture/foreign_picture.h"
+#include "core/picture/picture_format.h"
 #include "core/picture/png_file.h"
 
 namespace caustics {
@@ -18,7 +19,11 @@ PictureFile::PictureFile(const std::filesystem::path& file)
     : file_(file), bytes_(read_whole_file(file)) {
     try {
         if (is_exr(bytes_)) require_attributes_within(bytes_);
-        source_ = is_png(bytes_) ? open_png(bytes_) : open_foreign_picture(file_, bytes_);
+        const std::string format = picture_format(bytes_);
+        if (format.empty())
+            throw std::runtime_error(std::string("its content is of none of the formats ") +
+                                     picture_formats);
+        source_ = format == "png" ? open_png(bytes_) : open_foreign_picture(file_, bytes_, format);
     } catch (const std::runtime_error& error) {
         fail(error.what());
     }
@@ -53,7 +58,7 @@ void PictureFile::read_rows(const std::function<void(int y, const float* values)
 
 void PictureFile::fail(std::string why) const {
     throw InputError(file_.string() + ": cannot be read (" +
-                     (why.empty() ? "not a picture of a known format" : std::move(why)) + ")");
+                     (why.empty() ? "no reason is given" : std::move(why)) + ")");
 }
 
 }  // namespace caustics

@@ -10,7 +10,7 @@
 
 namespace caustics {
 
-/// A picture of any format: PNG by libpng, others by OpenImageIO (see foreign_picture.h).
+/// A picture of a format in picture_format.h, which its content tells, not its name: PNG by libpng, others by OpenImageIO.
 class PictureFile {
 public:
     /// As many pixels as a film may have.

@@ -78,12 +78,39 @@ TEST_F(Start, TrialsAreForkedAfterTheLibrariesOfAForeignPictureBeganTheirThreads
     EXPECT_EQ(swept.exit_code, 0) << swept.err;
 }
 
-TEST_F(Start, ACopyOfTheProgramFindsTheModuleOfItsBuild) {
-    if (CAUSTICS_ADDRESS_SANITIZER)
-        GTEST_SKIP() << "its dlopen looks where the sanitizer's own library would";
+TEST_F(Start, ACopyOfTheProgramSaysWhereItLooksForTheModule) {
     foreign_scene();
-    const ProgramResult copied = run("cp $P $D/copy && $D/copy info $D/scene.json");
-    EXPECT_EQ(copied.exit_code, 0) << copied.err;
+    const ProgramResult copied =
+        run("mkdir $D/bin && cp $P $D/bin/copy && $D/bin/copy info $D/scene.json");
+    EXPECT_EQ(copied.exit_code, 2) << copied.err;
+    EXPECT_NE(copied.err.find("/causticbench/caustics_foreign_pictures.so"), std::string::npos)
+        << copied.err;
+}
+
+// An empty element of a search path is the working folder, where files of strangers are.
+TEST_F(Start, TakesNoLibraryFromTheWorkingFolder) {
+    write_atomic_file(
+        folder_ / "planted.c",
+        "#include <stdio.h>\n"
+        "__attribute__((constructor)) static void begin(void) { puts(\"planted\"); }\n");
+    const ProgramResult result =
+        run("cd $D && c++ -x c -shared -fPIC planted.c -o one && "
+            "for library in $(ldd $P | awk '$2 == \"=>\" {print $1}'); do cp one $library; done && "
+            "ls lib*.so* && $P --version");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("libpng16.so"), std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("planted"), std::string::npos) << result.out;
+}
+
+TEST_F(Start, ProgramsAndModulesHaveNoSearchPathAndAreBoundAtTheStart) {
+    const ProgramResult result = run(
+        "cd $(dirname $P)/.. && for file in bin/* tests/test_* $(find . -name 'caustics_*.so'); do "
+        "readelf -d $file >$D/dynamic && echo read; grep -E '\\((RPATH|RUNPATH)\\)' $D/dynamic; "
+        "grep -q BIND_NOW $D/dynamic || echo $file is not bound at the start; done");
+    EXPECT_NE(result.out.find("read"), std::string::npos) << result.err;
+    EXPECT_EQ(result.out.find("PATH"), std::string::npos) << result.out;
+    if (CAUSTICS_ADDRESS_SANITIZER) return;
+    EXPECT_EQ(result.out.find("not bound"), std::string::npos) << result.out;
 }
 
 }  // namespace

@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "beamtree/beam_tree.h"
+#include "core/geometry/lathe.h"
+#include "core/math/rng.h"
+#include "tests/support/build_scene.h"
+#include "tests/support/fresnel.h"
+
+namespace caustics {
+namespace {
+
+// A cone of glass turned on a lathe, its tip down over the floor, under the sun. A ray at the distance r from the axis lands at
+// k r - a, with k = 1 - tan(slope) tan(deviation) and a = height tan(deviation): beyond a the floor has
+// E(q) = T (q + a) / (k^2 q), and within a both sides of the cone light it, E(q) = T 2 a / (k^2 q).
+constexpr double index = 1.5;
+constexpr double slope = 12 * pi_d / 180;
+constexpr double height = 1.2;
+
+double irradiance(double q) {
+    const double deviation = std::asin(index * std::sin(slope)) - slope;
+    const double k = 1 - std::tan(slope) * std::tan(deviation);
+    const double a = height * std::tan(deviation);
+    const double passed =
+        (1 - support::fresnel(1, index)) * (1 - support::fresnel(std::cos(slope), 1 / index));
+    return passed * (q > a ? q + a : 2 * a) / (k * k * q);
+}
+
+Scene axicon(int sectors) {
+    LatheProfile profile;
+    const double top = height + std::tan(slope);
+    profile.points.push_back({{0, height}});
+    profile.points.push_back({{1, top}, true});
+    profile.points.push_back({{0, top}});
+    SceneDesc desc;
+    desc.shapes = {support::horizontal("floor", 0, 3, true, support::diffuse(0.5F)),
+                   support::mesh("cone", tessellate_lathe(profile, sectors), Transform::Identity(),
+                                 support::glass(static_cast<float>(index)))};
+    desc.lights = {support::directional_light(-Vec3d::UnitZ(), 1)};
+    return Scene(std::move(desc));
+}
+
+// Its straight profile meets the axis aslant, without a crease: a rounded normal at the tip took four fifths of the light.
+TEST(Axicon, HasItsLightWithoutACreaseAtItsTip) {
+    const Scene scene = axicon(128);
+    beamtree::BeamTreeParams params;
+    params.max_bounces = 2;
+    const auto method = beamtree::build(scene, params, RunOptions{});
+    Rng chance(3, Stage::test, 0);
+    double found = 0;
+    double truth = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const double q = 0.05 + 0.7 * static_cast<double>(chance.next());
+        const double angle = 2 * pi_d * static_cast<double>(chance.next());
+        const Vec3d at(q * std::cos(angle), q * std::sin(angle), 0);
+        found += static_cast<double>(
+            support::irradiance(*method, {support::probe(scene, 0, at, Vec3d::UnitZ(), 0)})[0]
+                .value.mean());
+        truth += irradiance(q);
+    }
+    EXPECT_NEAR(found / truth, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace caustics
