@@ -29,9 +29,11 @@ PictureFile::PictureFile(const std::filesystem::path& file)
     }
     const PictureShape& found = shape();
     if (found.width < 1 || found.height < 1 || found.channels < 1) fail("it has no pixels");
-    if (pixel_count() > most_pixels)
+    const std::size_t most = most_pixels_of(bytes_.size());
+    if (pixel_count() > most)
         fail(std::to_string(found.width) + " x " + std::to_string(found.height) +
-             " pixels, more than " + std::to_string(most_pixels));
+             " pixels, more than " + std::to_string(most) + " in a file of " +
+             std::to_string(bytes_.size()) + " bytes");
 }
 
 std::size_t PictureFile::pixel_count() const {

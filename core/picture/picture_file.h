@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -16,7 +17,14 @@ public:
     /// As many pixels as a film may have.
     static constexpr std::size_t most_pixels = std::size_t{1} << 27;
 
-    /// Throws InputError for what is no picture, and for more than `most_pixels`.
+    /// As many as a file of so many bytes may have, so that a megabyte takes at most 220 MB as a texture: 2^24, and more where a
+    /// pixel has half a bit in the file.
+    static constexpr std::size_t most_pixels_of(std::size_t bytes) {
+        constexpr std::size_t always = std::size_t{1} << 24;
+        return std::min(most_pixels, std::max(always, 16 * bytes));
+    }
+
+    /// Throws InputError for what is no picture, and for more pixels than its file may have.
     explicit PictureFile(const std::filesystem::path& file);
     PictureFile(const PictureFile&) = delete;
     PictureFile& operator=(const PictureFile&) = delete;

@@ -323,6 +323,22 @@ TEST(PictureFile, AnOpenExrFileThatAsksForMoreThanItHoldsIsRefused) {
     expect_refused(with_size(good, 67'108'865, 1), row, row);
 }
 
+TEST(PictureFile, AMegabyteTakesAtMost220MegabytesAsATexture) {
+    constexpr std::size_t bytes_per_pixel = sizeof(Spectrum);
+    EXPECT_LT(PictureFile::most_pixels_of(1 << 20) * bytes_per_pixel, 210'000'000);
+    EXPECT_EQ(PictureFile::most_pixels_of(100), 4096 * 4096);
+    EXPECT_EQ(PictureFile::most_pixels_of(4'000'000), 64'000'000);
+    EXPECT_EQ(PictureFile::most_pixels_of(1'000'000'000), PictureFile::most_pixels);
+    const support::TemporaryFolder folder;
+    constexpr int width = 5000;
+    constexpr int height = 4000;
+    write_png(width, height, std::vector<unsigned char>(std::size_t{3} * width * height),
+              folder / "a.png");
+    const std::string why = refusal([&] { load_bitmap(folder / "a.png", true); });
+    EXPECT_NE(why.find("5000 x 4000 pixels, more than 16777216 in a file of "), std::string::npos)
+        << why;
+}
+
 TEST(PictureFile, HasNoMorePixelsThanAFilm) {
     const support::TemporaryFolder folder;
     // The header of a TGA picture of 12,000 x 12,000 pixels: 100 bytes that ask for 1.7 GB.
@@ -333,7 +349,7 @@ TEST(PictureFile, HasNoMorePixelsThanAFilm) {
         PictureFile(folder / "a.tga");
         ADD_FAILURE();
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("12000 x 12000 pixels, more than 134217728"),
+        EXPECT_NE(std::string(error.what()).find("12000 x 12000 pixels, more than 16777216"),
                   std::string::npos)
             << error.what();
     }
