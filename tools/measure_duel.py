@@ -28,6 +28,7 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=1, help="trials at a time (default 1)")
     parser.add_argument("--program", type=pathlib.Path, default=BENCH, help="causticbench (default: build/release/bin)")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DIR", help="(default: results/duel, or results/duel/trials/quick)")
+    parser.add_argument("--check", action="store_true", help="no runs: only whether these words are right")
     return parser.parse_args()
 
 
@@ -55,6 +56,8 @@ def run(chosen, output):
 
 def main():
     chosen = arguments()
+    if chosen.check:
+        return 0
     output = (chosen.output or ROOT / "results" / "duel" / ("trials/quick" if chosen.quick else ".")).resolve()
     return exit_code("duel", lambda: run(chosen, output))
 

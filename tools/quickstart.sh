@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# From a fresh Debian to both methods side by side in results/quickstart/report.html: sets up, builds, sweeps
-# ring, ball and pool by every method, and makes the page. Arguments are handed to the sweep (--references
-# rebuild, --force).
+# quickstart.sh [--references rebuild] [--force]: from a fresh Debian to both methods side by side in
+# results/quickstart/report.html. It sets up, builds, sweeps ring, ball and pool by every method, and makes the page.
+# Arguments are handed to the sweep.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+case " $* " in *" -h "* | *" --help "*) exec sed -n 's/^# //p' tools/quickstart.sh ;; esac
 bench=build/release/bin/causticbench
 results=results/quickstart
 

@@ -7,6 +7,8 @@ case " $* " in *" -h "* | *" --help "*) exec sed -n 's/^# //p' tools/reproduce.s
 
 program=${CAUSTICS_BENCH:-build/release/bin/causticbench}
 if [ -z "${CAUSTICS_BENCH:-}" ]; then
+    # A wrong word ends it before a build that takes minutes.
+    if [ -x /usr/bin/python3 ]; then /usr/bin/python3 tools/reproduce.py --check "$@" || exit; fi
     bash tools/build.sh release causticbench || exit
 fi
 exec /usr/bin/python3 tools/reproduce.py --program "$program" "$@"

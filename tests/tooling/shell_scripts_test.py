@@ -41,8 +41,14 @@ class AllScripts(unittest.TestCase):
             self.assertTrue(os.access(script, os.X_OK), script)
 
 
+    def test_refuse_a_wrong_word_without_a_build(self):
+        for name, word in (("reproduce", "nosuchpaper"), ("reproduce", "--nope"), ("duel", "--nope")):
+            said = subprocess.run(["bash", f"tools/{name}.sh", word], cwd=ROOT, text=True, capture_output=True)
+            self.assertEqual((said.returncode, said.stdout), (2, ""), name)
+            self.assertIn(word, said.stderr)
+
     def test_tell_of_themselves_without_a_build(self):
-        for name in ("reproduce", "duel"):
+        for name in ("reproduce", "duel", "quickstart"):
             for option in ("-h", "--help"):
                 said = subprocess.run(["bash", f"tools/{name}.sh", option], cwd=ROOT, text=True, capture_output=True)
                 self.assertEqual((said.returncode, said.stderr), (0, ""), name)
@@ -122,7 +128,8 @@ class Reproduce(Sandbox):
 
     def test_builds_and_hands_its_words_on(self):
         self.assertEqual(self.reproduced("jensen1996", "--quick", CAUSTICS_BENCH=""),
-                         ["build release causticbench", "--program build/release/bin/causticbench jensen1996 --quick"])
+                         ["--check jensen1996 --quick", "build release causticbench",
+                          "--program build/release/bin/causticbench jensen1996 --quick"])
 
     def test_takes_a_program_that_is_there(self):
         self.assertEqual(self.reproduced(CAUSTICS_BENCH="/a/program"), ["--program /a/program"])
@@ -130,7 +137,8 @@ class Reproduce(Sandbox):
     def test_the_duel_does_the_same(self):
         duel = lambda *words, **environment: self.reproduced(*words, script="duel.sh", tool="measure_duel.py", **environment)
         self.assertEqual(duel("--quick", CAUSTICS_BENCH=""),
-                         ["build release causticbench", "--program build/release/bin/causticbench --quick"])
+                         ["--check --quick", "build release causticbench",
+                          "--program build/release/bin/causticbench --quick"])
         self.assertEqual(duel(CAUSTICS_BENCH="/a/program"), ["--program /a/program"])
 
 
