@@ -16,7 +16,8 @@ import subprocess
 import sys
 import tempfile
 
-SEEDS = range(1, 13)
+PATHS = 400_000
+SEEDS = range(1, 9)
 FILM = ("--set", "/sensor/film/width=32", "--set", "/sensor/film/height=24", "--spp", "4")
 RUNS = {"after": (), "16": ("max_bounces=16",), "1000": ("max_bounces=1000",)}
 
@@ -25,7 +26,7 @@ def render(program, scene, seed, params, picture):
     """Processor seconds."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     subprocess.run(
-        [program, "render", scene, "--method", "lighttrace", "--param", "paths=2000000", "--seed", str(seed)]
+        [program, "render", scene, "--method", "lighttrace", "--param", f"paths={PATHS}", "--seed", str(seed)]
         + [word for param in params for word in ("--param", param)]
         + ["-o", picture, *FILM],
         check=True,
