@@ -33,8 +33,10 @@ bool is_targa(const std::string& bytes) {
            is_one_of(byte(bytes, 16), {8, 15, 16, 24, 32}) && (byte(bytes, 17) & 0xC0U) == 0;
 }
 
+// With floats (PFM) too.
 bool is_pnm(const std::string& bytes) {
-    return bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6' &&
+    constexpr std::string_view kinds = "123456Ff";
+    return bytes.size() > 2 && bytes[0] == 'P' && kinds.find(bytes[1]) != kinds.npos &&
            is_one_of(byte(bytes, 2), {' ', '\t', '\r', '\n', '#'});
 }
 
