@@ -25,6 +25,13 @@ namespace {
 
 using Place = SpecularSurface::Place;
 
+/// 1 less Fresnel's reflectance, by the cosines on the side of arrival and on the other one.
+double fresnel_transmittance(double cosine, double inner, double eta) {
+    const double across = (cosine - eta * inner) / (cosine + eta * inner);
+    const double along = (eta * cosine - inner) / (eta * cosine + inner);
+    return 1 - (across * across + along * along) / 2;
+}
+
 SegmentEnd segment_end(const Place& place, float offset) {
     return {place.position.cast<float>(), place.across.cast<float>(), offset};
 }
@@ -189,7 +196,11 @@ Spectrum LightChain::weight(const ChainStart& start) const {
         const Vec3 normal = arrival.place.normal.cast<float>();
         const SpecularSplit split =
             split_specular(arrival.shape->bsdf, here.geometric_normal, normal, w, light_.bin.nm);
-        const Spectrum part = event == refraction ? split.refracted_weight : split.reflected_weight;
+        Spectrum part = event == refraction ? split.refracted_weight : split.reflected_weight;
+        // So near to total reflection that a float lies beyond it.
+        if (bend.refracts && split.refracted_weight.isZero(0) && split.lost_weight.isZero(0))
+            part = std::get<Dielectric>(arrival.shape->bsdf.model).specular_transmittance *
+                   static_cast<float>(fresnel_transmittance(bend.cosine, bend.inner, bend.eta));
         if (is_black(part)) return false;
         if (arrival.number == 0) {
             if (!sees(scene_, here, light_)) return false;
