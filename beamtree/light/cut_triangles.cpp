@@ -70,7 +70,6 @@ CutTriangles::Whole whole_triangle(const TriangleMesh& mesh, std::uint32_t trian
     whole.beam.first_share = 1;
     whole.beam.triangle = triangle;
     whole.beam.is_cell = false;
-    whole.beam.has_dark_part = true;
     return whole;
 }
 

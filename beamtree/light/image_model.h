@@ -83,11 +83,11 @@ private:
     Vec2d u_, v_, uu_, uv_, vv_;  ///< coefficients
 };
 
-/// False where ImageModel::of() would be empty on the plane at this point: in float, for a few candidates of many.
+/// A quick test in float of what ImageModel::of() tests: false where no ray of the polygon can reach the point.
 bool may_have_image(const Vec3& point, const std::array<const VertexRay*, 3>& corners,
                     const EdgeMiddles& middles, bool has_dark_part);
 
-/// The least of a place's barycentric coordinates (1 - u - v, u, v), the first of which may be less by `beyond`.
+/// The least of a place's barycentric coordinates (1 - u - v, u, v), after `beyond` is added to the first.
 inline double least_weight(const Vec2d& at, double beyond = 0) {
     return std::min({at.x(), at.y(), 1 - at.x() - at.y() + beyond});
 }

@@ -25,13 +25,6 @@ namespace {
 
 using Place = SpecularSurface::Place;
 
-/// 1 less Fresnel's reflectance, by the cosines on the side of arrival and on the other one.
-double fresnel_transmittance(double cosine, double inner, double eta) {
-    const double across = (cosine - eta * inner) / (cosine + eta * inner);
-    const double along = (eta * cosine - inner) / (eta * cosine + inner);
-    return 1 - (across * across + along * along) / 2;
-}
-
 SegmentEnd segment_end(const Place& place, float offset) {
     return {place.position.cast<float>(), place.across.cast<float>(), offset};
 }
@@ -197,10 +190,10 @@ Spectrum LightChain::weight(const ChainStart& start) const {
         const SpecularSplit split =
             split_specular(arrival.shape->bsdf, here.geometric_normal, normal, w, light_.bin.nm);
         Spectrum part = event == refraction ? split.refracted_weight : split.reflected_weight;
-        // So near to total reflection that a float lies beyond it.
+        // In float, an angle just below that of total reflection may lie above it.
         if (bend.refracts && split.refracted_weight.isZero(0) && split.lost_weight.isZero(0))
             part = std::get<Dielectric>(arrival.shape->bsdf.model).specular_transmittance *
-                   static_cast<float>(fresnel_transmittance(bend.cosine, bend.inner, bend.eta));
+                   static_cast<float>(1 - fresnel_reflectance(bend.cosine, bend.inner, bend.eta));
         if (is_black(part)) return false;
         if (arrival.number == 0) {
             if (!sees(scene_, here, light_)) return false;

@@ -112,7 +112,6 @@ void RootDivider::cut(const std::array<RootNode, 3>& corners, RootBeam beam,
     if (std::ranges::all_of(edges, is_lit)) {
         std::array<RootNode, 3> numbered = corners;
         for (RootNode& corner : numbered) number(corner);
-        beam.beam.has_dark_part = false;
         divide(numbered, beam, quarters);
     } else if (quarters > 0) {
         beam.beam.flux /= 4;
@@ -170,7 +169,6 @@ void RootDivider::add_lit(std::array<RootNode, 3> corners, const RootBeam& beam)
     for (std::size_t i = 0; i < 3; ++i) middles[i] = between(corners[i], corners[(i + 1) % 3]);
     for (RootNode& corner : corners) number(corner);
     add(corners, middles, beam);
-    out_.beams.back().beam.has_dark_part = false;
 }
 
 bool RootDivider::holds(const std::array<RootNode, 3>& corners, const Vec2d& at) {
@@ -189,7 +187,8 @@ void RootDivider::add_dark(std::array<RootNode, 3> corners, const RootBeam& beam
     std::array<RootNode, 3> middles;
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec2d at = (corners[i].at + corners[(i + 1) % 3].at) / 2;
-        middles[i] = node(at).is_lit ? node(at) : horizon(lit, at);
+        middles[i] = node(at);
+        if (!middles[i].is_lit) middles[i] = horizon(lit, at);
     }
     for (RootNode& corner : corners) {
         if (!corner.is_lit) corner.ray = horizon(lit, corner.at).ray;

@@ -47,8 +47,8 @@ struct RootNode {
 /// Divides one triangle of a beam, where a quadratic of its edges' middles is not good enough or the horizon cuts it.
 class RootDivider {
 public:
-    /// New rays are numbered from `first_number` on. What is lit of a triangle has a smooth border unless its light
-    /// `meets_mesh` after the first surface.
+    /// New rays are numbered from `first_number` on. `meets_mesh` says that the light meets a mesh after the first surface, so that
+    /// the border of the lit part of a triangle may have corners.
     RootDivider(const LightChain& chain, const FirstPolygon& polygon, double reach, bool meets_mesh,
                 std::uint32_t first_number, RootBeams& out)
         : chain_(chain),
@@ -76,9 +76,9 @@ private:
              int quarters);
     // How often light begins or ends to go the set's way round a triangle.
     static int changes(const std::array<RootNode, 12>& edges);
-    // What is lit of a triangle that the horizon cuts once. False where that is not known well enough.
+    // Adds the lit part of a triangle that the horizon cuts once. False where that part is not known well enough.
     bool add_lit_side(const std::array<RootNode, 3>& corners, const RootBeam& beam);
-    // Its second edge is a chord of the horizon, beyond which there is light.
+    // Adds a triangle whose second edge is a chord of the horizon. A sliver beyond that chord is lit too.
     bool add_to_horizon(const std::array<RootNode, 3>& corners, const RootBeam& beam);
     void add_lit(std::array<RootNode, 3> corners, const RootBeam& beam);
     static bool holds(const std::array<RootNode, 3>& corners, const Vec2d& at);

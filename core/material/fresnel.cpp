@@ -13,12 +13,6 @@ std::optional<Vec3> refract(const Vec3& w, const Vec3& n, float eta) {
     return t.normalized();
 }
 
-float fresnel_reflectance(float cos_i, float cos_t, float eta) {
-    const float r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    const float r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    return 0.5F * (r_s * r_s + r_p * r_p);
-}
-
 float fresnel_dielectric(float cos_i, float eta) {
     const float sin2_t = (1 - cos_i * cos_i) / (eta * eta);
     if (sin2_t >= 1) return 1;

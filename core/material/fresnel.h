@@ -17,7 +17,12 @@ std::optional<Vec3> refract(const Vec3& w, const Vec3& n, float eta);
 /// Unpolarised Fresnel reflectance of a dielectric, the mean of R_s and R_p; `cos_i` >= 0 on the
 /// side of arrival; eta as for refract. 1 at total internal reflection.
 float fresnel_dielectric(float cos_i, float eta);
-/// The same where the cosine of refraction is known.
-float fresnel_reflectance(float cos_i, float cos_t, float eta);
+/// The same where the cosine of refraction is known, in float or double.
+template <typename Real>
+Real fresnel_reflectance(Real cos_i, Real cos_t, Real eta) {
+    const Real r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    const Real r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    return Real{0.5} * (r_s * r_s + r_p * r_p);
+}
 
 }  // namespace caustics

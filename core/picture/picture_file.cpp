@@ -7,7 +7,6 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/picture/exr_file.h"
 #include "core/picture/exr_header.h"
 #include "core/picture/foreign_picture.h"
 #include "core/picture/picture_format.h"
@@ -18,11 +17,11 @@ namespace caustics {
 PictureFile::PictureFile(const std::filesystem::path& file)
     : file_(file), bytes_(read_whole_file(file)) {
     try {
-        if (is_exr(bytes_)) require_attributes_within(bytes_);
         const std::string format = picture_format(bytes_);
         if (format.empty())
             throw std::runtime_error(std::string("its content is of none of the formats ") +
                                      picture_formats);
+        if (format == "openexr") require_attributes_within(bytes_);
         source_ = format == "png" ? open_png(bytes_) : open_foreign_picture(file_, bytes_, format);
     } catch (const std::runtime_error& error) {
         fail(error.what());

@@ -10,11 +10,12 @@ with the standard error over seeds.
 
 import json
 import os
-import resource
 import statistics
 import subprocess
 import sys
 import tempfile
+
+from timed_run import timed_run
 
 PATHS = 400_000
 SEEDS = range(1, 9)
@@ -24,15 +25,9 @@ RUNS = {"after": (), "16": ("max_bounces=16",), "1000": ("max_bounces=1000",)}
 
 def render(program, scene, seed, params, picture):
     """Processor seconds."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    subprocess.run(
-        [program, "render", scene, "--method", "lighttrace", "--param", f"paths={PATHS}", "--seed", str(seed)]
-        + [word for param in params for word in ("--param", param)]
-        + ["-o", picture, *FILM],
-        check=True,
-        capture_output=True,
-    )
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    command = [program, "render", scene, "--method", "lighttrace", "--param", f"paths={PATHS}", "--seed", str(seed)]
+    _, seconds = timed_run(command + [word for param in params for word in ("--param", param)] + ["-o", picture, *FILM])
+    return seconds
 
 
 def mean_ratio(program, picture, reference):

@@ -12,10 +12,10 @@ import csv
 import json
 import os
 import random
-import resource
-import subprocess
 import sys
 import tempfile
+
+from timed_run import timed_run
 
 POINTS = 10000
 MESHES = (16, 32, 64, 128, 256)
@@ -53,16 +53,9 @@ def write_points(path, half_width, height):
 
 def probe(program, scene, points, *params):
     """Irradiances, and the processor seconds that they took."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    result = subprocess.run(
-        [program, "probe", scene, "--method", "beamtree", "--points", points, "--threads", "1"]
-        + [word for param in params for word in ("--param", param)],
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-    return [float(row["irradiance_g"]) for row in csv.DictReader(result.stdout.splitlines())], seconds
+    command = [program, "probe", scene, "--method", "beamtree", "--points", points, "--threads", "1"]
+    output, seconds = timed_run(command + [word for param in params for word in ("--param", param)])
+    return [float(row["irradiance_g"]) for row in csv.DictReader(output.splitlines())], seconds
 
 
 def error(found, truth):
