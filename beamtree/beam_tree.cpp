@@ -60,15 +60,19 @@ private:
     bool pixel_footprint_;
 };
 
+Completion completion(const BeamTreeParams& params) {
+    using Rest = BeamTreeParams::Rest;
+    if (params.rest == Rest::none) return {};
+    return {static_cast<std::uint64_t>(params.rest_photons), params.rest == Rest::max_beams};
+}
+
 }  // namespace
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
     if (params.sampled) return sampled_beams(scene, "beamtree", params, options);
-    const bool completed = params.rest == BeamTreeParams::Rest::photons;
-    TracedScene traced =
-        trace_scene(scene, "beamtree", params, options, params.intensity, params.footprint,
-                    completed ? static_cast<std::uint64_t>(params.rest_photons) : 0);
+    TracedScene traced = trace_scene(scene, "beamtree", params, options, params.intensity,
+                                     params.footprint, completion(params));
     options.phase("tree");
     Forest forest(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest), params,

@@ -9,6 +9,12 @@ namespace {
 using P = BeamTreeParams;
 using Merging = ConeTreeSettings::Merging;
 
+bool has_own_rest(const P& p) {
+    return p.rest == P::Rest::photons ||
+           (p.rest == P::Rest::max_beams &&
+            (p.rest_photons != P{}.rest_photons || p.rest_nearest != P{}.rest_nearest));
+}
+
 std::vector<Parameter<P>> tree_parameters() {
     return {
         parameter::preset<P>(
@@ -71,27 +77,32 @@ std::vector<Parameter<P>> tree_parameters() {
                         "receiver; what mirrors and glass show is asked at points."})
             .only_if([](const P& p) { return p.pixel_footprint; }),
         parameter::choice<P>(
-            &P::rest, {{"none", P::Rest::none}, {"photons", P::Rest::photons}},
+            &P::rest,
+            {{"none", P::Rest::none},
+             {"max_beams", P::Rest::max_beams},
+             {"photons", P::Rest::photons}},
             {.key = "rest",
              .meaning =
-                 "What becomes of light that prune and max_beams leave out, or of polygons too "
-                 "coarse for what they meet: it is lost, or photons carry it from the "
-                 "polygons where it begins."})
-            .only_if([](const P& p) { return p.rest != P::Rest::none; }),
+                 "What becomes of light that no beam carries. none: it is lost. max_beams: photons "
+                 "carry what max_beams leaves out. photons: they carry what prune leaves out, too, "
+                 "and what polygons are too coarse for."})
+            .only_if([](const P& p) {
+                return p.rest == P::Rest::photons || (p.rest == P::Rest::none && p.preset.empty() &&
+                                                      p.dispersion == Dispersion::bins);
+            }),
         parameter::whole_number<P>(
             &P::rest_photons, 1, 1'000'000'000,
             {.key = "rest_photons",
-             .meaning = "With rest photons: paths for all light on casters; what is left out takes "
-                        "its share of them.",
+             .meaning = "Paths for all light on casters; the light that photons carry takes its "
+                        "share of them.",
              .unit = "photons"})
-            .only_if([](const P& p) { return p.rest != P::Rest::none; }),
+            .only_if(has_own_rest),
         parameter::whole_number<P>(
             &P::rest_nearest, 2, 10'000,
             {.key = "rest_nearest",
-             .meaning =
-                 "With rest photons: a photon spreads its light as far as so many others lie.",
+             .meaning = "A photon of rest spreads its light as far as so many others lie.",
              .unit = "photons"})
-            .only_if([](const P& p) { return p.rest != P::Rest::none; }),
+            .only_if(has_own_rest),
         parameter::choice<P>(
             &P::dispersion, {{"bins", Dispersion::bins}, {"intervals", Dispersion::intervals}},
             {.key = "dispersion",
@@ -132,13 +143,16 @@ void settle_footprint(const JsonNode& node, const P& params) {
                 "pixel_footprint)");
 }
 
-void settle_rest(const JsonNode& node, const P& params) {
+void settle_rest(const JsonNode& node, P& params) {
     if (params.rest == P::Rest::none)
         for (const char* key : {"rest_photons", "rest_nearest"})
             if (const auto given = node.find(key))
-                given->fail("only \"rest\": \"photons\" traces photons");
-    if (params.dispersion == Dispersion::intervals && params.rest != P::Rest::none)
+                given->fail(
+                    "\"rest\": \"none\" traces no photons (take \"max_beams\" or \"photons\")");
+    if (params.dispersion != Dispersion::intervals) return;
+    if (node.has("rest") && params.rest != P::Rest::none)
         node.at("dispersion").fail("photons complete no intervals (take \"bins\")");
+    params.rest = P::Rest::none;
 }
 
 // What fits the bound: boxes on planes across a fixed normal bound nothing on other planes, have no

@@ -22,8 +22,9 @@ struct BeamTreeParams : BeamParams {
         fixed      ///< on planes across a normal fixed for the tree
     };
     enum class Rest {
-        none,    ///< light that `prune` and `max_beams` leave out is lost
-        photons  ///< and here it is not
+        none,       ///< light that `prune` and `max_beams` leave out is lost
+        max_beams,  ///< photons carry what `max_beams` leaves out
+        photons     ///< and what `prune` does, or polygons too coarse for what they meet
     };
     std::string preset = {};  ///< name of the settings that were taken in place of the defaults
     Bound bound = Bound::two_slice;
@@ -38,7 +39,7 @@ struct BeamTreeParams : BeamParams {
     float footprint = 0;
     /// The same over the cell of the pixel or its stratum that a point stands for, where the camera sees it directly.
     bool pixel_footprint = false;
-    Rest rest = Rest::none;
+    Rest rest = Rest::max_beams;
     std::int64_t rest_photons =
         300'000;            ///< paths for all light on casters; what is left out has its share
     int rest_nearest = 50;  ///< photons that a photon's disc reaches to
@@ -53,6 +54,7 @@ struct BeamTreeParams : BeamParams {
         params.leaf = Leaf::receiver;
         params.intensity = Intensity::area;
         params.max_bounces = preset_bounces;
+        params.rest = Rest::none;
         return params;
     }
 };

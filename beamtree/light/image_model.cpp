@@ -131,6 +131,11 @@ bool ImageModel::is_beside_fold(double area) const {
     return folds() || std::abs(area) < near * std::max(std::abs(least_area_), std::abs(most_area_));
 }
 
+bool ImageModel::is_uneven() const {
+    constexpr double even = 0.5;
+    return !(least_area_ > even * most_area_ || most_area_ < even * least_area_);
+}
+
 // The point's coordinates in the straight-sided image; the polygon's middle where that has no area.
 Vec2d ImageModel::straight() const {
     Eigen::Matrix2d sides;

@@ -59,6 +59,10 @@ public:
     static Solutions everywhere();
     /// True if the image folds at or near a place where its change has this determinant.
     bool is_beside_fold(double area) const;
+    /// True if the image turns over within the polygon, or nearly.
+    bool folds() const;
+    /// True if the image is much wider in one part than in another: then the model may lead to no ray though there is one.
+    bool is_uneven() const;
     /// One where the image does not turn over; else all that are found from places all over the polygon.
     Solutions solutions() const;
     /// True where the straight-sided image holds the point deeper inside than the image bulges: then a ray reaches it.
@@ -68,7 +72,6 @@ private:
     explicit ImageModel(const std::array<Vec2d, 6>& misses);
     bool may_hold(double error) const;
     void find_areas();
-    bool folds() const;
     Vec2d straight() const;
     Vec2d solve(Vec2d at) const;
     Vec2d miss(const Vec2d& at) const;

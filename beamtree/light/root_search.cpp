@@ -24,6 +24,7 @@ constexpr double double_rounding = 4 * std::numeric_limits<double>::epsilon();
 // polygons that are divided differently. Both neighbours find such a root, and BeamLight counts it once.
 constexpr double edge_width = 1e-6;
 constexpr double same_root = 1e-5;  // barycentric distance
+const Vec2d middle(1.0 / 3, 1.0 / 3);
 
 // The nearest place of the polygon that is off its edges.
 Vec2d just_inside(const Vec2d& at) {
@@ -89,11 +90,21 @@ bool RootSearch::find(std::uint32_t number, std::size_t triangle, const Vec3& po
     // The model of a polygon with a dark part is rough.
     const ImageModel::Solutions starts =
         beam.has_dark_part ? ImageModel::everywhere() : model->solutions();
-    for (const Vec2d& from : starts) {
+    const auto look_round = [&](const Vec2d& from) {
         const auto found = look_from(from);
-        if (!found || !model->is_beside_fold(found->change.determinant())) continue;
-        if (const auto other = partner(image, *found)) look_from(*other);
-    }
+        if (!found) return;
+        if (!model->is_uneven() && !model->is_beside_fold(found->change.determinant())) return;
+        const Partners others = partners(image, *found);
+        bool is_alone = true;
+        for (std::size_t i = 0; i < others.count; ++i)
+            if (const auto other = look_from(others.at[i]); other && image.holds(other->at))
+                is_alone = false;
+        if (is_alone) look_from(middle);
+    };
+    for (const Vec2d& from : starts) look_round(from);
+    if (!is_any_inside && model->is_uneven()) look_round(middle);
+    if (!is_any_inside && model->folds())
+        for (const Vec2d& from : ImageModel::everywhere()) look_round(from);
     return is_any_inside || beam.has_dark_part || !model->surely_holds();
 }
 
@@ -140,22 +151,45 @@ std::optional<RootSearch::Found> RootSearch::polish(const Image& image, Vec2d at
     return {};
 }
 
-// Along the direction in which the image does not move the determinant goes through zero at the fold, midway between the
-// two.
-std::optional<Vec2d> RootSearch::partner(const Image& image, const Found& found) const {
+// Along the direction in which the image does not move the miss grows as the integral of the determinant: a quadratic of
+// the way t, which is zero at the fold, or twice beside a cusp. Where the integral is zero again, another ray starts.
+RootSearch::Partners RootSearch::partners(const Image& image, const Found& found) const {
     constexpr double step = 0.01;
-    constexpr double farthest = 0.3;  // beyond the polygon
     const Eigen::Matrix2d square = found.change.transpose() * found.change;
     const Vec2d still =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>().computeDirect(square).eigenvectors().col(
             0);
-    const auto beside = chain_.ray(image.polygon.start(found.at + step * still));
-    if (!beside) return {};
+    const auto area_at = [&](double t) -> std::optional<double> {
+        const auto ray = chain_.ray(image.polygon.start(found.at + t * still));
+        if (!ray) return {};
+        return image.plane.miss_change(*ray).determinant();
+    };
     const double area = found.change.determinant();
-    const double slope = (image.plane.miss_change(*beside).determinant() - area) / step;
-    const Vec2d other = found.at - 2 * area / slope * still;
-    if (!(least_weight(other) >= -farthest)) return {};
-    return other;
+    const auto ahead = area_at(step);
+    if (!ahead) return {};
+    Partners partners;
+    const auto take = [&](double t) {
+        constexpr double farthest = 0.3;  // beyond the polygon
+        const Vec2d other = found.at + t * still;
+        if (least_weight(other) >= -farthest) partners.at[partners.count++] = other;
+    };
+    const auto behind = area_at(-step);
+    if (!behind) {
+        take(-2 * area * step / (*ahead - area));
+        return partners;
+    }
+    // area + slope t + bend t² is the determinant, and area t + slope t² / 2 + bend t³ / 3 the miss.
+    const double slope = (*ahead - *behind) / (2 * step);
+    const double bend = (*ahead - 2 * area + *behind) / (2 * step * step);
+    const double room = slope * slope / 4 - 4 * area * bend / 3;
+    if (!(room >= 0)) {
+        take(-2 * area / slope);
+        return partners;
+    }
+    const double sum = -slope / 2 - std::copysign(std::sqrt(room), slope);
+    take(2 * area / sum);  // the nearer one
+    if (bend != 0) take(sum / (2 * bend / 3));
+    return partners;
 }
 
 void RootSearch::add(const FirstPolygon& polygon, const Found& found,

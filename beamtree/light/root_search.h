@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -45,10 +46,14 @@ private:
         double density;
     };
     struct Image;
+    struct Partners {
+        std::array<Vec2d, 2> at;
+        std::size_t count = 0;
+    };
     /// By Newton's method. Steps to where the light does not go the set's way are halved.
     std::optional<Found> polish(const Image& image, Vec2d at) const;
-    /// Beside a fold two rays reach the point: where the other one may be.
-    std::optional<Vec2d> partner(const Image& image, const Found& found) const;
+    /// Beside a fold two rays reach the point, and beside a cusp three: where the others may be.
+    Partners partners(const Image& image, const Found& found) const;
     void add(const FirstPolygon& polygon, const Found& found, std::vector<Root>& roots) const;
 
     const Scene& scene_;

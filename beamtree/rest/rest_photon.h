@@ -15,6 +15,7 @@ struct RestPhoton {
     Vec3 wi;                  ///< unit, where it came from
     Spectrum flux = black();  ///< [W]
     WavelengthBin bin = {};   ///< of its light's wavelengths; nm 0: all
+    bool is_sample = false;   ///< tells how much light is missing, and lights nothing
 };
 
 }  // namespace caustics::beamtree

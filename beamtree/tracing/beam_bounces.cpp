@@ -105,7 +105,7 @@ private:
     // By photons, all light of a level that is left out.
     void complete(const Level& level) {
         const BeamSet& set = level.traced.set;
-        if (!rest_.is_on() || budget_.is_over()) return;
+        if (budget_.is_over()) return;
         std::vector<std::vector<RestPhoton>> photons(chunk_count(set.beams.size(), beams_together));
         parallel_chunks(
             settings_.threads, set.beams.size(), beams_together, [&](const Chunk& chunk) {
@@ -159,8 +159,8 @@ private:
 
 // Photons of a sample share the light of the first events.
 TraceSettings with_sample(TraceSettings settings, double flux) {
-    if (settings.rest_photons == 0 && settings.sampled_photons > 0)
-        settings.watts_per_photon = flux / static_cast<double>(settings.sampled_photons);
+    if (settings.sampled_photons > 0)
+        settings.watts_per_sample = flux / static_cast<double>(settings.sampled_photons);
     return settings;
 }
 

@@ -80,9 +80,9 @@ public:
         settings_.seed = options.seed;
         settings_.sampled_photons = (settings.sampled_photons + parts_.size() - 1) /
                                     std::max<std::size_t>(1, parts_.size());
-        if (settings.rest_photons > 0)
+        if (settings.rest.photons > 0)
             settings_.watts_per_photon = first_flux(scene, casters, lights, options.threads) /
-                                         static_cast<double>(settings.rest_photons);
+                                         static_cast<double>(settings.rest.photons);
     }
 
     TracedBeams run() {

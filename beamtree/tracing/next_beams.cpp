@@ -218,8 +218,12 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
     const double clear = mean / left;
     const double worth = clear / static_cast<double>(own_share);
     if (worth < least_.of_polygon || clear < least_.budget.least()) {
-        leave_out({parent, {corners[0].origin, corners[1].origin, corners[2].origin}, event, mean},
-                  mean, worth < least_.of_polygon ? balance_.pruned : balance_.over_budget);
+        leave_out({parent,
+                   {corners[0].origin, corners[1].origin, corners[2].origin},
+                   event,
+                   mean,
+                   worth >= least_.of_polygon},
+                  mean);
         return;
     }
     least_.budget.count(clear);
@@ -240,9 +244,9 @@ void NextBeams::add(std::uint32_t parent, const BeamCorners& corners, Event even
     chunk.places.push_back(first);
 }
 
-void NextBeams::leave_out(const LeftOut& part, double flux, double& cause) {
+void NextBeams::leave_out(const LeftOut& part, double flux) {
     balance_.lost += flux;
-    cause += flux;
+    (part.over_budget ? balance_.over_budget : balance_.pruned) += flux;
     complete(part);
 }
 

@@ -70,9 +70,9 @@ public:
     /// A part of a polygon is divided to see what it meets, which costs as much as a beam and counts as one.
     void count_search(const Piece& piece);
     /// Completes light that no beam carries on, and counts it, `flux` [W], by its cause.
-    void leave_out(const LeftOut& part, double flux, double& cause);
-    /// Whether photons take what beams leave out.
-    bool is_completed() const { return rest_.completes(); }
+    void leave_out(const LeftOut& part, double flux);
+    /// Whether photons take all that beams leave out.
+    bool is_completed() const { return rest_.completes_all(); }
     /// Has photons take what no beam carries on.
     void complete(const LeftOut& part);
     std::vector<RestPhoton> take_rest() { return std::move(photons_); }

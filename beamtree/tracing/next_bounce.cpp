@@ -292,8 +292,9 @@ private:
     // are drawn from all of the piece, whatever its corners do.
     void leave_out(std::uint32_t beam, const Piece& piece) {
         const auto on = std::ranges::count_if(piece, goes_on);
-        const LeftOut part = left_out(beam, piece, next_.flux(piece));
-        next_.leave_out(part, part.flux * static_cast<double>(on) / 3, balance_.over_budget);
+        LeftOut part = left_out(beam, piece, next_.flux(piece));
+        part.over_budget = true;
+        next_.leave_out(part, part.flux * static_cast<double>(on) / 3);
     }
 
     // A piece none of whose corners goes on.

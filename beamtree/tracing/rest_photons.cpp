@@ -124,33 +124,31 @@ void fly(const Scene& scene, Flight flight, int max_bounces, Rng& rng, const Wav
 
 RestPhotons::RestPhotons(const Scene& scene, const LitCaster& surface,
                          const TraceSettings& settings)
-    : scene_(scene),
-      surface_(surface),
-      watts_(settings.watts_per_photon),
-      completes_(settings.rest_photons > 0),
-      seed_(settings.seed),
-      max_bounces_(settings.max_bounces) {}
+    : scene_(scene), surface_(surface), settings_(settings) {}
 
 void RestPhotons::trace(const Level& level, const LeftOut& part,
                         std::vector<RestPhoton>& photons) const {
-    if (!is_on() || !(part.flux > 0)) return;
+    const bool is_sample = !completes(part);
+    const double watts = is_sample ? settings_.watts_per_sample : settings_.watts_per_photon;
+    if (!(watts > 0) || !(part.flux > 0)) return;
     const BeamSet& set = level.traced.set;
     Name name = name_of_way(set, part.event);
     double rounding = 0;
     if (is_whole_triangle(part))
         rounding = golden * set.beams[part.beam].triangle +
-                   Rng(seed_, Stage::beams, name.of_stream()).next_fine();
+                   Rng(settings_.seed, Stage::beams, name.of_stream()).next_fine();
     for (const RayOrigin* corner : part.corners) name.add(corner->position);
-    Rng rng(seed_, Stage::beams, name.of_stream());
+    Rng rng(settings_.seed, Stage::beams, name.of_stream());
     const double shift_u = rng.next_fine();
     const double shift_v = rng.next_fine();
     if (!is_whole_triangle(part)) rounding = rng.next_fine();
-    const double wanted = part.flux / watts_;
+    const double wanted = part.flux / watts;
     const auto count = static_cast<std::uint64_t>(wanted + fine_fraction(rounding));
     if (count == 0) return;
     const Path path(scene_, surface_, level, part.beam);
     const double measured = measure(set.light, part.corners[0]->position, part.corners[1]->position,
                                     part.corners[2]->position);
+    const std::size_t first = photons.size();
     for (std::uint64_t i = 0; i < count; ++i) {
         const auto number = static_cast<double>(i);
         const PathPoint point =
@@ -163,8 +161,9 @@ void RestPhotons::trace(const Level& level, const LeftOut& part,
         flight.wavelength.nm = set.light.bin.nm;
         flight.start_flux = flight.flux.sum();
         if (leave_next(point, part.event, rng, flight))
-            fly(scene_, flight, max_bounces_, rng, set.light.bin, photons);
+            fly(scene_, flight, settings_.max_bounces, rng, set.light.bin, photons);
     }
+    for (std::size_t i = first; i < photons.size(); ++i) photons[i].is_sample = is_sample;
 }
 
 }  // namespace caustics::beamtree

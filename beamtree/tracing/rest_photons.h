@@ -17,9 +17,10 @@ struct LeftOut {
     std::array<const RayOrigin*, 3> corners;
     std::optional<Event> event;  ///< the next; none: both
     double flux;                 ///< at most, about, after it [W]: so many photons are traced
+    bool over_budget = false;    ///< because `max_beams` has no room for it
 };
 
-/// Traces light that beams leave out by photons, from one caster in one light. Each begins at a random place of the
+/// Traces light that beams leave out by photons, or a sample of it where it is not to be completed, from one caster in one light. Each begins at a random place of the
 /// triangle, goes the beam's way, through the event, and from there on to receivers by Russian roulette. What
 /// arrives before the event belongs to the beam. So nothing counts twice, and the mean over seeds is what was left out,
 /// but where light of the triangle does not go the beam's way, as beams lose it too.
@@ -29,22 +30,24 @@ struct LeftOut {
 /// nor what else is traced changes them.
 class RestPhotons {
 public:
-    /// `settings` give the light of a photon; without, there are none.
+    /// `settings` give the light of a photon and of one of a sample; without, there are none.
     RestPhotons(const Scene& scene, const LitCaster& surface, const TraceSettings& settings);
 
-    bool is_on() const { return watts_ > 0; }
-    /// Whether they are light of the picture, and not only a sample of what it lacks.
-    bool completes() const { return completes_; }
+    /// Whether all that is left out is light of the picture, and not only what `max_beams` has no room for.
+    bool completes_all() const {
+        return settings_.rest.photons > 0 && !settings_.rest.of_budget_alone;
+    }
     /// Appends what arrives; `level` is that of the beam.
     void trace(const Level& level, const LeftOut& part, std::vector<RestPhoton>& photons) const;
 
 private:
+    bool completes(const LeftOut& part) const {
+        return completes_all() || (settings_.rest.photons > 0 && part.over_budget);
+    }
+
     const Scene& scene_;
     const LitCaster& surface_;
-    double watts_;
-    bool completes_;
-    std::uint64_t seed_;
-    int max_bounces_;
+    TraceSettings settings_;
 };
 
 }  // namespace caustics::beamtree

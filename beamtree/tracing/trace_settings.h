@@ -16,6 +16,14 @@ enum class Intensity {
     refined  ///< by the rays' spreads: right to second order where the light is smooth
 };
 
+/// Photons that carry light which beams of several events leave out.
+struct Completion {
+    /// A share of so many paths, as that light is of all on casters; 0: none.
+    std::uint64_t photons = 0;
+    /// Light beyond `max_beams` alone, not what `prune` leaves out nor what polygons are too coarse for.
+    bool of_budget_alone = false;
+};
+
 /// How a scene's beams are traced.
 struct TraceSettings {
     Intensity intensity = Intensity::area;
@@ -30,13 +38,12 @@ struct TraceSettings {
     std::uint64_t max_beams = BeamBudget::no_limit;
     /// Beams that pass all receivers' bounds by more than this [m] are left out; none: no beams are.
     std::optional<float> receiver_margin = {};
-    /// Photons complete the light which beams of several events leave out: a share of so many paths, as that light
-    /// is of all on casters. 0: none.
-    std::uint64_t rest_photons = 0;
-    double watts_per_photon = 0;  ///< of them [W]; trace_all_beams() finds it
-    /// Where photons complete nothing: so many paths, as the light left out is of all that a caster has of a light, tell
+    Completion rest = {};
+    double watts_per_photon = 0;  ///< of its photons [W]; trace_all_beams() finds it
+    /// Of light that photons do not complete: so many paths, as it is of all light that a caster has of a light, tell
     /// how much of it would come to receivers.
     std::uint64_t sampled_photons = 0;
+    double watts_per_sample = 0;  ///< of these [W]; 0: there are none
     std::uint64_t seed = 1;
     int threads = 1;
 };

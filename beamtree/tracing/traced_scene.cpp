@@ -1,6 +1,7 @@
 #include "beamtree/tracing/traced_scene.h"
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 
 #include "beamtree/tracing/beam_lights.h"
@@ -17,16 +18,35 @@ constexpr double least_divided = 0x1p-10;
 // Paths that tell how much of the light that beams leave out would come to receivers.
 constexpr std::uint64_t sampled_photons = 20'000;
 
-double flux_of(const std::vector<RestPhoton>& photons) {
+double flux_of(std::span<const RestPhoton> photons) {
     double sum = 0;
     for (const RestPhoton& photon : photons) sum += static_cast<double>(photon.flux.mean());
     return sum;
 }
 
 // Light that is lost where polygons are too coarse is in no sample: it is taken to be like the rest.
-double missed_light(const FluxBalance& balance, double sampled) {
-    const double left_out = balance.pruned + balance.over_budget;
-    return left_out > 0 ? sampled * balance.lost / left_out : balance.lost;
+double missed_light(double lost, double left_out, double sampled) {
+    return left_out > 0 ? sampled * lost / left_out : lost;
+}
+
+// Sums up the photons of a sample and takes them out.
+double take_sample(std::vector<RestPhoton>& photons) {
+    const auto sample = std::stable_partition(photons.begin(), photons.end(),
+                                              [](const RestPhoton& one) { return !one.is_sample; });
+    const double sum = flux_of({sample, photons.end()});
+    photons.erase(sample, photons.end());
+    return sum;
+}
+
+// What photons carry is not lost.
+void settle_balance(const Completion& completion, double sampled, FluxBalance& balance) {
+    double left_out = balance.pruned + balance.over_budget;
+    if (completion.photons > 0) {
+        const double carried = completion.of_budget_alone ? balance.over_budget : left_out;
+        balance.lost -= carried;
+        left_out -= carried;
+    }
+    balance.missed = missed_light(balance.lost, left_out, sampled);
 }
 
 }  // namespace
@@ -60,7 +80,7 @@ BuildReport TracedScene::report() const {
     report.resolved["flux_share_pruned"] = balance.lit > 0 ? balance.pruned / balance.lit : 0;
     report.resolved["flux_share_over_budget"] =
         balance.lit > 0 ? balance.over_budget / balance.lit : 0;
-    if (is_completed) {
+    if (completion.photons > 0 && !(completion.of_budget_alone && rest.empty())) {
         report.counters["rest_photons"] = rest.size();
         report.resolved["flux_share_rest"] = balance.lit > 0 ? flux_of(rest) / balance.lit : 0;
     }
@@ -90,7 +110,7 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity, float footprint,
-                        std::uint64_t rest_photons) {
+                        Completion rest) {
     const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
     options.phase("beams");
     TracedScene traced;
@@ -107,21 +127,14 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
                                  .divided_share = divided_share,
                                  .max_beams = static_cast<std::uint64_t>(params.max_beams),
                                  .receiver_margin = near_receiver * scene.diameter() + footprint,
-                                 .rest_photons = rest_photons,
+                                 .rest = rest,
                                  .sampled_photons = sampled_photons};
     TracedBeams beams = trace_all_beams(scene, traced.casters, lights, settings, options);
     traced.sets = std::move(beams.sets);
     traced.rest = std::move(beams.rest);
-    traced.is_completed = rest_photons > 0;
+    traced.completion = rest;
     traced.balance = beams.balance;
-    // What photons carry is not lost.
-    if (traced.is_completed) {
-        traced.balance.lost -= traced.balance.pruned + traced.balance.over_budget;
-        traced.balance.missed = traced.balance.lost;
-    } else {
-        traced.balance.missed = missed_light(traced.balance, flux_of(traced.rest));
-        traced.rest.clear();
-    }
+    settle_balance(rest, take_sample(traced.rest), traced.balance);
     traced.drift = beams.drift;
     traced.unreceived = beams.unreceived;
     traced.least_light = beams.least_light;

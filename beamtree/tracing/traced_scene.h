@@ -15,7 +15,7 @@ struct TracedScene {
     std::vector<CasterMesh> casters;
     std::vector<BeamSet> sets;
     std::vector<RestPhoton> rest;  ///< light that beams leave out
-    bool is_completed = false;     ///< whether photons carry that light
+    Completion completion;         ///< what of that light photons carry
     FluxBalance balance;
     DriftAccount drift;
     double least_light =
@@ -31,11 +31,11 @@ struct TracedScene {
 };
 
 /// Phase "beams". Beams that pass all receivers, squares of a side `footprint` [m] round their points too, are not
-/// kept. The share of `rest_photons` paths that the light has which beams leave out completes it; 0: it is lost.
+/// kept. `rest` completes light that beams leave out; without, it is lost.
 /// Throws UnsupportedScene, in the name of `method`, where beams lose more than half of the light on its way to
 /// further events.
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity = Intensity::area,
-                        float footprint = 0, std::uint64_t rest_photons = 0);
+                        float footprint = 0, Completion rest = {});
 
 }  // namespace caustics::beamtree

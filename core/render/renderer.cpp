@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
 
 #include "core/base/error.h"
@@ -25,7 +26,9 @@ public:
                    adaptive_ ? scene.sampling().max_sample_count : options.samples_per_pixel),
           sampler_(scene, samples_, options),
           tiles_(tiles_of(scene.camera())),
-          workers_(static_cast<std::size_t>(std::max(1, options.threads))) {
+          workers_(static_cast<std::size_t>(std::max(1, options.threads))),
+          caustic_error_(static_cast<std::size_t>(scene.camera().width) *
+                         static_cast<std::size_t>(scene.camera().height)) {
         if (indirect == nullptr) return;
         indirect_layer_ = indirect->camera_layer(options_);
         if (!indirect_layer_) sampler_.ask_indirect(indirect);
@@ -60,6 +63,8 @@ public:
                 layers.write_caustic(pixel, layer->radiance[pixel], layer->standard_error[pixel]);
         finish(rendering, layers);
         take_counters(rendering.report.counters);
+        if (!layer && options_.samples_per_pixel > 1)
+            rendering.caustic_error = std::move(caustic_error_);
         if (layer) {
             rendering.report.light = layer->light;
             for (const auto& [name, count] : layer->counters)
@@ -240,9 +245,13 @@ private:
         sampler_.sample(tile, 0, options_.samples_per_pixel, sums, worker);
     }
 
-    void write(const Tile& tile, const std::vector<PixelSums>& sums, FilmLayers& layers) const {
-        for (std::size_t pixel = 0; pixel < sums.size(); ++pixel)
-            layers.write(samples_.pixel_number(tile.x(pixel), tile.y(pixel)), sums[pixel]);
+    void write(const Tile& tile, const std::vector<PixelSums>& sums, FilmLayers& layers) {
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            const std::size_t pixel = samples_.pixel_number(tile.x(i), tile.y(i));
+            layers.write(pixel, sums[i]);
+            caustic_error_[pixel] = static_cast<float>(std::sqrt(
+                sums[i].variance_of_mean(sums[i].caustic, sums[i].caustic_squares).mean()));
+        }
     }
 
     const Scene& scene_;
@@ -253,6 +262,7 @@ private:
     TileSampler sampler_;
     std::vector<Tile> tiles_;
     std::vector<TileWorker> workers_;
+    std::vector<float> caustic_error_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/caustic_estimator.h"
 #include "core/indirect_estimator.h"
@@ -22,6 +23,9 @@ struct RenderReport {
 struct Rendering {
     Film film;
     RenderReport report;
+    /// Standard error of each pixel's caustic, mean of channels, by the scatter of its samples; empty where pixels have one
+    /// sample, the method has several passes, or it connects light paths to the camera.
+    std::vector<float> caustic_error = {};
 };
 
 /// A method that goes through its precompute pass several times, each time with other random

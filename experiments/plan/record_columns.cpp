@@ -96,12 +96,12 @@ constexpr RecordColumn fixed_columns[] = {
     {"casters_with_face_normals", "/method/resolved/casters_with_face_normals", Kind::number, "",
      "casters whose mesh has no smooth normals"},
     {"flux_share_captured", "/method/resolved/flux_share_captured", Kind::number, "1",
-     "share of the light on casters that beams (and photons, with rest) carry to its last specular "
+     "share of the light on casters that beams (and photons of rest) carry to its last specular "
      "event; the rest is missing"},
     {"flux_share_pruned", "/method/resolved/flux_share_pruned", Kind::number, "1",
-     "share in paths too weak to be followed: missing, but for rest"},
+     "share in paths too weak to be followed: missing, but with rest=photons"},
     {"flux_share_over_budget", "/method/resolved/flux_share_over_budget", Kind::number, "1",
-     "share in beams that max_beams has no room for: missing, but for rest"},
+     "share in beams that max_beams has no room for: missing with rest=none"},
     {"flux_share_rest", "/method/resolved/flux_share_rest", Kind::number, "1",
      "of the light on casters, the share that photons bring to receivers in place of beams"},
     {"rest_photons_stored", "/counters/rest_photons", Kind::number, "", "those photons"},
@@ -178,6 +178,12 @@ constexpr RecordColumn fixed_columns[] = {
      "share of the caustic that beams do not follow to receivers"},
     {"caustic_missed_by_normals", "/light/missed_by_normals", Kind::number, "1",
      "share of the caustic that smooth normals lose"},
+    {"caustic_sum", "/light/picture/ratio", Kind::number, "1",
+     "the picture's caustic over what 50,000 or 400,000 light paths bring to it, where pixels see "
+     "one "
+     "receiver "
+     "alone; the record has it by receiver"},
+    {"caustic_sum_error", "/light/picture/error", Kind::number, "1", "standard error of it"},
     {"why_empty", "/why_empty", Kind::text, "", "why the caustic is black all over"},
     {"mesh_flaws", "/scene/mesh_flaws", Kind::text, "",
      "what is wrong with the scene's meshes: faces that point the wrong way, holes, double "

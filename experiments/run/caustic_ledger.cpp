@@ -92,7 +92,7 @@ std::string note_of_beams(const Method& method, const BuildReport& report, doubl
     const double pruned = resolved_or(report, "flux_share_pruned", 0);
     const double over_budget = resolved_or(report, "flux_share_over_budget", 0);
     const std::string beyond =
-        over_budget > 0
+        over_budget > 0 && !report.resolved.contains("flux_share_rest")
             ? fmt::format("{:.1f} % in beams that max_beams has no room for, ", 100 * over_budget)
             : "";
     const bool has_rest = method.name == "beamtree";
@@ -103,6 +103,19 @@ std::string note_of_beams(const Method& method, const BuildReport& report, doubl
         "one event alone)",
         method.name, 100 * share, 100 * lost, 100 * pruned, beyond,
         has_rest ? "rest=photons completes it; " : "");
+}
+
+/// Where photons carry what `max_beams` leaves out though nobody asked for them.
+std::optional<std::string> note_of_photons(const Method& method, const BuildReport& report) {
+    const double carried = resolved_or(report, "flux_share_over_budget", 0);
+    if (carried < least_share_of_note || !report.resolved.contains("flux_share_rest") ||
+        describe(method).value("rest", "") == "photons")
+        return {};
+    return fmt::format(
+        "max_beams has no room for beams with {:.1f} % of the light on casters: photons carry that "
+        "light, with their noise (a larger max_beams takes more memory; rest=none leaves the light "
+        "out)",
+        100 * carried);
 }
 
 }  // namespace
@@ -178,6 +191,7 @@ nlohmann::json to_json(const CausticLedger& ledger) {
         json[name] = watts;
         if (light.arrived > 0) json[std::string(name) + "_share"] = watts / light.arrived;
     }
+    if (ledger.picture) json["picture"] = to_json(*ledger.picture);
     return json;
 }
 
@@ -189,6 +203,9 @@ std::vector<std::string> notes_on_light(const Method& method, const BuildReport&
         all.push_back(note_of_cut(bounce_limit_of(method, report), cut));
     const double pruned = ledger.share(ledger.missed_by_pruning);
     if (pruned >= least_share_of_note) all.push_back(note_of_beams(method, report, pruned));
+    if (const auto photons = note_of_photons(method, report)) all.push_back(*photons);
+    if (!ledger.picture) return all;
+    if (const auto sum = note_on(*ledger.picture)) all.push_back(*sum);
     return all;
 }
 

@@ -10,6 +10,7 @@
 #include "core/light_ledger.h"
 #include "core/scene/scene.h"
 #include "experiments/run/method.h"
+#include "experiments/run/picture_light.h"
 
 namespace caustics::experiments {
 
@@ -31,6 +32,7 @@ struct CausticLedger {
     double missed_by_cut = 0;      ///< would arrive after more than `max_bounces` events [W]
     double missed_by_pruning = 0;  ///< would arrive, if beams were followed to their end [W]
     double missed_by_normals = 0;  ///< would arrive, if as much of it did as of other light [W]
+    std::optional<PictureLight> picture = {};  ///< of a picture: what its caustic adds up to
 
     /// All light that would arrive [W].
     double whole() const;

@@ -45,6 +45,18 @@ BuildReport of_indirect(const BuildReport& own) {
     return report;
 }
 
+std::optional<CausticLedger> ledger_of(const Scene& scene, const Method& method,
+                                       const BuildReport& report, const Rendering& rendering,
+                                       int threads) {
+    std::optional<CausticLedger> ledger = caustic_ledger(scene, method, report);
+    if (!ledger) return {};
+    const auto photons = report.counters.find("photons_stored");
+    ledger->picture = picture_light(
+        scene, rendering, method, bounce_limit_of(method, report),
+        photons == report.counters.end() ? 0.0 : static_cast<double>(photons->second), threads);
+    return ledger;
+}
+
 }  // namespace
 
 std::string command(const std::string& verb, const RunRequest& request) {
@@ -136,12 +148,11 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
 
     if (report.light) report.light = report.light->scaled(1.0 / pass_count(request.method));
     if (rendering.report.light) report.light = rendering.report.light;
-    RunResult result{std::move(rendering.film), std::move(report), {}, {}, {}, {}, {}};
-    result.counters = result.report.counters;
-    for (const auto& [name, count] : rendering.report.counters) result.counters[name] += count;
-    BuildReport all = result.report;
-    all.counters = result.counters;
-    result.ledger = caustic_ledger(scene, request.method, all);
+    BuildReport all = report;
+    for (const auto& [name, count] : rendering.report.counters) all.counters[name] += count;
+    auto ledger = ledger_of(scene, request.method, all, rendering, options.threads);
+    RunResult result{std::move(rendering.film), std::move(report), all.counters, {}, {}, {},
+                     std::move(ledger)};
     result.notes = notes(scene, request.method, all, result.ledger);
     std::ranges::copy(notes_on_picture(request.method, request.indirect, options),
                       std::back_inserter(result.notes));

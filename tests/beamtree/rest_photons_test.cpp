@@ -29,7 +29,7 @@ TracedScene traced(const Scene& scene, const BeamParams& params, std::uint64_t p
     RunOptions options;
     options.threads = threads;
     options.seed = seed;
-    return trace_scene(scene, "beams", params, options, Intensity::area, 0, photons);
+    return trace_scene(scene, "beams", params, options, Intensity::area, 0, {photons});
 }
 
 // By beams that have left the ball [W].
@@ -154,13 +154,33 @@ TEST(RestPhotons, CompleteTheLightOfPoints) {
     };
     const double all = light();
     params.max_beams = 100;
+    params.rest = BeamTreeParams::Rest::none;
     EXPECT_LT(light(), 0.9 * all);
     const std::uint64_t of_beams = bytes;
-    params.rest = BeamTreeParams::Rest::photons;
     params.rest_photons = 30'000;
-    // The focus, of a few cells, is sampled by the grid in one and blurred by discs in the other.
-    EXPECT_NEAR(light() / all, 1, 0.03);
-    EXPECT_GT(bytes, of_beams + 1'000 * sizeof(Vec3));
+    for (const auto rest : {BeamTreeParams::Rest::max_beams, BeamTreeParams::Rest::photons}) {
+        params.rest = rest;
+        // The focus, of a few cells, is sampled by the grid in one and blurred by discs in the other.
+        EXPECT_NEAR(light() / all, 1, 0.03);
+        EXPECT_GT(bytes, of_beams + 1'000 * sizeof(Vec3));
+    }
+}
+
+// Light that prune leaves out is lost, and told, where photons carry that of `max_beams` alone.
+TEST(RestPhotons, CarryLightBeyondTheBudgetAlone) {
+    const Scene scene(glass_ball(16));
+    BeamParams params = params_of(4);
+    params.prune = 0.1;
+    params.max_beams = 300;
+    const TracedScene few = trace_scene(scene, "beams", params, {}, Intensity::area, 0,
+                                        {.photons = 200'000, .of_budget_alone = true});
+    EXPECT_GT(few.balance.pruned, 0.005 * few.balance.lit);
+    EXPECT_GT(few.balance.over_budget, 0.05 * few.balance.lit);
+    EXPECT_NEAR(brought(few) / few.balance.over_budget, 1, 0.05);
+    EXPECT_NEAR(few.balance.lost, few.balance.pruned, 1e-3 * few.balance.lit);
+    // In a room all that is pruned would arrive.
+    EXPECT_NEAR(few.balance.missed / few.balance.lost, 1, 0.1);
+    for (const RestPhoton& photon : few.rest) EXPECT_FALSE(photon.is_sample);
 }
 
 TEST(RestPhotons, AreTheSameWithAnyThreads) {

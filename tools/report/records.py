@@ -31,7 +31,7 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "reference_indirect_stderr", "light_sent", "light_arrived", "light_cut", "light_pruned", "light_misdirected",
             "light_absorbed", "light_escaped", "light_cut_share", "light_pruned_share", "light_misdirected_share",
             "light_absorbed_share", "light_escaped_share", "caustic_missed_by_cut", "caustic_missed_by_pruning",
-            "caustic_missed_by_normals")
+            "caustic_missed_by_normals", "caustic_sum", "caustic_sum_error")
 RUN = ("picture_hash", "elapsed_s", "finished", "host", "cpu", "load_average", "other_cores", "jobs", "timeout_s",
        "memory_limit_bytes", "message", "why_empty", "mesh_flaws")  # of one run of a trial
 NOT_SWEPT = MEASURES + FIXED_PARAMETERS + OPTIONAL_PARAMETERS + RUN
@@ -49,7 +49,7 @@ CPU_PARTS = BUILD + INDIRECT + QUERY
 # Colours of one wavelength have channels below 0, and so may means of pictures; a share that is what others leave of 1 may be below
 # 0 by rounding, and light that is absorbed on average by chance. All other numbers count or measure something.
 SIGNED = ("alpha", "bias", "mean_ratio", "mask_mean_ratio", "indirect_mean_ratio", "leak_energy", "reference_mean",
-          "reference_indirect_mean", "flux_share_captured", "light_absorbed", "light_absorbed_share")
+          "reference_indirect_mean", "flux_share_captured", "light_absorbed", "light_absorbed_share", "caustic_sum")
 
 # Light that the caustic lacks, as a share of the caustic with it; told from 1 % on.
 MISSED = {"caustic_missed_by_cut": "cut at max_bounces", "caustic_missed_by_pruning": "in beams that are not followed",

@@ -200,11 +200,15 @@ TEST(Knobs, OfBeamsOfSeveralEvents) {
     EXPECT_LT(4 * count(strong, "beams"), 3 * count(usual, "beams"));
     EXPECT_LT(strong.mean(), usual.mean() - 1e-3);
     EXPECT_GT(strong.mean(), 0.95 * usual.mean());
-    const Answer few = beams({"mesh_resolution=8", "intensity=area", "max_beams=200"}, "slab");
+    const Answer few =
+        beams({"mesh_resolution=8", "intensity=area", "max_beams=200", "rest=none"}, "slab");
     EXPECT_LT(count(few, "beams"), count(usual, "beams"));
     EXPECT_LT(few.mean(), usual.mean());
     EXPECT_EQ(beams({"mesh_resolution=8", "intensity=area", "max_beams=900000"}, "slab").mean(),
               usual.mean());
+    // Photons carry what max_beams leaves out by themselves.
+    EXPECT_GT(beams({"mesh_resolution=8", "intensity=area", "max_beams=200"}, "slab").mean(),
+              few.mean());
     const Answer whole =
         beams({"mesh_resolution=8", "intensity=area", "max_beams=200", "rest=photons"}, "slab");
     EXPECT_GT(whole.mean(), few.mean());

@@ -420,6 +420,24 @@ TEST(Notes, SayWhereTheLightThatBeamsLoseIs) {
     EXPECT_FALSE(any_holds(lost(0), {"max_beams"}));
 }
 
+TEST(Notes, SayThatPhotonsCarryWhatMaxBeamsLeavesOut) {
+    const std::vector<std::string> few = {"mesh_resolution=16", "max_beams=200", "max_bounces=2"};
+    SceneDesc ball = flat_mirror();
+    ball.shapes[0] = support::sphere("ball", {0, 0, 0.25}, 0.15, support::glass(1.5F));
+    const std::vector<std::string> words = {"max_beams has no room", "photons carry"};
+    EXPECT_TRUE(any_holds(notes_of(ball, "beamtree", few), words));
+    EXPECT_FALSE(
+        any_holds(notes_of(ball, "beamtree", {"mesh_resolution=16", "max_bounces=2"}), words));
+    std::vector<std::string> asked = few;
+    asked.emplace_back("rest=photons");
+    EXPECT_FALSE(any_holds(notes_of(ball, "beamtree", asked), words));
+    std::vector<std::string> none = few;
+    none.emplace_back("rest=none");
+    const std::vector<std::string> lost = notes_of(ball, "beamtree", none);
+    EXPECT_FALSE(any_holds(lost, words));
+    EXPECT_TRUE(any_holds(lost, {"loses", "max_beams has no room"}));
+}
+
 TEST(Notes, NameParametersThatMakeNoDifference) {
     const std::vector<std::string> given = {"polygons=quads", "light_samples=3",
                                             "mesh_resolution=9"};
