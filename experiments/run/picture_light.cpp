@@ -114,12 +114,10 @@ std::vector<Sums> sums_of(const Scene& scene, const Rendering& rendering, const 
 
 // Beside so many light paths.
 std::optional<PictureLight> light_beside(std::uint64_t paths, const Scene& scene,
-                                         const Rendering& rendering, int max_bounces,
-                                         double photons, int threads) {
+                                         const Rendering& rendering, double photons, int threads) {
     RunOptions options;
     options.threads = threads;
-    const auto traced =
-        build(scene, LightTraceParams{.paths = paths, .max_bounces = max_bounces}, options);
+    const auto traced = build(scene, LightTraceParams{.paths = paths}, options);
     const std::optional<CameraLayer> layer = traced->camera_layer(options);
     const std::vector<Sums> sums =
         sums_of(scene, rendering, *layer, receivers_of_pixels(scene, threads));
@@ -151,13 +149,11 @@ bool is_in_doubt(const ReceiverLight& all) {
 }  // namespace
 
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,
-                                          const Method& method, int max_bounces, double photons,
-                                          int threads) {
+                                          const Method& method, double photons, int threads) {
     if (!method.facts().has_caustic || method.name == "lighttrace") return {};
-    const auto light =
-        light_beside(paths_of_survey, scene, rendering, max_bounces, photons, threads);
+    const auto light = light_beside(paths_of_survey, scene, rendering, photons, threads);
     if (!light || !is_in_doubt(light->all)) return light;
-    return light_beside(paths_of_doubt, scene, rendering, max_bounces, photons, threads);
+    return light_beside(paths_of_doubt, scene, rendering, photons, threads);
 }
 
 nlohmann::json to_json(const PictureLight& light) {

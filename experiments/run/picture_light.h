@@ -29,13 +29,12 @@ struct PictureLight {
     ReceiverLight all;
 };
 
-/// The picture's sums beside those of 50,000 light paths under the same limit of events, of 400,000 where these leave a difference open. None for `lighttrace`, whose
+/// The picture's sums beside those of 50,000 light paths of up to 1,000 events, of 400,000 where these leave a difference open. None for `lighttrace`, whose
 /// picture such paths are, and where no path came to a pixel that sees one receiver alone. `photons` is how many photons
 /// the picture is made of, or 0. Where the rendering has no errors of pixels, differences between neighbours stand for
 /// them. The same for any number of threads.
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,
-                                          const Method& method, int max_bounces, double photons,
-                                          int threads);
+                                          const Method& method, double photons, int threads);
 
 /// By receiver: "picture", "paths", "ratio" and "error"; those of all under "ratio" and "error".
 nlohmann::json to_json(const PictureLight& light);

@@ -52,7 +52,7 @@ std::optional<CausticLedger> ledger_of(const Scene& scene, const Method& method,
     if (!ledger) return {};
     const auto photons = report.counters.find("photons_stored");
     ledger->picture = picture_light(
-        scene, rendering, method, bounce_limit_of(method, report),
+        scene, rendering, method,
         photons == report.counters.end() ? 0.0 : static_cast<double>(photons->second), threads);
     return ledger;
 }

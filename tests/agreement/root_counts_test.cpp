@@ -266,7 +266,19 @@ struct RootScore {
 // Beside a fold, within this of its own size, positions of a float tell neither the number of rays nor their light.
 constexpr double too_near_a_fold = 1e-3;
 
-RootScore score(KnownScene known, std::size_t count, int side) {
+std::vector<Vec2d> random_places(const KnownScene& known, std::size_t count) {
+    Rng rng(11, Stage::test, 3);
+    const auto along = [&] { return known.half_floor * (2 * static_cast<double>(rng.next()) - 1); };
+    std::vector<Vec2d> places;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = along();
+        places.emplace_back(x, along());
+    }
+    return places;
+}
+
+RootScore score(KnownScene known, std::vector<Vec2d> places, int side) {
+    const std::size_t count = places.size();
     const std::size_t floor = known.desc.shapes.size() - 1;
     const Scene scene(std::move(known.desc));
     beamtree::BeamTreeParams params;
@@ -274,15 +286,11 @@ RootScore score(KnownScene known, std::size_t count, int side) {
     params.max_bounces = known.events;
     params.prune = 0;  // which leaves out the faint light near a ball's rim
     const auto beams = build(scene, params, {});
-    Rng rng(11, Stage::test, 3);
     std::vector<ReceiverPoint> points;
-    std::vector<Vec2d> places;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double x = known.half_floor * (2 * static_cast<double>(rng.next()) - 1);
-        const double y = known.half_floor * (2 * static_cast<double>(rng.next()) - 1);
-        points.push_back(
-            support::probe(scene, static_cast<std::uint32_t>(floor), {x, y, 0}, Vec3d::UnitZ(), 0));
-        places.push_back(points.back().position.head<2>().cast<double>());
+    for (Vec2d& place : places) {
+        points.push_back(support::probe(scene, static_cast<std::uint32_t>(floor),
+                                        {place.x(), place.y(), 0}, Vec3d::UnitZ(), 0));
+        place = points.back().position.head<2>().cast<double>();
     }
     const std::vector<LightAtPoint> truth = brute_force_light(known.maps, side, places);
     RootScore score{.points = count};
@@ -322,10 +330,24 @@ std::vector<KnownScene> known_scenes() {
 TEST(RootCounts, AreThoseOfBruteForce) {
     for (KnownScene& known : known_scenes()) {
         const std::string name = known.name;
-        const RootScore found = score(std::move(known), 500, 500);
+        const std::vector<Vec2d> places = random_places(known, 500);
+        const RootScore found = score(std::move(known), places, 500);
         EXPECT_EQ(found.wrong_counts, 0U) << name;
         EXPECT_EQ(found.wrong_light, 0U) << name;
         EXPECT_LT(found.folds, found.points / 50) << name;
+    }
+}
+
+// Where the model of a polygon's image leads to none of its rays, or to one of two.
+TEST(RootCounts, AreRightBesideCusps) {
+    const std::vector<Vec2d> of_seventh = {
+        {0.717419863, 0.845245719}, {0.309503645, -0.590538502}, {-0.284892023, 0.192864671}};
+    const std::vector<Vec2d> of_another = {{-0.491430789, 0.820110381}};
+    for (const auto& [seed, places] : {std::pair{7, of_seventh}, {49, of_another}}) {
+        const RootScore found = score(pool(static_cast<std::uint64_t>(seed)), places, 1000);
+        EXPECT_EQ(found.rays, 3 * places.size()) << seed;
+        EXPECT_EQ(found.rays_found, found.rays) << seed;
+        EXPECT_EQ(found.wrong_light, 0U) << seed;
     }
 }
 
@@ -336,7 +358,8 @@ TEST(RootCounts, DISABLED_TableOfManyPoints) {
     std::printf("|---|--:|--:|--:|--:|--:|--:|--:|\n");
     for (KnownScene& known : known_scenes()) {
         const std::string name = known.name;
-        const RootScore s = score(std::move(known), 10'000, 2000);
+        const std::vector<Vec2d> places = random_places(known, 10'000);
+        const RootScore s = score(std::move(known), places, 2000);
         std::printf("| %s | %zu | %zu | %zu | %zu | %zu | %zu | %.5f |\n", name.c_str(), s.points,
                     s.rays, s.rays_found, s.wrong_counts, s.wrong_light, s.folds, s.mean_ratio);
         std::fflush(stdout);

@@ -50,8 +50,7 @@ void scale(const Scene& scene, float factor, bool on_step, Rendering& picture) {
 }
 
 PictureLight light_of(const Scene& scene, const Rendering& picture, int threads = 1) {
-    return picture_light(scene, picture, parse_method("pathtrace", parameters_node({})), 1000, 0,
-                         threads)
+    return picture_light(scene, picture, parse_method("pathtrace", parameters_node({})), 0, threads)
         .value();
 }
 
@@ -102,7 +101,7 @@ TEST(PictureLight, CountsTheScatterOfPhotons) {
     const Rendering picture = traced_picture(scene);
     const Method method = parse_method("photonmap", parameters_node({}));
     const auto error = [&](double photons) {
-        return picture_light(scene, picture, method, 1000, photons, 1)->all.error;
+        return picture_light(scene, picture, method, photons, 1)->all.error;
     };
     EXPECT_GT(error(100), 0.1);
     EXPECT_LT(error(1e9), 0.015);
@@ -118,14 +117,13 @@ TEST(PictureLight, IsNoneWhereItSaysNothing) {
     const Scene scene(floor_and_step());
     const Rendering picture = traced_picture(scene);
     EXPECT_FALSE(
-        picture_light(scene, picture, parse_method("lighttrace", parameters_node({})), 1000, 0, 1));
-    EXPECT_FALSE(
-        picture_light(scene, picture, parse_method("none", parameters_node({})), 1000, 0, 1));
+        picture_light(scene, picture, parse_method("lighttrace", parameters_node({})), 0, 1));
+    EXPECT_FALSE(picture_light(scene, picture, parse_method("none", parameters_node({})), 0, 1));
     SceneDesc away = floor_and_step();
     away.camera.to_world = Transform(Eigen::Translation3d(0, 0, 2.5));
     const Scene unseen(away);
     EXPECT_FALSE(
-        picture_light(unseen, picture, parse_method("pathtrace", parameters_node({})), 1000, 0, 1));
+        picture_light(unseen, picture, parse_method("pathtrace", parameters_node({})), 0, 1));
 }
 
 }  // namespace
