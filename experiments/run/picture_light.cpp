@@ -22,7 +22,7 @@ constexpr std::uint32_t no_receiver = ~std::uint32_t{0};
 constexpr std::size_t rows_together = 8;
 
 /// The receiver that is seen through a film point; none where something else is.
-std::uint32_t receiver_at(const Scene& scene, double x, double y) {
+std::uint32_t receiver_through(const Scene& scene, double x, double y) {
     const Camera& camera = scene.camera();
     const std::optional<SurfacePoint> hit =
         scene.intersect({camera.position(), camera.direction(x, y)});
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> receivers_of_pixels(const Scene& scene, int threads) 
     std::vector<std::uint32_t> corners(across * (height + 1));
     parallel_chunks(threads, height + 1, rows_together, [&](const Chunk& rows) {
         for (std::size_t i = rows.first * across; i < rows.end * across; ++i)
-            corners[i] = receiver_at(scene, static_cast<double>(i % across),
+            corners[i] = receiver_through(scene, static_cast<double>(i % across),
                                      static_cast<double>(i / across));
     });
     std::vector<std::uint32_t> receivers(width * height);

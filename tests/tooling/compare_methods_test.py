@@ -3,6 +3,7 @@
 Exits with 77 where SciPy is missing.
 """
 import csv
+import json
 import math
 import os
 import pathlib
@@ -22,7 +23,7 @@ except ImportError as error:
     sys.exit(77)
 
 import compare_methods as tool
-from report import intervals
+from report import intervals, records
 
 COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "isa", "photons_stored", "nearest", "alpha",
            "mesh_resolution", "render_cpu_s", "indirect_cpu_s", "total_s", "rmse", "relmse", "variance", "mean_ratio", "reference",
@@ -67,6 +68,24 @@ class Comparison(unittest.TestCase):
         self.assertAlmostEqual(float(row["reference_square"]), 1e-4)
         self.assertAlmostEqual(float(row["bias_square"]), 0.25 - 0.125 - 1e-4)
         self.assertAlmostEqual(float(row["efficiency"]), 4)
+
+    def test_an_unknown_measure_is_no_swept_parameter(self):
+        def cells(column, value, plan=None):
+            with tempfile.TemporaryDirectory() as folder:
+                some = [{**row, column: value(row)} for row in rows("a", [1, 2], [0.5, 0.3])]
+                with open(os.path.join(folder, "records.csv"), "w", newline="", encoding="utf-8") as file:
+                    writer = csv.DictWriter(file, (*COLUMNS, column))
+                    writer.writeheader()
+                    writer.writerows(some)
+                if plan is not None:
+                    pathlib.Path(folder, "plan.json").write_text(json.dumps({"swept": plan}), encoding="utf-8")
+                return records.read(os.path.join(folder, "records.csv"))
+        psnr = cells("psnr", lambda row: repr(30 + int(row["seed"]) + float(row["rmse"])))
+        self.assertEqual([len(cell.records) for cell in psnr.cells], [5, 5])
+        self.assertNotIn("psnr", psnr.parameters)
+        self.assertIn("waves", cells("waves", lambda row: row["effort"]).parameters)
+        # The plan knows, whatever the values are.
+        self.assertNotIn("waves", cells("waves", lambda row: row["effort"], ["effort"]).parameters)
 
     def test_a_bias_that_chance_explains_is_marked(self):
         clear, unclear = rows("a", [1], [0.5], scatter=0), rows("b", [1], [0.5], scatter=1)

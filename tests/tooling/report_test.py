@@ -397,6 +397,19 @@ class Page(unittest.TestCase):
         self.assertIn("the caustic lacks 11.7 % cut at max_bounces.",
                       record_tables.summary_md(records.read(self.sweep / "records.csv")))
 
+    def test_a_sum_that_is_none_of_chance_is_told(self):
+        def missed(ratio, error):
+            rows = [{**row, "caustic_sum": ratio, "caustic_sum_error": error} for row in self.rows]
+            with open(self.sweep / "records.csv", "w", newline="", encoding="utf-8") as file:
+                writer = csv.DictWriter(file, rows[0])
+                writer.writeheader()
+                writer.writerows(rows)
+            return {text.split(": ")[1] for text in self.page(self.sweep)["scenes"][0]["missed"]}
+        self.assertEqual(missed("1.083", "0.02"), {"the picture has 1.08 of the light that arrives where the camera sees it"})
+        self.assertEqual(missed("0.87", "0.02"), {"the picture has 0.87 of the light that arrives where the camera sees it"})
+        self.assertEqual(missed("1.083", "0.03"), set())
+        self.assertEqual(missed("1.009", "0.001"), set())
+
     def test_trials_that_are_not_done_are_named_with_their_reason(self):
         self.rows[0].update(status="unsupported", message="no way")
         sweep.write_table(self.sweep, self.rows)

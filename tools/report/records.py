@@ -1,12 +1,14 @@
 """records.csv: its rows, checked, and grouped into cells.
 
 A *record* is one trial that is done. A *cell* is every record that differs only in seed and repeat; medians and ranges
-are always taken over a cell. The swept keys are the columns after `code_version` that are not known below as
-something else; an empty field means that a quantity does not apply to its row.
+are always taken over a cell. The swept keys are those columns after `code_version` that plan.json names, or that are not known
+below as something else and are no measures; an empty field means that a quantity does not apply to its row.
 """
 import csv
 import dataclasses
+import json
 import math
+import os
 import re
 import statistics
 
@@ -55,6 +57,7 @@ SIGNED = ("alpha", "bias", "mean_ratio", "mask_mean_ratio", "indirect_mean_ratio
 MISSED = {"caustic_missed_by_cut": "cut at max_bounces", "caustic_missed_by_pruning": "in beams that are not followed",
           "caustic_missed_by_normals": "lost by shading normals"}
 LEAST_MISSED = 0.01
+ERRORS_OF_SUM = 3  # from which a picture's sum is none of chance
 
 # What each metric is, as captions and axes say it: x the picture, r the reference, over all reached pixels and channels
 # of the caustic layer; radiance is in linear sRGB.
@@ -138,7 +141,18 @@ def missed_text(rows):
         if values and statistics.median(values) >= LEAST_MISSED:
             medians[why] = statistics.median(values)
     told = ", ".join(f"{100 * share:.1f} % {why}" for why, share in medians.items())
-    return f"the caustic lacks {told}" if told else ""
+    return "; ".join(text for text in (f"the caustic lacks {told}" if told else "", sum_text(rows)) if text)
+
+
+def sum_text(rows):
+    """Where the caustic of these records adds up to more or less than arrives, by 1 % and three standard errors."""
+    sums = [(float(row["caustic_sum"]), float(row["caustic_sum_error"])) for row in rows if row.get("caustic_sum") and row.get("caustic_sum_error")]
+    if not sums:
+        return ""
+    ratio, error = (statistics.median(values) for values in zip(*sums))
+    if abs(ratio - 1) < max(LEAST_MISSED, ERRORS_OF_SUM * error):
+        return ""
+    return f"the picture has {ratio:.2f} of the light that arrives where the camera sees it"
 
 
 def by_seed(rows):
@@ -183,7 +197,8 @@ def read(path):
     if not done:
         counts = ", ".join(f"{count} {status}" for status, count in left_out.items())
         raise RecordsError(f"{path}: no row has the status done ({counts})")
-    swept = [name for name in header[header.index("code_version") + 1:] if name not in NOT_SWEPT]
+    unknown = [name for name in header[header.index("code_version") + 1:] if name not in NOT_SWEPT]
+    swept = swept_columns(path, unknown, [row for _, row in done])
     parameters = [name for name in ("photons", "emitted") if name in swept] + list(FIXED_PARAMETERS[:3])
     parameters += [name for name in swept if name not in parameters]
     parameters += [name for name in OPTIONAL_PARAMETERS if name in header] + list(FIXED_PARAMETERS[3:])
@@ -194,6 +209,28 @@ def read(path):
     order = lambda cell: [natural(cell.scene), natural(cell.method)] + [
         natural(cell.parameters.get(name, "-inf")) for name in present]
     return Records(sorted(cells, key=order), present, left_out)
+
+
+def swept_columns(path, unknown, rows):
+    """Those of the columns that the sweep varied: as plan.json beside the table says, and else those that are no measures. A measure
+    differs from seed to seed and is not needed to tell a cell's rows apart."""
+    try:
+        with open(os.path.join(os.path.dirname(path), "plan.json"), encoding="utf-8") as file:
+            planned = json.load(file)["swept"]
+        return [name for name in unknown if name in planned or name.removeprefix("method_") in planned]
+    except (OSError, ValueError, KeyError, TypeError):
+        return [name for name in unknown if not is_measure(name, unknown, rows)]
+
+
+def is_measure(column, unknown, rows):
+    others = [name for name in ("scene", "method", *FIXED_PARAMETERS, *OPTIONAL_PARAMETERS, *unknown) if name != column]
+    groups = {}
+    for row in rows:
+        groups.setdefault(tuple(row.get(name) for name in others), []).append(row)
+    runs = [[(row["seed"], row["repeat"]) for row in group] for group in groups.values()]
+    if any(len(set(group)) < len(group) for group in runs):
+        return False
+    return any(len({row[column] for row in group}) > 1 for group in groups.values())
 
 
 def read_rows(path):
