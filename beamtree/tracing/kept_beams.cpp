@@ -14,7 +14,8 @@ std::uint64_t leave_out_unreceived(std::vector<bool>& kept, const BeamSet& set,
     std::vector<std::uint64_t> counts(chunk_count(kept.size(), together));
     parallel_chunks(settings.threads, kept.size(), together, [&](const Chunk& chunk) {
         for (std::size_t i = chunk.first; i < chunk.end; ++i) {
-            if (!kept[i] || may_meet_receiver(boxes, set, set.beams[i], *settings.receiver_margin))
+            if (!kept[i] || may_meet_receiver(boxes, set, set.beams[i], *settings.receiver_margin,
+                                              settings.intensity == Intensity::refined))
                 continue;
             kept[i] = false;
             ++counts[chunk.index];

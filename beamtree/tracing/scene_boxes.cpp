@@ -16,8 +16,8 @@ SceneBoxes scene_boxes(const Scene& scene) {
 
 // All that beams light is a mean of places on their rays: where these all lie off one side of a box and none comes
 // back, so does it.
-bool may_meet_receiver(const SceneBoxes& boxes, const BeamSet& set, const Beam& beam,
-                       float margin) {
+bool may_meet_receiver(const SceneBoxes& boxes, const BeamSet& set, const Beam& beam, float margin,
+                       bool is_curved) {
     Box places;
     Box directions;
     for (const std::uint32_t corner : beam.corners) {
@@ -27,6 +27,10 @@ bool may_meet_receiver(const SceneBoxes& boxes, const BeamSet& set, const Beam& 
             places.extend(ray.position);
             directions.extend(ray.direction);
         }
+    }
+    if (is_curved) {
+        const Vec3 parted = directions.sizes();
+        directions = Box(directions.min() - parted, directions.max() + parted);
     }
     const Vec3 room = Vec3::Constant(margin);
     return std::ranges::any_of(boxes.receivers, [&](const Box& box) {

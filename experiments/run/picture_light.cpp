@@ -40,7 +40,7 @@ std::vector<std::uint32_t> receivers_of_pixels(const Scene& scene, int threads) 
     parallel_chunks(threads, height + 1, rows_together, [&](const Chunk& rows) {
         for (std::size_t i = rows.first * across; i < rows.end * across; ++i)
             corners[i] = receiver_through(scene, static_cast<double>(i % across),
-                                     static_cast<double>(i / across));
+                                          static_cast<double>(i / across));
     });
     std::vector<std::uint32_t> receivers(width * height);
     for (std::size_t i = 0; i < receivers.size(); ++i) {
