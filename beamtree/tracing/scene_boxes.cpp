@@ -29,7 +29,8 @@ bool may_meet_receiver(const SceneBoxes& boxes, const BeamSet& set, const Beam& 
         }
     }
     if (is_curved) {
-        const Vec3 parted = directions.sizes();
+        // Of second order: little where rays part little.
+        const Vec3 parted = directions.sizes().norm() / 2 * directions.sizes();
         directions = Box(directions.min() - parted, directions.max() + parted);
     }
     const Vec3 room = Vec3::Constant(margin);

@@ -18,7 +18,7 @@ struct SceneBoxes {
 SceneBoxes scene_boxes(const Scene& scene);
 
 /// Whether a beam, however far it goes, may come within `margin` [m] of a receiver's bounds; where it says no, no
-/// point there is inside the beam on any plane. `is_curved`: its rays may go beyond those of its corners, by as much as these part.
+/// point there is inside the beam on any plane. `is_curved`: its rays may go beyond those of its corners, the farther the more these part.
 bool may_meet_receiver(const SceneBoxes& boxes, const BeamSet& set, const Beam& beam, float margin,
                        bool is_curved = false);
 
