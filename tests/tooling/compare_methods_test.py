@@ -70,11 +70,11 @@ class Comparison(unittest.TestCase):
         self.assertAlmostEqual(float(row["efficiency"]), 4)
 
     def test_an_unknown_measure_is_no_swept_parameter(self):
-        def cells(column, value, plan=None):
+        def cells(column, value, plan=None, more={}):
             with tempfile.TemporaryDirectory() as folder:
-                some = [{**row, column: value(row)} for row in rows("a", [1, 2], [0.5, 0.3])]
+                some = [{**row, column: value(row), **{name: other(row) for name, other in more.items()}} for row in rows("a", [1, 2], [0.5, 0.3])]
                 with open(os.path.join(folder, "records.csv"), "w", newline="", encoding="utf-8") as file:
-                    writer = csv.DictWriter(file, (*COLUMNS, column))
+                    writer = csv.DictWriter(file, (*COLUMNS, column, *more))
                     writer.writeheader()
                     writer.writerows(some)
                 if plan is not None:
@@ -83,6 +83,9 @@ class Comparison(unittest.TestCase):
         psnr = cells("psnr", lambda row: repr(30 + int(row["seed"]) + float(row["rmse"])))
         self.assertEqual([len(cell.records) for cell in psnr.cells], [5, 5])
         self.assertNotIn("psnr", psnr.parameters)
+        # Nor are two of them, which tell every row apart by each other.
+        two = cells("ssim", lambda row: repr(1 / (2 + int(row["seed"]) + float(row["rmse"]))), more={"psnr": lambda row: row["rmse"]})
+        self.assertEqual([len(cell.records) for cell in two.cells], [5, 5])
         self.assertIn("waves", cells("waves", lambda row: row["effort"]).parameters)
         # The plan knows, whatever the values are.
         self.assertNotIn("waves", cells("waves", lambda row: row["effort"], ["effort"]).parameters)

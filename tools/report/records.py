@@ -212,25 +212,25 @@ def read(path):
 
 
 def swept_columns(path, unknown, rows):
-    """Those of the columns that the sweep varied: as plan.json beside the table says, and else those that are no measures. A measure
-    differs from seed to seed and is not needed to tell a cell's rows apart."""
+    """Those of the columns that the sweep varied: as plan.json beside the table says, and else those that are no measures."""
     try:
         with open(os.path.join(os.path.dirname(path), "plan.json"), encoding="utf-8") as file:
             planned = json.load(file)["swept"]
         return [name for name in unknown if name in planned or name.removeprefix("method_") in planned]
     except (OSError, ValueError, KeyError, TypeError):
-        return [name for name in unknown if not is_measure(name, unknown, rows)]
+        return [name for name in unknown if not is_measure(name, rows)]
 
 
-def is_measure(column, unknown, rows):
-    others = [name for name in ("scene", "method", *FIXED_PARAMETERS, *OPTIONAL_PARAMETERS, *unknown) if name != column]
-    groups = {}
+def is_measure(column, rows):
+    """Where a method has several seeds, a value that was asked for is had by more than one of them; a measured one mostly is not."""
+    seeds, of_method = {}, {}
     for row in rows:
-        groups.setdefault(tuple(row.get(name) for name in others), []).append(row)
-    runs = [[(row["seed"], row["repeat"]) for row in group] for group in groups.values()]
-    if any(len(set(group)) < len(group) for group in runs):
-        return False
-    return any(len({row[column] for row in group}) > 1 for group in groups.values())
+        if row[column]:
+            seeds.setdefault((row["scene"], row["method"], row[column]), set()).add(row["seed"])
+            of_method.setdefault((row["scene"], row["method"]), set()).add(row["seed"])
+    shared = [len(seeds[row["scene"], row["method"], row[column]]) > 1 for row in rows
+              if row[column] and len(of_method[row["scene"], row["method"]]) > 1]
+    return bool(shared) and sum(shared) < len(shared) / 2
 
 
 def read_rows(path):
