@@ -8,13 +8,12 @@ BEFORE's with 16 events; and the mean light of AFTER's picture, and of BEFORE's 
 with the standard error over seeds.
 """
 
-import json
 import os
 import statistics
-import subprocess
 import sys
 import tempfile
 
+from mean_ratio import mean_ratio
 from timed_run import timed_run
 
 PATHS = 400_000
@@ -28,11 +27,6 @@ def render(program, scene, seed, params, picture):
     command = [program, "render", scene, "--method", "lighttrace", "--param", f"paths={PATHS}", "--seed", str(seed)]
     _, seconds = timed_run(command + [word for param in params for word in ("--param", param)] + ["-o", picture, *FILM])
     return seconds
-
-
-def mean_ratio(program, picture, reference):
-    result = subprocess.run([program, "compare", picture, reference, "--json"], check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)["metrics"]["mean_ratio"]
 
 
 def with_error(values):

@@ -7,13 +7,14 @@ Prints a Markdown table: for each scene, each number of photons and two kernels 
 36 samples a pixel over that of `lighttrace`, in pixels that `lighttrace` reaches, with the standard error over seeds of both.
 """
 
-import json
 import math
 import os
 import statistics
 import subprocess
 import sys
 import tempfile
+
+from mean_ratio import mean_ratio
 
 PHOTONS = (40_000, 400_000)
 SEEDS = range(1, 26)
@@ -25,11 +26,6 @@ TRUTH_SEEDS = range(101, 109)
 def render(program, scene, method, seed, params, picture):
     command = [program, "render", scene, "--method", method, "--seed", str(seed), "--spp", "36", "-o", picture]
     subprocess.run(command + [word for param in params for word in ("--param", param)], check=True, capture_output=True)
-
-
-def mean_ratio(program, picture, reference):
-    result = subprocess.run([program, "compare", picture, reference, "--json"], check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)["metrics"]["mean_ratio"]
 
 
 def mean_and_error(values):

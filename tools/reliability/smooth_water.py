@@ -32,14 +32,14 @@ def surface(x, y):
 
 
 def transmittance(cos_in, cos_out):
-    """Of unpolarised light."""
+    """The share of unpolarised light that goes into the water."""
     across = (cos_in - INDEX * cos_out) / (cos_in + INDEX * cos_out)
     along = (INDEX * cos_in - cos_out) / (INDEX * cos_in + cos_out)
     return 1 - (across**2 + along**2) / 2
 
 
 def mean_of_floor():
-    """By rays of equal power, row by row."""
+    """The floor's mean irradiance, by rays of equal power from all of the water."""
     edges = (numpy.arange(PLACES) + 0.5) / PLACES * 2 * HALF_WATER - HALF_WATER
     total = 0.0
     for y in edges:

@@ -7,12 +7,13 @@ Prints a Markdown table: for each case the caustic's light over that of `lighttr
 reaches), and the notes on light that `render` prints.
 """
 
-import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
+
+from mean_ratio import mean_ratio
 
 PATHS = 16_000_000
 FILM = ("--set", "/sensor/film/width=64", "--set", "/sensor/film/height=48", "--spp", "16")
@@ -25,11 +26,6 @@ def render(program, scene, method, params, picture):
     command = [program, "render", scene, "--method", method, "-o", picture, *FILM]
     done = subprocess.run(command + [word for param in params for word in ("--param", param)], check=True, capture_output=True, text=True)
     return [match[1] for line in (done.stdout + done.stderr).splitlines() if line.startswith("note:") and (match := TELLING.search(line))]
-
-
-def mean_ratio(program, picture, reference):
-    result = subprocess.run([program, "compare", picture, reference, "--json"], check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)["metrics"]["mean_ratio"]
 
 
 def main():
