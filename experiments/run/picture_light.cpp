@@ -18,7 +18,7 @@ constexpr std::uint64_t paths_of_doubt = 400'000;
 constexpr double least_excess = 0.01;
 constexpr double least_errors = 3;
 constexpr std::uint32_t no_receiver = ~std::uint32_t{0};
-// What threads take at a time.
+// Threads take so many rows at a time.
 constexpr std::size_t rows_together = 8;
 
 /// The receiver that is seen through a film point; none where something else is.
@@ -52,7 +52,7 @@ std::vector<std::uint32_t> receivers_of_pixels(const Scene& scene, int threads) 
     return receivers;
 }
 
-/// What pixels of one receiver add up to.
+/// The sums over the pixels of one receiver.
 struct Sums {
     double picture = 0;
     double paths = 0;
@@ -112,15 +112,16 @@ std::vector<Sums> sums_of(const Scene& scene, const Rendering& rendering, const 
     return sums;
 }
 
-// Beside so many light paths.
+// The sums of a picture and of so many light paths.
 std::optional<PictureLight> light_beside(std::uint64_t paths, const Scene& scene,
-                                         const Rendering& rendering, double photons, int threads) {
+                                         const Rendering& rendering,
+                                         const std::vector<std::uint32_t>& receivers,
+                                         double photons, int threads) {
     RunOptions options;
     options.threads = threads;
     const auto traced = build(scene, LightTraceParams{.paths = paths}, options);
     const std::optional<CameraLayer> layer = traced->camera_layer(options);
-    const std::vector<Sums> sums =
-        sums_of(scene, rendering, *layer, receivers_of_pixels(scene, threads));
+    const std::vector<Sums> sums = sums_of(scene, rendering, *layer, receivers);
     const auto arrived = layer->counters.find("photons_stored");
     const double more_noise = photons > 0 && arrived != layer->counters.end()
                                   ? static_cast<double>(arrived->second) / photons
@@ -139,7 +140,7 @@ std::optional<PictureLight> light_beside(std::uint64_t paths, const Scene& scene
     return light;
 }
 
-// Whether more paths may tell a difference that these leave open.
+// True where more paths may tell a difference that these leave open.
 bool is_in_doubt(const ReceiverLight& all) {
     constexpr double plain = 6;  // errors
     const double excess = std::abs(all.ratio() - 1);
@@ -151,9 +152,10 @@ bool is_in_doubt(const ReceiverLight& all) {
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,
                                           const Method& method, double photons, int threads) {
     if (!method.facts().has_caustic || method.name == "lighttrace") return {};
-    const auto light = light_beside(paths_of_survey, scene, rendering, photons, threads);
+    const std::vector<std::uint32_t> receivers = receivers_of_pixels(scene, threads);
+    const auto light = light_beside(paths_of_survey, scene, rendering, receivers, photons, threads);
     if (!light || !is_in_doubt(light->all)) return light;
-    return light_beside(paths_of_doubt, scene, rendering, photons, threads);
+    return light_beside(paths_of_doubt, scene, rendering, receivers, photons, threads);
 }
 
 nlohmann::json to_json(const PictureLight& light) {

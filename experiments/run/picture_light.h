@@ -29,8 +29,8 @@ struct PictureLight {
     ReceiverLight all;
 };
 
-/// The picture's sums beside those of 50,000 light paths of up to 1,000 events, of 400,000 where these leave a difference open. None for `lighttrace`, whose
-/// picture such paths are, and where no path came to a pixel that sees one receiver alone. `photons` is how many photons
+/// The picture's sums beside those of 50,000 light paths of up to 1,000 events, or of 400,000 where these leave a
+/// difference open. None for `lighttrace`, whose picture such paths are, and where no path came to a pixel that sees one receiver alone. `photons` is how many photons
 /// the picture is made of, or 0. Where the rendering has no errors of pixels, differences between neighbours stand for
 /// them. The same for any number of threads.
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,

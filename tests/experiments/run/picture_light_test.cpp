@@ -83,7 +83,7 @@ TEST(PictureLight, TellsHowMuchAPictureLacksAndWhere) {
     EXPECT_LT(light_of(scene, picture).all.ratio(), after.all.ratio());
 }
 
-// Of 0.5 % no note tells, of 5 % one does, whichever way.
+// A difference of 0.5 % has no note and one of 5 % has one, whichever way.
 TEST(PictureLight, IsNotedFromOnePercent) {
     const Scene scene(floor_and_step());
     for (const auto& [factor, noted] :
