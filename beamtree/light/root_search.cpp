@@ -102,10 +102,11 @@ bool RootSearch::find(std::uint32_t number, std::size_t triangle, const Vec3& po
         if (is_alone) look_from(middle);
     };
     for (const Vec2d& from : starts) look_round(from);
+    if (beam.has_dark_part) return true;
     if (!is_any_inside && model->is_uneven()) look_round(middle);
     if (!is_any_inside && model->folds())
         for (const Vec2d& from : ImageModel::everywhere()) look_round(from);
-    return is_any_inside || beam.has_dark_part || !model->surely_holds();
+    return is_any_inside || !model->surely_holds();
 }
 
 std::optional<RootSearch::Found> RootSearch::polish(const Image& image, Vec2d at) const {

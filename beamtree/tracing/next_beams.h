@@ -71,7 +71,7 @@ public:
     void count_search(const Piece& piece);
     /// Completes light that no beam carries on, and counts it, `flux` [W], by its cause.
     void leave_out(const LeftOut& part, double flux);
-    /// Whether photons take all that beams leave out.
+    /// True if photons take all that beams leave out.
     bool is_completed() const { return rest_.completes_all(); }
     /// Has photons take what no beam carries on.
     void complete(const LeftOut& part);

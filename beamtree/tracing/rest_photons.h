@@ -20,7 +20,8 @@ struct LeftOut {
     bool over_budget = false;    ///< because `max_beams` has no room for it
 };
 
-/// Traces light that beams leave out by photons, or a sample of it where it is not to be completed, from one caster in one light. Each begins at a random place of the
+/// Traces light that beams leave out by photons, from one caster in one light: all of it, or a sample where it is not to be
+/// completed. Each begins at a random place of the
 /// triangle, goes the beam's way, through the event, and from there on to receivers by Russian roulette. What
 /// arrives before the event belongs to the beam. So nothing counts twice, and the mean over seeds is what was left out,
 /// but where light of the triangle does not go the beam's way, as beams lose it too.
@@ -33,7 +34,7 @@ public:
     /// `settings` give the light of a photon and of one of a sample; without, there are none.
     RestPhotons(const Scene& scene, const LitCaster& surface, const TraceSettings& settings);
 
-    /// Whether all that is left out is light of the picture, and not only what `max_beams` has no room for.
+    /// True if all that is left out is light of the picture, and not only what `max_beams` has no room for.
     bool completes_all() const {
         return settings_.rest.photons > 0 && !settings_.rest.of_budget_alone;
     }

@@ -29,7 +29,7 @@ bool may_meet_receiver(const SceneBoxes& boxes, const BeamSet& set, const Beam& 
         }
     }
     if (is_curved) {
-        // Of second order: little where rays part little.
+        // The middle's ray is off the corners' by second order, which is little where these part little.
         const Vec3 parted = directions.sizes().norm() / 2 * directions.sizes();
         directions = Box(directions.min() - parted, directions.max() + parted);
     }

@@ -40,8 +40,8 @@ struct TraceSettings {
     std::optional<float> receiver_margin = {};
     Completion rest = {};
     double watts_per_photon = 0;  ///< of its photons [W]; trace_all_beams() finds it
-    /// Of light that photons do not complete: so many paths, as it is of all light that a caster has of a light, tell
-    /// how much of it would come to receivers.
+    /// Paths that tell how much of the light that photons do not complete would come to receivers: it takes its share of so
+    /// many, as it is of all light that a caster has of a light.
     std::uint64_t sampled_photons = 0;
     double watts_per_sample = 0;  ///< of these [W]; 0: there are none
     std::uint64_t seed = 1;
