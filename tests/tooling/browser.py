@@ -96,7 +96,7 @@ class Browser:
     def press(self, key, modifiers=0):
         """A key as a person presses it: what it types, and Alt = 1, Control = 2, Shift = 8 held."""
         text = key if len(key) == 1 else ""
-        codes = {"Enter": 13, "Tab": 9, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
+        codes = {"Enter": 13, "Tab": 9, "Escape": 27, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
         common = {"key": key, "modifiers": modifiers, "windowsVirtualKeyCode": codes.get(key, ord(key.upper()) if text else 0)}
         self.call("Input.dispatchKeyEvent", type="keyDown", text="\r" if key == "Enter" else text, **common)
         self.call("Input.dispatchKeyEvent", type="keyUp", **common)

@@ -76,6 +76,7 @@ class Report(unittest.TestCase):
 
     def settle(self):
         self.run_script(SETTLED)
+        self.browser.wait_for("!document.querySelector('[aria-busy]')")
 
     def press(self, *keys, modifiers=0):
         for key in keys:
@@ -260,8 +261,7 @@ class Report(unittest.TestCase):
         panes = self.run_script("viewer.panes.length")
         self.assertEqual(panes, 3)
         x, y = self.browser.place_of(".pane canvas", 0.25, 0.25)
-        self.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=-600)
-        self.settle()
+        self.turn_wheel((x, y), -600, modifiers=2)
         zoom = float(self.state("view").split(",")[2])
         self.assertGreater(zoom, 1.5)
         self.browser.drag((x, y), (x + 40, y + 20))
@@ -277,6 +277,118 @@ class Report(unittest.TestCase):
                 self.assertEqual(shown(), [shown()[0]] * len(shown()))
         self.press("m", "0")
         self.assertEqual(self.state("view"), "")
+
+    def turn_wheel(self, place, pixels, modifiers=0):
+        self.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=place[0], y=place[1], deltaX=0, deltaY=pixels, modifiers=modifiers)
+        self.settle()
+
+    def test_the_wheel_over_a_picture_scrolls_the_page(self):
+        for selector, ways in ((".pane canvas", (200, -200)), ("#strip .tile canvas", (200,))):  # the strip is the page's head
+            for pixels in ways:
+                with self.subTest(selector, pixels=pixels):
+                    place, before = self.browser.place_of(selector), self.run_script("scrollY")
+                    self.turn_wheel(place, pixels)
+                    self.browser.wait_for(f"(scrollY - {before}) * {pixels} > 0", seconds=5)
+                    self.assertEqual(self.state("view"), "")
+
+    def test_the_wheel_with_control_zooms_about_the_pointer(self):
+        place = self.browser.place_of(".pane canvas", 0.25, 0.5)
+        under_pointer = f"pixelAt(viewer.panes[0], {{clientX: {place[0]}, clientY: {place[1]}}})"
+        before, scrolled = self.run_script(under_pointer), self.run_script("scrollY")
+        self.turn_wheel(place, -400, modifiers=2)
+        self.close_to(float(self.state("view").split(",")[2]), math.exp(400 * 0.0015))
+        for found, wanted in zip(self.run_script(under_pointer), before):
+            self.assertAlmostEqual(found, wanted, delta=0.02)
+        self.turn_wheel(place, 4000, modifiers=2)
+        self.assertEqual((self.state("view"), self.run_script("scrollY")), ("", scrolled))
+        self.assertIn("Ctrl + wheel zooms", self.text("#viewer"))
+
+    def test_the_keys_are_shown_on_the_screen(self):
+        shown = """(() => { const box = byId("help").getBoundingClientRect(), within = [...document.querySelectorAll("#help dt")];
+            return byId("help").open && box.width > 0 && box.left >= 0 && box.top >= 0 && box.right <= innerWidth && box.bottom <= innerHeight
+              && within.length > 10 && byId("help").contains(document.elementFromPoint(box.left + 20, box.top + 20)); })()"""
+        for width, height in ((1600, 1000), (700, 500)):
+            self.browser.resize(width, height)
+            for place in (0, 1e6):
+                self.run_script(f"scrollTo(0, {place})")
+                self.assertFalse(self.run_script(shown))
+                self.press("?")
+                self.assertTrue(self.run_script(shown), f"{width} x {height}, scrolled to {place}")
+                before = self.state("mode")
+                self.press("m")
+                self.assertNotEqual(self.state("mode"), before, "keys work while they are shown")
+                self.press("Escape")
+                self.assertFalse(self.run_script("byId('help').open"))
+        self.browser.resize(1600, 1000)
+        self.click("#show-keys")
+        self.assertTrue(self.run_script(shown))
+        self.click("#hide-keys")
+        self.press("?", "?")
+        self.assertFalse(self.run_script("byId('help').open"))
+
+    # The parts that wait for pictures, and what of each differs between the scenes of this sweep.
+    WAITING = ("strip", "contest-text", "panes", "meaning", "scale", "probe-table", "probe-curve", "spread", "spectrum")
+    LOOKS = """(() => Object.fromEntries(%s.map((id) => { const own = getComputedStyle(byId(id));
+        return [id, {clear: Number(own.opacity) > 0.5, text: byId(id).textContent}]; })))()""" % json.dumps(WAITING)
+
+    def test_nothing_of_another_scene_stands_under_the_new_name(self):
+        self.run_script("change({pixel: '5,5', spread: '3'})")
+        self.settle()
+        before = self.run_script(self.LOOKS)
+        self.assertTrue(all(each["clear"] for each in before.values()), before)
+        self.move_mouse(self.browser.place_of("#curve .spot"))
+        self.move_mouse((2, 2))
+        self.assertIn("photonmap, 1k photons", self.text("#status"))
+        self.run_script("""(() => { const decoded = picture; window.gate = new Promise((done) => { window.open_gate = done; });
+            picture = (id) => window.gate.then(() => decoded(id)); })()""")
+        self.run_script("(() => { const e = byId('choose-scene'); e.value = '1'; e.dispatchEvent(new Event('change', {bubbles: true})); })()")
+        self.run_script(SETTLED)
+        self.run_script("change({view: '4.00,4.00,2.000'}); window.dispatchEvent(new Event('resize')); undefined")
+        self.run_script(SETTLED)
+        waiting = self.run_script(self.LOOKS)
+        self.assertEqual({name: each for name, each in waiting.items() if each["clear"]}, {})
+        for name, each in waiting.items():
+            if not name.startswith("probe"):  # has no pixel any more
+                self.assertEqual(each["text"], before[name]["text"], "the same, but dimmed")
+        self.assertEqual((self.text("#status"), self.run_script("viewer.spread")), ("", None))
+        self.assertFalse(self.keeps_plots(), "a plot of the scene before is no file of the new one")
+        self.assertIn("ring", self.text("#curve"))
+        self.run_script("window.open_gate()")
+        self.settle()
+        after = self.run_script(self.LOOKS)
+        self.assertTrue(all(each["clear"] for each in after.values()), after)
+        self.assertIn("no such file", self.run_script(f"pictureOf('{self.cell_of('photonmap')}').hole"))
+        self.assertTrue(self.keeps_plots())
+
+    def keeps_plots(self):
+        """Whether the buttons that keep strip and spectrum give files."""
+        self.run_script("window.kept = []; download = (name, text) => kept.push([name, text]); undefined")
+        self.run_script("byId('save-strip').click(); document.querySelector('#spectrum-controls button').click()")
+        return len(self.run_script("kept")) == 2
+
+    def test_what_is_stale_is_dimmed_before_anything_is_computed(self):
+        """All pictures are decoded already: only a frame of its own lets the dimmed parts be seen."""
+        self.choose("choose-scene", "1")
+        self.choose("choose-scene", "0")
+        self.run_script("""(() => { window.frames = []; const look = () => { frames.push([state.scene, document.querySelectorAll("[aria-busy]").length]);
+            if (frames.length < 60) requestAnimationFrame(look); }; requestAnimationFrame(look); byId("choose-scene").value = "1";
+            byId("choose-scene").dispatchEvent(new Event("change")); })()""")
+        self.browser.wait_for("frames.length >= 60")
+        seen = self.run_script("frames")
+        self.assertIn(["1", 10], seen)
+        self.assertEqual(seen[-1], ["1", 0])
+
+    def move_mouse(self, place):
+        self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=place[0], y=place[1])
+
+    def test_a_part_that_takes_long_is_dimmed_in_the_same_scene(self):
+        self.run_script("""(() => { const decoded = picture; window.gate = new Promise((done) => { window.open_gate = done; });
+            picture = (id) => window.gate.then(() => decoded(id)); change({seed: '2'}); })()""")
+        self.browser.wait_for("Number(getComputedStyle(byId('panes')).opacity) < 0.5", seconds=5)
+        self.assertEqual(self.run_script("getComputedStyle(byId('curve')).opacity"), "1", "curves need no pictures")
+        self.run_script("window.open_gate()")
+        self.settle()
+        self.assertEqual(self.run_script("getComputedStyle(byId('panes')).opacity"), "1")
 
     def test_pictures_flip_and_split(self):
         self.press("m")

@@ -14,6 +14,7 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -27,6 +28,7 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
+import make_report
 import report_sweep as sweep
 from report import exr, record_tables, records
 from report_page import page, pictures, scenes, tables
@@ -371,12 +373,33 @@ class Page(unittest.TestCase):
                 self.assertIsNone(page.judged_by_another(scene, page.mean_of(pictures.read(path)[0])), path)
 
     def test_what_does_not_fit_is_left_out_loudly(self):
-        data = self.page(self.sweep, "--megabytes", "0.004")
+        sweep.add_indirect(self.sweep, self.rows)
+        data = self.page(self.sweep, "--megabytes", "0.008")
         self.assertGreater(data["left_out"], 0)
-        self.assertIn(f"{data['left_out']} pictures left out to stay within 0.004 MB", self.notes)
+        self.assertIn(f"{data['left_out']} pictures left out to stay within 0.008 MB", self.notes)
         kept = [[isinstance(picture.get("caustic"), int) for picture in cell["pictures"]] for cell in data["scenes"][0]["cells"]]
         self.assertTrue(all(cell[0] for cell in kept), "first seeds come first")
-        self.assertLess(sum(len(text) for text in re.findall(r'id="p\d+">([^<]*)<', self.text)), 4000)
+        self.assertLess(self.bytes_of_pictures(), 8000)
+        wanted, = re.findall(r"--megabytes (\S+) keeps all", self.notes)
+        self.assertEqual(float(wanted), data["megabytes_wanted"])
+        self.assertEqual(self.page(self.sweep, "--megabytes", wanted)["left_out"], 0)
+        self.assertAlmostEqual(self.bytes_of_pictures() / 1e6, float(wanted), delta=0.01)
+
+    def bytes_of_pictures(self):
+        return sum(len(text) for text in re.findall(r'id="p\d+">([^<]*)<', self.text))
+
+    def test_the_quick_starts_page_leaves_no_picture_out(self):
+        """Even if nothing of its pictures could be deflated: three halves a pixel, in base64, of each trial and of six layers a reference."""
+        script = (ROOT / "tools" / "quickstart.sh").read_text(encoding="utf-8")
+        words = re.findall(r'"\$bench" report ([^|]*)\|\|', script)[0].replace('"', "").split()
+        with unittest.mock.patch.object(sys, "argv", ["report", *words]):
+            allowed = make_report.arguments().megabytes
+        most = 0
+        for scene in scenes.scenes_of([scenes.Sweep(ROOT / "results" / "quickstart-2026-11")]):
+            path = ROOT / "experiments" / "references" / f"{scene.reference.partition(':')[2]}.exr"
+            count = 6 + sum(len(cell.seeds()) for cell in scene.cells)
+            most += count * exr.read(path)[0]["R"].size * 3 * 2 * 4 / 3
+        self.assertGreater(allowed * 1e6, most)
 
     def test_several_folders_are_one_page(self):
         other = self.folder / "other"

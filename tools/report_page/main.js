@@ -1,13 +1,20 @@
 // The controls, the keys, and what is drawn anew when the state changes.
 
-const SIZES = ["scene", "contest", "seed", "pictures", "left", "right", "mode", "show", "formula", "against", "epsilon", "layer", "tone",
-  "exposure", "low", "high", "scale"];
+/** Parts of the page that wait for pictures: the elements of each, and the words of the state that it depends on. */
+const STRIP = {ids: ["opening-head", "strip", "contest-text"], of: ["scene", "contest", "seed", "exposure", "crops"], draw: () => drawStrip()};
+const PICTURES = {ids: ["panes", "meaning", "scale"], draw: () => drawViewer(), of: ["scene", "contest", "seed", "pictures", "left", "right", "mode",
+  "show", "formula", "against", "epsilon", "layer", "tone", "exposure", "low", "high", "scale"]};
+const PROBE = {ids: ["probe-table", "probe-curve"], draw: () => drawProbe(),
+  of: ["scene", "seed", "layer", "pixel", "region", "place", "cost", "hidden"]};
+const SPREAD = {ids: ["spread"], draw: () => drawSpread(),
+  of: ["scene", "contest", "seed", "pictures", "left", "right", "show", "layer", "formula", "against", "epsilon", "spread"]};
+const SPECTRUM = {ids: ["spectrum"], of: ["scene", "contest", "pictures", "left", "right", "show", "against", "layer"], draw: () => drawSpectrum()};
 const KEYS = [
   ["1 … 9", "show that picture (flip), or make it the left one (split, side by side)"], ["Space", "swap left and right: flip between two pictures"],
   ["n, p", "next, previous picture"], ["m", "next mode: side by side, flip, split"], ["e", "picture or error map"], ["f", "false colour or colours of a screen"],
-  ["[, ]", "exposure half a stop down, up"], ["+, −, 0", "zoom in, out, whole picture"], ["h, j, k, l", "move the view"],
+  ["[, ]", "exposure half a stop down, up"], ["+, −, 0", "zoom in, out, whole picture"], ["Ctrl + wheel", "zoom about the pointer"], ["h, j, k, l", "move the view"],
   ["arrows", "move the probed pixel (Shift: ten pixels); in split mode with Alt: the split"], ["r", "draw a region by dragging"], ["c", "copy the command of the left picture"],
-  ["s", "next seed"], ["t", "light or dark"], ["?", "this list"],
+  ["s", "next seed"], ["t", "light or dark"], ["?", "show or hide this list"], ["Escape", "hide this list"],
 ];
 
 function buildControls() {
@@ -29,13 +36,14 @@ function buildControls() {
   byId("probe-controls").append(choice("place", "Convergence of the", [["error", "error"], ["value", "value"]]), costChoice("probe-cost"), button("SVG", () => saveSvg("probe-curve", "convergence.svg"), "keep the plot as SVG", {id: "save-probe"}));
   byId("spread-controls").append(button("SVG", () => saveSvg("spread", "distribution.svg"), "keep the plot as SVG"), button("clear", () => change({spread: ""}), "show no pixels of a bar"));
   byId("spectrum-controls").append(button("SVG", () => saveSvg("spectrum", "spectrum.svg"), "keep the plot as SVG"));
-  byId("save-strip").addEventListener("click", () => download("strip.svg", stripSvg()));
+  byId("save-strip").addEventListener("click", () => { if (!isStale("strip")) download("strip.svg", stripSvg()); });
   byId("table-controls").append(choice("rows", "Rows", [["cells", "cells (over seeds)"], ["records", "records (one a trial)"]]), filterInput(),
     button("CSV", () => download("table.csv", tableCsv(), "text/csv"), "keep the shown rows as CSV", {id: "save-table"}));
   for (const link of document.querySelectorAll("nav a")) { // the fragment of the link is the state
     link.addEventListener("click", (event) => { event.preventDefault(); byId(link.dataset.to).scrollIntoView(); });
   }
   byId("theme").addEventListener("click", nextTheme);
+  for (const id of ["show-keys", "hide-keys"]) byId(id).addEventListener("click", toggleKeys);
   byId("copy-link").addEventListener("click", () => copy(location.href, byId("copy-link")));
   byId("budget").addEventListener("input", () => change({contest: byId("budget").value, pictures: ""}));
   byId("keys").replaceChildren(...KEYS.map(([keys, text]) => make("div", {}, make("dt", {}, make("kbd", {}, keys)), make("dd", {}, text))));
@@ -43,7 +51,7 @@ function buildControls() {
 
 function saveSvg(id, name) {
   const svg = byId(id).querySelector("svg");
-  if (svg) download(name, svgText(svg));
+  if (svg && !isStale(id)) download(name, svgText(svg));
 }
 
 function sceneChoice() {
@@ -94,6 +102,9 @@ function toggleRegion() {
 }
 
 const THEMES = ["", "light", "dark"];
+/** The list of keys keeps no focus, so that the keys can be tried while it is read. */
+function toggleKeys() { byId("help").open = !byId("help").open; }
+
 function nextTheme() { change({theme: THEMES[(THEMES.indexOf(state.theme) + 1) % 3]}); }
 
 function drawHead() {
@@ -169,7 +180,7 @@ function onKey(event) {
     "]": () => change({exposure: exposed() + 0.5}), "+": () => zoomAbout(canvas, 1.5), "=": () => zoomAbout(canvas, 1.5), "-": () => zoomAbout(canvas, 1 / 1.5),
     0: () => change({view: ""}), h: () => pan(-1, 0), l: () => pan(1, 0), k: () => pan(0, -1), j: () => pan(0, 1), r: toggleRegion, t: nextTheme,
     c: () => { const found = leftKey() === REFERENCE ? {} : pictureOf(leftKey()); if (found.command) copy(found.command, document.activeElement); },
-    s: () => cycle("seed", (scene().cells[0]?.seeds ?? ["0"]).map((_, i) => String(i))), "?": () => { byId("help").open = !byId("help").open; },
+    s: () => cycle("seed", (scene().cells[0]?.seeds ?? ["0"]).map((_, i) => String(i))), "?": toggleKeys, Escape: () => { byId("help").open = false; },
   };
   if (arrow && event.altKey && state.mode === "split") change({split: Math.min(1, Math.max(0, Number(state.split) + arrow[0] * 0.02)).toFixed(3)});
   else if (arrow && (document.activeElement === document.body || document.activeElement.tagName === "CANVAS")) movePixel(...arrow, event.shiftKey);
@@ -180,19 +191,43 @@ function onKey(event) {
 }
 
 function drawAll(names) {
-  const any = (...wanted) => !names || wanted.some((name) => names.has(name));
+  const any = (wanted) => !names || wanted.some((name) => names.has(name));
   drawHead();
-  if (any("scene", "contest", "seed", "exposure", "crops")) drawStrip();
-  if (any("scene", "contest", "seed", "pictures", "left", "right", "mode", "show", "against")) drawChosen();
-  const maps = drawIf(any(...SIZES, "layer"), drawViewer);
-  if (!any(...SIZES) && any("view", "pixel", "region", "split")) paintPanes();
-  if (any("split")) byId("split-at").value = state.split;
-  if (any("scene", "metric", "cost", "hidden", "pictures")) drawCurves();
-  if (any("scene", "seed", "layer", "pixel", "region", "place", "cost", "hidden")) maps.then(drawProbe);
-  if (any("scene", "contest", "seed", "pictures", "left", "right", "show", "layer", "formula", "against", "epsilon", "spread")) maps.then(drawSpread);
-  if (any("scene", "contest", "pictures", "left", "right", "show", "against", "layer")) maps.then(drawSpectrum);
-  if (any("rows", "sort", "filter", "columns")) drawTable();
+  if (any(["scene"])) byId("status").textContent = "";
+  if (any(SPREAD.of)) viewer.spread = null;
+  if (any(["scene", "contest", "seed", "pictures", "left", "right", "mode", "show", "against"])) drawChosen();
+  if (any(["scene", "metric", "cost", "hidden", "pictures"])) drawCurves();
+  if (any(["rows", "sort", "filter", "columns"])) drawTable();
+  if (any(["split"])) byId("split-at").value = state.split;
+  document.body.classList.toggle("other-scene", any(["scene"]) || document.body.classList.contains("other-scene"));
+  const drawn = (...parts) => parts.filter((part) => any(part.of)).map(markStale);
+  drawParts(drawn(STRIP));
+  drawParts(drawn(PICTURES, PROBE, SPREAD, SPECTRUM)); // what is computed from the pictures comes after them
+  if (any(["view", "pixel", "region", "split"])) repaintPanes();
 }
+
+/** Marks a part that still shows the state before; style.css dims it. */
+function markStale(part) {
+  part.turn = (part.turn ?? 0) + 1;
+  for (const id of part.ids) byId(id).setAttribute("aria-busy", "true");
+  return {...part, isCurrent: ((turn) => () => turn === part.turn)(part.turn)};
+}
+
+function isStale(id) { return byId(id).getAttribute("aria-busy") === "true"; }
+
+/** Draws marked parts one after the other. A frame passes before each, so that the user sees what is stale, and what is done, while
+ *  the next part is computed. A part that was marked again since belongs to the later call. */
+async function drawParts(parts) {
+  for (const part of parts) {
+    await nextFrame();
+    if (part.isCurrent()) await part.draw();
+    if (part.isCurrent()) for (const id of part.ids) byId(id).removeAttribute("aria-busy");
+  }
+  if (!document.querySelector("[aria-busy]")) document.body.classList.remove("other-scene");
+}
+
+/** Settles after the browser has painted. */
+function nextFrame() { return new Promise((done) => requestAnimationFrame(() => setTimeout(done))); }
 
 /** What a column is, with its name before it. */
 function explained(name) {
@@ -200,18 +235,17 @@ function explained(name) {
   return words.startsWith(name) ? words : `${name}: ${words}`;
 }
 
-function drawIf(wanted, draw) { return wanted ? draw() : Promise.resolve(); }
-
 readLink();
 buildControls();
 onChange(drawAll);
 window.addEventListener("hashchange", () => { readLink(); listeners.forEach((draw) => draw(new Set(Object.keys(defaults).filter((name) => name !== "scene")))); drawAll(null); });
 window.addEventListener("keydown", onKey);
-window.addEventListener("resize", paintPanes);
+window.addEventListener("resize", repaintPanes);
 byId("machines").replaceChildren(...page.machines.map((line, i) => make("li", {}, `${page.tables[i].folder}: ${line}`)));
 byId("words").replaceChildren(...[...page.errors, ...page.costs].map((name) => make("li", {}, explained(name), page.units[name] ? ` [${page.units[name]}]` : "")));
 byId("newest").textContent = page.newest;
 byId("warning").hidden = page.left_out === 0;
-byId("warning").textContent = `${page.left_out} pictures are left out: with them the pictures would be larger than ${page.megabytes} MB (--megabytes). All numbers are of all trials; maps over seeds are of the seeds that are here.`;
+byId("warning").textContent = `${page.left_out} pictures are left out: with them the pictures would be larger than ${page.megabytes} MB. `
+  + `\`causticbench report\` with --megabytes ${page.megabytes_wanted} keeps them all. Table and curves are of all trials; maps and spectrum over seeds are of the seeds that are here.`;
 for (const draw of listeners) if (draw !== drawAll) draw(new Set());
 drawAll(null);

@@ -52,10 +52,12 @@ class Album:
 
     def __init__(self, most_bytes):
         self.most_bytes, self.bytes, self.about, self.texts, self.left_out = most_bytes, 0, [], [], 0
+        self.wanted = 0  # bytes, of those left out too
 
     def keep(self, values):
         """The number of a picture, or the reason why it is not here."""
         about, text = pictures.packed(values)
+        self.wanted += len(text)
         if self.bytes + len(text) > self.most_bytes:
             self.left_out += 1
             return {"hole": f"left out: with it the pictures are larger than {self.most_bytes / 1e6:g} MB (--megabytes)"}
@@ -63,6 +65,14 @@ class Album:
         self.about.append(about)
         self.texts.append(text)
         return len(self.about) - 1
+
+    def leave_out(self, values):
+        """Counts a further layer of a picture that is left out."""
+        self.wanted += len(pictures.packed(values)[1])
+
+    def megabytes_wanted(self):
+        """The --megabytes with which all pictures are kept."""
+        return math.ceil(self.wanted / 1e4) / 100
 
 
 def picture_count(scenes):
@@ -90,10 +100,11 @@ def make(sweeps, scenes, references, megabytes, tell=lambda picture: None):
         "errors": present(ERRORS, "errors", shown), "costs": present(COSTS, "costs", shown),
         "words": WORDS, "names": NAMES, "units": UNITS, "machines": machines(sweeps),
         "student": [student(degrees) for degrees in range(1, 101)], "left_out": album.left_out, "megabytes": megabytes,
+        "megabytes_wanted": album.megabytes_wanted(),
     }
     notes = list(holes)
     if album.left_out:
-        notes.append(f"{album.left_out} pictures left out to stay within {megabytes:g} MB (--megabytes)")
+        notes.append(f"{album.left_out} pictures left out to stay within {megabytes:g} MB (--megabytes {album.megabytes_wanted():g} keeps all)")
     return assembled(data, album.texts), notes
 
 
@@ -178,13 +189,12 @@ class SceneData:
             options = [word for name in ("threads", "isa") if row.get(name) for word in (f"--{name}", row[name])]
             found["command"] = one_command(command, *options, "-o", f"{row['trial']}.exr")
         kept = self.album.keep(layers["caustic"])
+        others = [name for name in ("unreached", "indirect") if name in layers]
         if isinstance(kept, dict):
+            for name in others:
+                self.album.leave_out(layers[name])
             return {**found, **kept}
-        found["caustic"] = kept
-        for name in ("unreached", "indirect"):
-            if name in layers:
-                found[name] = self.album.keep(layers[name])
-        return found
+        return {**found, "caustic": kept, **{name: self.album.keep(layers[name]) for name in others}}
 
     def data(self, sweeps):
         cells = self.scene.cells

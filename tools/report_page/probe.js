@@ -116,7 +116,7 @@ async function drawSpread() {
   const chosen = state.spread === "" ? -1 : Number(state.spread);
   viewer.spread = chosen < 0 ? null : [...errors.keys()].filter((i) => !Number.isNaN(errors[i]) && barOf(errors[i]) === chosen);
   byId("spread").replaceChildren(histogram(counts, low, step, chosen, key, whole.length));
-  paintPanes();
+  repaintPanes();
 }
 
 function histogram(counts, low, step, chosen, key, total) {

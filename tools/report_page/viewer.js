@@ -114,11 +114,12 @@ async function drawViewer() {
   const wanted = state.mode === "side" ? keys : [leftKey(), rightKey()];
   const images = new Map();
   for (const key of new Set(wanted)) images.set(key, await shownImage(key));
+  const reference = await layerOf(REFERENCE), counted = new Map();
+  for (const key of images.keys()) counted.set(key, await countedPixels([key]));
   if (turn !== viewer.painting) return; // something newer is being drawn
   viewer.images = images;
-  const whole = [...images.values()].filter((image) => !image.hole);
-  chooseColours(whole, await layerOf(REFERENCE));
-  for (const [key, image] of images) if (!image.hole) image.canvas = painted(image, viewer.exposure, image.asPicture ? null : viewer.range, await countedPixels([key]));
+  chooseColours([...images.values()].filter((image) => !image.hole), reference);
+  for (const [key, image] of images) if (!image.hole) image.canvas = painted(image, viewer.exposure, image.asPicture ? null : viewer.range, counted.get(key));
   layPanes(state.mode === "side" ? wanted.map((key) => [key]) : state.mode === "split" ? [[leftKey(), rightKey()]] : [[leftKey()]]);
   byId("meaning").textContent = shownText();
   byId("scale").replaceChildren(...(viewer.range ? [scaleBar(viewer.range, 300, "")] : [exposureText()]));
@@ -163,6 +164,9 @@ function view(canvas) {
   const [x, y, zoom] = state.view.split(",").map(Number);
   return {x, y, zoom: fit * zoom, fit};
 }
+
+/** Paints the panes again, unless they still show another state: drawViewer paints them then. */
+function repaintPanes() { if (!isStale("panes")) paintPanes(); }
 
 function paintPanes() {
   for (const pane of viewer.panes) paintPane(pane);
@@ -283,7 +287,11 @@ function zoomAbout(canvas, factor, place) {
 function listenToPane(pane) {
   const {canvas} = pane;
   let start = null;
-  canvas.addEventListener("wheel", (event) => { event.preventDefault(); zoomAbout(canvas, Math.exp(-event.deltaY * 0.0015), pixelAt(pane, event)); }, {passive: false});
+  canvas.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey) return; // it scrolls the page
+    event.preventDefault();
+    zoomAbout(canvas, Math.exp(-event.deltaY * 0.0015), pixelAt(pane, event));
+  }, {passive: false});
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
     const box = canvas.getBoundingClientRect();
