@@ -1,11 +1,14 @@
 """The duel without rendering: its statistics against closed forms, its sweeps, and committed pages that follow from their records."""
 import json
 import math
+import os
 import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
+import unittest.mock
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -189,6 +192,30 @@ class CommandLine(unittest.TestCase):
         self.assertIn("known: ring, folded", done.stderr)
         done = self.run_tool("--quick", "--program", "/nowhere/causticbench")
         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
+
+    def chosen(self, *words):
+        import measure_duel
+
+        with unittest.mock.patch.object(sys, "argv", ["measure_duel.py", *words]):
+            return measure_duel.arguments()
+
+    def test_runs_go_into_folders_of_the_user_unless_they_are_to_be_kept(self):
+        for words, folder in (((), "out/duel"), (("--quick",), "out/duel-quick"), (("--smoke",), "out/duel-smoke"), (("--keep",), "results/duel")):
+            self.assertEqual(self.chosen(*words).output, ROOT / folder)
+        with unittest.mock.patch.dict(os.environ, CAUSTICS_CALLED_FROM="/elsewhere"):
+            self.assertEqual(self.chosen("-o", "mine").output, pathlib.Path("/elsewhere/mine"))
+
+    def test_a_smoke_run_has_one_scene_and_a_run_of_single_scenes_asks_no_other_for_its_seeds(self):
+        duel = contests.Duel()
+        held = lambda *size: [scene.name for scene in race.Race(duel, pathlib.Path("nowhere"), "causticbench", 1, *size).scenes]
+        self.assertEqual(held("smoke"), ["folded"])
+        self.assertEqual(held("quick"), ["ring", "folded"])
+        self.assertEqual(held("", ["lens"]), ["lens"])
+        self.assertEqual(held(), [scene.name for scene in duel.scenes])
+        with tempfile.TemporaryDirectory() as folder:
+            lone = race.Race(duel, pathlib.Path(folder), "causticbench", 1, "", ["counts"])
+            self.assertEqual(lone.pilot(), list(range(1, 6)))
+            self.assertEqual(list(pathlib.Path(folder).iterdir()), [], "the seeds of all scenes are for a run of all")
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ EXAMPLES = {"caustics_test", "kd_tree_test"}
 
 def pages():
     """{path: text without code blocks} of the pages that a clone has."""
-    skipped = {".git", ".venv", "build"}
+    skipped = {".git", ".venv", "build", "out"}
     found = (path for path in ROOT.rglob("*.md") if not skipped & set(path.relative_to(ROOT).parts))
     return {path: re.sub(r"```.*?```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL) for path in sorted(found)}
 

@@ -4,12 +4,15 @@ import json
 import math
 import pathlib
 import re
+import shutil
 import statistics
 import struct
 import subprocess
 import sys
+import tempfile
 import types
 import unittest
+import unittest.mock
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -193,6 +196,20 @@ class Sections(unittest.TestCase):
         self.assertEqual([pieces["tables"], pieces["figures"]], [old_pieces["tables"], old_pieces["figures"]])
         self.assertIn("one-map on another machine", kept.made_on(pieces))
 
+    def test_single_sections_need_no_earlier_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.study.output, self.study.minutes, self.study.cpu_minutes = pathlib.Path(folder), lambda: 1.0, lambda: 2.0
+            part_run = part.Part({"view_independent": verdict.counted(0.5, "W")}).of("one-map")
+            rows, pieces = kept.of_some(self.study, part_run, "this machine.", self.order, ["one-map"])
+        self.assertEqual([row["id"] for row in rows if row["verdict"] != verdict.UNMEASURED], ["view_independent"])
+        self.assertEqual(page.made(pieces), "section by section: one-map on this machine.")
+        self.assertEqual(page.took(pieces), "single sections")
+
+    def test_names_are_read_without_running_the_parts(self):
+        for name, each in PAPERS.items():
+            for module in each.text["parts"]:
+                self.assertEqual(kept.section_names(module), list(importlib.import_module(f"papers.{module}").SECTIONS), name)
+
     def test_tables_of_a_section_are_replaced(self):
         table = part.Table("figure1", "New", ["a"], [["b"]])
         _, pieces = kept.of_some(self.study, part.Part({}, [table]).of("figure1"), "", self.order, ["figure1"])
@@ -321,7 +338,37 @@ class CommandLine(unittest.TestCase):
         for more in (("--pages",), ("--only", "counts"), ("--full",), ("-o", "/nowhere")):
             done = self.run_tool("--compare", *more)
             self.assertEqual(done.returncode, 2, more)
-            self.assertIn("--compare: alone", done.stderr, more)
+            self.assertIn("--compare: ", done.stderr, more)
+
+    def test_records_of_any_folder_are_compared_with_the_published_ones(self):
+        with tempfile.TemporaryDirectory() as folder:
+            own = pathlib.Path(folder) / "chuang1995" / "records"
+            own.mkdir(parents=True)
+            shutil.copy(RESULTS / "chuang1995" / "records" / "height.csv", own)
+            done = self.run_tool("--compare", "-o", folder)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertRegex(done.stdout, r"^chuang1995/records/\w+\.csv: [1-9]\d* trials in both, 0 differ, 0 in one only\n$")
+
+    def test_a_run_leaves_the_published_pages_alone(self):
+        """A program that fails at its first command tells where it would have written."""
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "causticbench"
+            program.write_text("#!/bin/sh\necho \"$@\" >&2\nexit 4\n")
+            program.chmod(0o755)
+            own = lambda *words: self.run_tool("chuang1995", "--only", "heights", "--program", program, *words).stderr
+            self.assertIn(f"-o {ROOT}/out/papers/chuang1995/trials/height", own())
+            self.assertIn(f"-o {folder}/mine/chuang1995/trials/height", own("-o", f"{folder}/mine"))
+            self.assertIn(f"-o {RESULTS}/chuang1995/trials/height", own("--keep"))
+        self.assertIn("/out/", (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines())
+
+    def test_a_smoke_run_is_one_section_in_a_folder_of_its_own(self):
+        import reproduce
+
+        with unittest.mock.patch.object(sys, "argv", ["reproduce.py", "--smoke"]):
+            chosen = reproduce.arguments()
+        self.assertEqual((chosen.papers, chosen.only, chosen.output), (["chen2011"], ["prism"], ROOT / "out" / "papers-smoke"))
+        sweep = json.loads((study.SWEEPS / "chen2011_prism.json").read_text(encoding="utf-8"))
+        self.assertEqual(len(sweep["scenes"]), 1)
 
     def test_trials_are_compared_by_picture_and_counts(self):
         import reproduce

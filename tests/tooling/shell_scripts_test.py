@@ -42,10 +42,27 @@ class AllScripts(unittest.TestCase):
 
 
     def test_refuse_a_wrong_word_without_a_build(self):
-        for name, word in (("reproduce", "nosuchpaper"), ("reproduce", "--nope"), ("duel", "--nope")):
-            said = subprocess.run(["bash", f"tools/{name}.sh", word], cwd=ROOT, text=True, capture_output=True)
-            self.assertEqual((said.returncode, said.stdout), (2, ""), name)
-            self.assertIn(word, said.stderr)
+        for name, *words in (("reproduce", "nosuchpaper"), ("reproduce", "--nope"), ("reproduce", "--only", "nosuchsection"),
+                             ("reproduce", "chen2011", "--only", "counts"), ("reproduce", "--qick"), ("reproduce", "--smoke", "--full"),
+                             ("duel", "--nope"), ("duel", "--only", "nosuchscene"), ("duel", "--jobs", "0"), ("duel", "--smoke", "--keep"),
+                             ("quickstart", "--nope"), ("quickstart", "--force", "extra"), ("quickstart", "--jobs")):
+            said = self.run_unbuilt(name, *words)
+            self.assertEqual((said.returncode, said.stdout), (2, ""), words)
+            self.assertIn(words[-1], said.stderr, words)
+        self.assertIn("prism", self.run_unbuilt("reproduce", "chen2011", "--only", "nosuchsection").stderr)
+        self.assertIn("lens, crystal", self.run_unbuilt("duel", "--only", "nosuchscene").stderr)
+
+    def run_unbuilt(self, name, *words):
+        return subprocess.run(["bash", f"tools/{name}.sh", *words], cwd=ROOT, text=True, capture_output=True, env={**os.environ, "CAUSTICS_BENCH": ""})
+
+    def test_list_what_they_run_without_a_build(self):
+        listed = self.run_unbuilt("reproduce", "--list", "chen2011")
+        self.assertEqual((listed.returncode, listed.stderr), (0, ""))
+        self.assertIn("  prism\n  crystal\n", listed.stdout)
+        self.assertNotIn("  counts\n", listed.stdout, "a section of another paper")
+        listed = self.run_unbuilt("duel", "--list")
+        self.assertEqual((listed.returncode, listed.stderr), (0, ""))
+        self.assertIn("lens: plano-convex lens\n", listed.stdout)
 
     def test_tell_of_themselves_without_a_build(self):
         for name in ("reproduce", "duel", "quickstart"):
@@ -134,6 +151,17 @@ class Reproduce(Sandbox):
     def test_takes_a_program_that_is_there(self):
         self.assertEqual(self.reproduced(CAUSTICS_BENCH="/a/program"), ["--program /a/program"])
 
+    def test_says_where_it_was_called_from(self):
+        self.copy("tools/reproduce.sh")
+        (self.folder / "tools/reproduce.py").write_text("import os\nprint(os.environ['CAUSTICS_CALLED_FROM'])\n")
+        self.assertEqual(self.run_script("tools/reproduce.sh", CAUSTICS_BENCH="/a/program").stdout.strip(), os.getcwd())
+
+    def test_what_runs_nothing_needs_no_build(self):
+        for words in (["--list"], ["--pages"], ["--compare"], ["--check", "--full"]):
+            self.assertEqual(self.reproduced(*words, CAUSTICS_BENCH=""), [" ".join(words)])
+        for words in (["--list"], ["--page"]):
+            self.assertEqual(self.reproduced(*words, script="duel.sh", tool="measure_duel.py", CAUSTICS_BENCH=""), [" ".join(words)])
+
     def test_the_duel_does_the_same(self):
         duel = lambda *words, **environment: self.reproduced(*words, script="duel.sh", tool="measure_duel.py", **environment)
         self.assertEqual(duel("--quick", CAUSTICS_BENCH=""),
@@ -152,7 +180,7 @@ class ContinuousIntegration(Sandbox):
         self.write("tools/test.sh", f'[ $# = 0 ] && echo {self.CLOSING}800 || echo "test $*"; exit {test}')
         self.write("tools/setup.sh", f"exit {setup}")
         self.write("tools/build.sh", f"echo build $*; exit {build}")
-        self.write("tools/fresh_debian.sh", f"echo fresh $1; echo {self.CLOSING}500; exit {fresh}")
+        self.write("tools/fresh_debian.sh", f'echo fresh "$@"; echo {self.CLOSING}500; exit {fresh}')
         done = self.run_script(".ci/run", **environment)
         return done.returncode, done.stdout
 
@@ -161,7 +189,9 @@ class ContinuousIntegration(Sandbox):
         self.assertEqual(code, 0, text)
         self.assertRegex(text, r"test -R \S*report_browser.*\n")
         self.assertIn("build clang\n", text)
-        self.assertRegex(text, "fresh (trixie|bookworm)\n")
+        self.assertRegex(text, "fresh (trixie|bookworm) ")
+        for command in ("tools/quickstart.sh", "tools/reproduce.sh --smoke", "tools/duel.sh --smoke"):
+            self.assertIn(f" {command} ", text, "what README promises on a fresh Debian")
         closing = [line for line in text.splitlines() if "tests passed" in line]
         self.assertEqual(closing[-1], self.CLOSING + "800")
         self.assertNotIn("NOT CHECKED", text)

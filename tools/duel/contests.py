@@ -15,6 +15,7 @@ from report.set_scene import SetScene
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "experiments" / "duel"
 EXACT, GIVEN = "exact", "given"
+SIZES = ("quick", "smoke")  # shorter runs
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,9 +56,10 @@ class Duel:
         self.scenes = [Scene(each) for each in self.rules["scenes"]]
         self.hypotheses, self.judged = self.text["hypotheses"], read("judged")
         names = [scene.name for scene in self.scenes]
-        unknown = [name for name in self.rules["quick"] if name not in names]
-        if unknown:
-            raise RecordsError(f"scenes.json: quick: no scene {unknown[0]} (known: {', '.join(names)})")
+        for size in SIZES:
+            unknown = [name for name in self.rules[size]["only"] if name not in names]
+            if unknown:
+                raise RecordsError(f"scenes.json: {size}: no scene {unknown[0]} (known: {', '.join(names)})")
 
     def scene(self, name):
         return next(scene for scene in self.scenes if scene.name == name)

@@ -173,7 +173,7 @@ def rendered(results):
             "tables.csv": comma(list(map(plain, kept))), "tables.tex": latex_tables(title, list(map(plain, kept)))}
 
 
-def write_all(duel, output, quick=False):
+def write_all(duel, output):
     results = Records(duel, output)
     for name, text in rendered(results).items():
         write(output / name, text)

@@ -19,9 +19,13 @@ LEFT_OUT = ("scene", "label", "settings", "seed", "status", "message")
 
 
 class Race:
-    def __init__(self, duel, output, program, jobs, quick):
+    def __init__(self, duel, output, program, jobs, size="", only=()):
+        """`size`: whole, or `quick` or `smoke`, whose rules replace those of the whole; `only`: the names of some scenes."""
         self.duel, self.output, self.program, self.jobs = duel, output, str(program), jobs
-        self.pilots = self.scenes = [scene for scene in duel.scenes if not quick or scene.name in duel.rules["quick"]]
+        self.whole = not only
+        self.rules = duel.rules | duel.rules.get(size, {})
+        names = only or self.rules.get("only")
+        self.scenes = [scene for scene in duel.scenes if names is None or scene.name in names]
         self.start, self.spent, self.done, self.seeds = time.monotonic(), 0.0, 0, []
 
     def folder(self, scene):
@@ -31,7 +35,7 @@ class Race:
         print(f"duel: {text}", file=sys.stderr, flush=True)
 
     def run(self):
-        """All scenes, or those of --quick, on the pilot's seeds."""
+        """All scenes, or those of the size, on the pilot's seeds."""
         for number, scene in enumerate(self.scenes, 1):
             self.log(f"scene {number} of {len(self.scenes)}: {scene.name} ({scene.title}); {self.left(number)}")
             self.race(scene)
@@ -50,19 +54,21 @@ class Race:
         self.spent, self.done = self.spent + time.monotonic() - begin, self.done + 1
 
     def search(self, scene):
-        return self.measure(scene, self.duel.settings(scene), self.duel.rules["search_seeds"], SEARCH)
+        return self.measure(scene, self.duel.settings(scene), self.rules["search_seeds"], SEARCH)
 
     def pilot(self):
-        """The seeds of the final runs: as many as the scatter of the search on every scene asks for, by the rule in scenes.json; kept once
-        written."""
-        path = self.output / "pilot.json"
-        rules = self.duel.rules
-        if not path.is_file():
-            found = {scene.name: fronts(self.search(scene), self.duel) for scene in self.pilots}
-            path.parent.mkdir(parents=True, exist_ok=True)
-            scatter = {name: upper_scatter(cells) for name, cells in found.items()}
-            write(path, json.dumps({"scatter": scatter, "seeds": wanted_of(found.values(), rules)}, indent=1) + "\n")
-        wanted = json.loads(path.read_text(encoding="utf-8"))["seeds"]
+        """The seeds of the final runs: as many as the scatter of the search asks for, by the rule in scenes.json. Kept once written,
+        which a run of single scenes leaves to a run of all."""
+        path, rules = self.output / "pilot.json", self.rules
+        if path.is_file():
+            wanted = json.loads(path.read_text(encoding="utf-8"))["seeds"]
+        else:
+            found = {scene.name: fronts(self.search(scene), self.duel) for scene in self.scenes}
+            wanted = wanted_of(found.values(), rules) if found else rules["least_seeds"]  # counts alone have no scene
+            if self.whole:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                scatter = {name: upper_scatter(cells) for name, cells in found.items()}
+                write(path, json.dumps({"scatter": scatter, "seeds": wanted}, indent=1) + "\n")
         return list(range(rules["first_seed"], rules["first_seed"] + wanted))
 
     def choice(self, scene, cells):
@@ -97,7 +103,7 @@ class Race:
 
     def sweep(self, scene, settings, seeds, phase):
         folder = self.folder(scene)
-        paths = contests.sweep_files(scene, settings, seeds, self.duel.rules, folder / "sweeps", phase)
+        paths = contests.sweep_files(scene, settings, seeds, self.rules, folder / "sweeps", phase)
         self.log(f"{scene.name}: {phase}, {len(settings)} settings x {len(seeds)} seeds")
         self.run_sweep(paths, folder)
         self.keep_environment(folder)
@@ -120,7 +126,7 @@ class Race:
 
     def run_sweep(self, files, folder):
         """A sweep of the program, whose trials that fail become rows."""
-        longest = str(self.duel.rules["longest_s"])
+        longest = str(self.rules["longest_s"])
         words = ["sweep", *map(str, files), "-o", str(folder), "--jobs", str(self.jobs), "--timeout", longest, "--memory", MEMORY]
         status = subprocess.run([self.program, *words], cwd=contests.ROOT, stdin=subprocess.DEVNULL, stdout=sys.stderr).returncode
         if status not in (0, 1):

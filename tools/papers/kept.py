@@ -1,5 +1,7 @@
 """verdicts.json and tables.json of one paper: what its pages are made from, and how a run of some sections changes them."""
+import ast
 import json
+import pathlib
 
 from papers.entries import entries
 
@@ -16,9 +18,28 @@ def sections(modules):
     return {name: run for module in modules for name, run in module.SECTIONS.items()}
 
 
+def section_names(module):
+    """The sections of a part, read from its source: NumPy, which it imports, may not be installed yet."""
+    source = (pathlib.Path(__file__).parent / f"{module}.py").read_text(encoding="utf-8")
+    assigned = {target.id: node.value for node in ast.parse(source).body if isinstance(node, ast.Assign)
+                for target in node.targets if isinstance(target, ast.Name)}
+    return [key.value for key in assigned["SECTIONS"].keys]
+
+
 def read(folder):
     """(entries, kept) of an earlier run."""
     return tuple(json.loads((folder / name).read_text(encoding="utf-8")) for name in ("verdicts.json", "tables.json"))
+
+
+def is_there(folder):
+    """Whether an earlier run left its rows and tables in the folder."""
+    return (folder / "tables.json").is_file()
+
+
+def nothing(study):
+    """The tables of a folder without an earlier run: those of its first sections follow."""
+    return {"machine": "", "anew": {}, "minutes": round(study.minutes(), 1), "cpu_minutes": round(study.cpu_minutes(), 1),
+            "tables": [], "figures": []}
 
 
 def of_whole_run(study, part, machine):
@@ -28,11 +49,11 @@ def of_whole_run(study, part, machine):
 
 
 def of_some(study, part, machine, order, ran):
-    """(entries, kept) where the sections `ran` were made anew; the other rows, tables and figures are the earlier run's.
+    """(entries, kept) where the sections `ran` were made anew; the other rows, tables and figures are the earlier run's, or none.
 
     `order` names all sections. Minutes stay those of the whole run.
     """
-    rows, kept = read(study.output)
+    rows, kept = read(study.output) if is_there(study.output) else ([], nothing(study))
     found = entries(study, part, {row["id"]: row for row in rows})
     own = pieces(study.paper, part, kept.get("facts", {}) | part.facts)
     for kind in ("tables", "figures"):
@@ -50,9 +71,11 @@ def pieces(paper, part, facts):
 
 
 def made_on(kept):
-    """Where the whole run was made, and which sections since then."""
+    """Where the whole run was made, if there was one, and which sections since then."""
     by_machine = {}
     for section, machine in kept["anew"].items():
         by_machine.setdefault(machine, []).append(section)
     since = [f"{', '.join(names)}{f' on {machine}' if machine else ''}".rstrip(".") for machine, names in by_machine.items()]
-    return kept["machine"] + (f" Made anew since: {'; '.join(since)}." if since else "")
+    if not kept["machine"]:
+        return f"section by section: {'; '.join(since)}."
+    return "on " + kept["machine"] + (f" Made anew since: {'; '.join(since)}." if since else "")

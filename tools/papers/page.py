@@ -3,12 +3,14 @@ import csv
 import html
 import io
 import json
+import os
 
 from papers.kept import made_on, read
 from papers.latex import latex_tables
 from papers.part import Table
 from papers.verdict import FAILS, HOLDS, UNDECIDED, UNMEASURED
 from papers.words import short
+from report.paper import PUBLISHED
 from report.report_files import write
 
 UNSAID = ["what", "chosen here", "how much it matters"]
@@ -78,7 +80,11 @@ def stated(kept):
 
 
 def took(kept):
-    return f"{kept['minutes']:.0f} minutes ({kept['cpu_minutes']:.0f} of CPU time)"
+    return "single sections" if not kept["machine"] else f"{kept['minutes']:.0f} minutes ({kept['cpu_minutes']:.0f} of CPU time)"
+
+
+def made(kept):
+    return f"in {took(kept)} {made_on(kept)}" if kept["machine"] else made_on(kept)
 
 
 def tally(entries):
@@ -102,7 +108,7 @@ def markdown_table(heading, rows):
 
 def markdown(paper, entries, kept, tables):
     text = [f"# {paper.text['author']}: {paper.text['title']}\n", f"{paper.text['published']}. {len(entries)} claims: {tally(entries)}.\n",
-            f"Made by `tools/reproduce.sh {paper.name}` in {took(kept)} on {made_on(kept)}\n", HOW]
+            f"Made by `tools/reproduce.sh {paper.name}` {made(kept)}\n", HOW]
     for group, own in by_group(entries):
         rows = claims_table(own).rows
         for row, entry in zip(rows, own):
@@ -158,7 +164,7 @@ def page(paper, entries, kept, tables):
     cells = lambda fields, tag="td": "<tr>" + "".join(f"<{tag}>{e(str(field))}</{tag}>" for field in fields) + "</tr>\n"
     table = lambda heading, rows, kind="": f"<table class='{kind}'>{cells(heading, 'th')}{''.join(map(cells, rows))}</table>\n"
     body = [f"<h1>{e(paper.text['title'])}</h1>\n<p>{e(paper.text['author'])}. {e(paper.text['published'])}.</p>\n<p><b>{len(entries)} claims: "
-            f"{tally(entries)}.</b> Made by <code>tools/reproduce.sh {paper.name}</code> in {took(kept)} on {e(made_on(kept))}</p>\n"
+            f"{tally(entries)}.</b> Made by <code>tools/reproduce.sh {paper.name}</code> {e(made(kept))}</p>\n"
             f"<p class='note'>{e(HOW)}</p>\n<table>{cells(CLAIMS, 'th')}"]
     for group, own in by_group(entries):
         body.append(f"<tr class='group'><td colspan='{len(CLAIMS)}'>{e(group)}</td></tr>\n")
@@ -191,7 +197,7 @@ Made by `tools/reproduce.sh`: every figure, table cell and testable claim of the
 `index.html`; `tables.md`, `.csv` and `.tex` are its tables, `verdicts.json` its claims with what was measured, the interval, the tolerance
 and the command of each; `records/` the sweeps' tables. Figures are here as PNG; a run writes those that show radiance as EXR
 beside them, which are too large to be kept here.
-[replicability.md](replicability.md) is for a reviewer: system, commands, minutes, disk, how to compare.
+[replicability.md]({guide}) is for a reviewer: system, commands, minutes, disk, how to compare.
 
 """
 
@@ -207,5 +213,6 @@ def write_gallery(folder, papers):
                      f"`tools/reproduce.sh {paper.name}`"])
         figures.append(f"\n## {paper.text['author']}: {paper.text['title']}\n")
         figures += [f"\n### {each['title']}\n\n![{each['title']}]({paper.name}/figures/{each['name']}.png)\n\n{each['caption']}\n" for each in kept["figures"]]
-        figures.append(f"\nTaken on {made_on(kept)}\n")
-    write(folder / "README.md", GALLERY + markdown_table(["paper", "claims", "took", "command"], rows) + "".join(figures))
+        figures.append(f"\nTaken {made_on(kept)}\n")
+    guide = os.path.relpath(PUBLISHED / "replicability.md", folder)
+    write(folder / "README.md", GALLERY.format(guide=guide) + markdown_table(["paper", "claims", "took", "command"], rows) + "".join(figures))

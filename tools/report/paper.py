@@ -5,7 +5,9 @@ import pathlib
 
 from report.records import RecordsError
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "experiments" / "papers"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "experiments" / "papers"
+PUBLISHED = ROOT / "results" / "papers"
 NAMES = ("jensen1996", "chuang1995", "chen2011")
 REGIONS = ("above", "below", "between", "factor", "at_most")
 

@@ -1,5 +1,6 @@
 """The release build of causticbench, as the measuring tools run it: sweeps, and the line on where they ran."""
 import json
+import os
 import pathlib
 import platform
 import subprocess
@@ -9,6 +10,7 @@ from report import records
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BENCH = ROOT / "build" / "release" / "bin" / "causticbench"
+OWN = ROOT / "out"  # the user's own runs, not in git
 
 
 class Program:
@@ -44,6 +46,11 @@ def exit_code(tool, run):
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def output_folder(chosen, usual):
+    """The folder of -o, seen from where the user called the script, which changes the working folder; else the usual one."""
+    return (pathlib.Path(os.environ.get("CAUSTICS_CALLED_FROM", ".")) / chosen if chosen else usual).resolve()
 
 
 def show(lines, output=None):
