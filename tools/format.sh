@@ -3,7 +3,8 @@
 # Versions of clang-format disagree with one another, so the pinned one is kept in .venv (from PyPI).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-version=19.1.7
+wanted=tools/format-requirements.txt
+version=$(sed -n 's/^clang-format==\([0-9.]*\).*/\1/p' "$wanted")
 format=.venv/bin/clang-format
 
 fail() { echo "format: $*" >&2; exit 1; }
@@ -16,7 +17,7 @@ case "${1:-}" in
 esac
 if ! [ -x "$format" ] || [[ $("$format" --version) != *" $version"* ]]; then
     /usr/bin/python3 -m venv .venv || fail "needs the Debian package python3-venv"
-    .venv/bin/pip install --quiet "clang-format==$version" || fail "could not install clang-format $version"
+    .venv/bin/pip install --quiet --require-hashes -r "$wanted" || fail "could not install clang-format $version"
 fi
 git ls-files -z --cached --others --exclude-standard -- '*.h' '*.cpp' |
     xargs -0 "$format" "${arguments[@]}"
