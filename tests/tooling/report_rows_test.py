@@ -1,6 +1,6 @@
 """What the report's page offers, and the test that proves it: a row that loses its test is found here.
 
-Tests are those of report_browser_test.py (in a real browser) and report_test.py.
+Tests are those of report_browser_test.py and report_numbers_test.py (in a real browser) and of report_test.py.
 """
 import pathlib
 import re
@@ -34,6 +34,11 @@ ROWS = {
     "strip and plots as SVG": ["plots_and_strip_are_whole_svg_files", "equal_time_follows_the_time_allowed"],
     "keyboard, print, themes, second signs": ["it_is_used_by_keyboard_alone", "themes_and_print", "no_colour_is_without_a_second_sign", "nothing_is_wider_than_the_window"],
     # Beyond the list
+    "nothing stale under a new name": ["nothing_of_another_scene_stands_under_the_new_name", "what_is_stale_is_dimmed_before_anything_is_computed",
+                                       "a_part_that_takes_long_is_dimmed_in_the_same_scene"],
+    "the wheel scrolls, with Ctrl it zooms": ["the_wheel_over_a_picture_scrolls_the_page", "the_wheel_with_control_zooms_about_the_pointer"],
+    "keys on the screen": ["the_keys_are_shown_on_the_screen"],
+    "a fault of 1 % in any number": ["a_fault_of_one_percent_is_noticed_in_every_number"],
     "indirect light": ["indirect_light_is_shown_and_scored_alone", "indirect_light_is_a_layer_of_its_own"],
     "holes with their reason": ["a_missing_picture_is_a_hole_with_its_reason", "missing_and_damaged_pictures_are_holes", "a_missing_reference_is_a_hole"],
     "LaTeX and CSV": ["tables", "every_button_does_something"],
@@ -42,7 +47,7 @@ ROWS = {
 
 class Rows(unittest.TestCase):
     def test_each_has_its_tests(self):
-        text = "".join((HERE / name).read_text(encoding="utf-8") for name in ("report_test.py", "report_browser_test.py"))
+        text = "".join((HERE / name).read_text(encoding="utf-8") for name in ("report_test.py", "report_browser_test.py", "report_numbers_test.py"))
         kept = set(re.findall(r"    def test_(\w+)\(self\)", text))
         for row, names in ROWS.items():
             with self.subTest(row):
