@@ -4,6 +4,7 @@ import math
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -135,6 +136,18 @@ class Pages(unittest.TestCase):
     def test_pages_and_tables_follow_from_the_records(self):
         for name, text in self.texts.items():
             self.assertEqual((RESULTS / name).read_text(encoding="utf-8"), text, name)
+
+    def test_pages_of_one_scene_say_which_and_name_the_rest_as_not_measured(self):
+        from duel import page
+
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "records").mkdir()
+            for file in (RESULTS / "records").glob("folded_*.csv"):
+                shutil.copy(file, pathlib.Path(folder) / "records")
+            text = page.rendered(page.Records(DUEL, pathlib.Path(folder)))["README.md"]
+        self.assertIn("**This run has 1 of 20 scenes: folded pool.**", text)
+        self.assertNotIn("nan", text.split())
+        self.assertNotIn("This run has", self.texts["README.md"])
 
     def test_every_hypothesis_has_its_verdict(self):
         found = json.loads((RESULTS / "verdicts.json").read_text(encoding="utf-8"))

@@ -157,12 +157,21 @@ def tables_of(results):
     return [*(tables.winners(results, time) for time in tables.TIMES), tables.winners(results, 1, True), *(each(results) for each in raced)]
 
 
+def of_some(results):
+    """What the head of the page says where not all scenes were run."""
+    run = [scene.title for scene in results.duel.scenes if scene.name in results.fields]
+    if len(run) == len(results.duel.scenes):
+        return ""
+    return (f"**This run has {len(run)} of {len(results.duel.scenes)} scenes: {', '.join(run) or 'none'}.** Sentences about other scenes are those of the "
+            f'whole duel; their numbers read "{prose.ABSENT}".\n\n')
+
+
 def rendered(results):
     """{file name: text} of all pages."""
     found, every = entries(results), tables_of(results)
     verdict, lacking = verdict_table(found), not_measured(results)
     kept = [verdict, anew_table(found), *every, lacking]
-    words = (results.duel.folder / "page.md").read_text(encoding="utf-8")
+    words = (results.duel.folder / "page.md").read_text(encoding="utf-8").replace("\n\n", f"\n\n{of_some(results)}", 1)
     tally = ", ".join(f"{sum(entry['verdict'] == each for entry in found)} {'hold' if each == HOLDS else each}" for each in ORDER)
     facts = {**prose.facts(results), "tally": tally.replace("does not hold", "do not hold"),
              **{table.name: section(table).lstrip("\n").partition("\n\n")[2].rstrip("\n") for table in kept}}

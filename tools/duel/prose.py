@@ -4,7 +4,6 @@
 {before HYPOTHESIS}, {last SCENE METHOD} (seconds of the slowest setting), {search SCENE METHOD: SETTING}, {fold METHOD N COLUMN},
 {time SCENE METHOD PERCENT}, {common SCENE} (the factor of times at the least error that both reach), and the facts below by their names.
 """
-import math
 import re
 import statistics
 
@@ -63,17 +62,21 @@ def facts(results):
     tried = [count for cells in results.searched.values() for label in tables.METHODS[:2] if (count := sum(cell.label == label for cell in cells))]
     title = {scene.name: scene.title for scene in results.duel.scenes}
     more = ", ".join(title[name] for name, seeds in search.items() if seeds > 1)
-    photons, beams = counted.far_biases(results) if results.spreads else (math.nan, math.nan)
+    far = far_words(*counted.far_biases(results)) if results.spreads else [ABSENT] * 3
     noisy = lists.too_noisy(results)
     scatter = [cell.work.std(ddof=1) / cell.work.mean() for field in results.fields.values() for cell in field.cells if field.seeds > 1]
     return {"machine": results.machine(), "seeds": str(max(field.seeds for field in results.fields.values())), "scenes": str(len(results.fields)),
             "search_more": f"{max(search.values())} on {more}" if more else "no more anywhere",
             "most_tried": str(max(tried)), "least_tried": str(min(tried)),
-            "noisy": "; ".join(noisy) or "none", "far_over": short(photons / beams), "far_photons": short(photons), "far_beams": short(beams),
+            "noisy": "; ".join(noisy) or "none", **dict(zip(("far_over", "far_photons", "far_beams"), far)),
             "scatter": f"{100 * statistics.quantiles(scatter, n=10)[-1]:.2g} %" if len(scatter) > 1 else "not known", "limit": limit(results),
             "quartile_seeds": quartile_seeds(results),
             "resamples": f"{RESAMPLES:,}", "truth_times": str(TRUTHS), "slack": f"{100 * (SLACK - 1):.0f} %",
             "slopes": slopes(results), "bright": bright(results)}
+
+
+def far_words(photons, beams):
+    return [short(photons / beams), short(photons), short(beams)]
 
 
 def slopes(results):

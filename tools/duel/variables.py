@@ -74,7 +74,8 @@ def lines(ax, series, title, x, y, ticks=None):
     for i, (name, points) in enumerate(series.items()):
         if points:
             ax.plot(*zip(*points), color=COLOURS[2 + i], marker=MARKERS[2 + i], linestyle=("-", "--", "-.", ":")[i], label=name)
-    ax.legend(fontsize=6.5, handlelength=3.5)
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(fontsize=6.5, handlelength=3.5)
     finish(ax, title, x, y, ticks)
 
 
