@@ -21,6 +21,7 @@ sys.dont_write_bytecode = True  # the source folder may be read-only
 
 from report import records
 from report.intervals import FEWEST_SEEDS, Answer, half_interval, is_worse, log_variance
+from report.record_tables import markdown
 from report.report_files import report, write
 
 STEPS = 5  # times and errors asked for, a scene
@@ -147,7 +148,7 @@ def statistics_md(cells):
         error = f"{cell.mean():.4g}" + (f" ± {interval:.1g}" if interval is not None else "")
         error += " \\*" if cell.is_at_the_references_noise() else ""
         lines.append("| " + " | ".join(
-            [cell.scene, cell.method, *(cell.parameters.get(name, "") for name in names), str(len(cell.errors)), error,
+            [*map(markdown, (cell.scene, cell.method, *(cell.parameters.get(name, "") for name in names))), str(len(cell.errors)), error,
              bias_text(cell), yes(cell.variance, ".2g"), f"{cell.seconds():.3g}",
              yes(cell.efficiency(), ".3g")]) + " |")
     return "\n".join(lines) + "\n"
@@ -221,7 +222,7 @@ def contests(cells, question):
         for cell in own:
             if cell.seconds() > 0 and cell.mean() > 0:
                 groups.setdefault(cell.method, []).append(cell)
-        lines += ["", f"## {title}", ""] + contest(groups, question, unit)
+        lines += ["", f"## {markdown(title)}", ""] + contest(groups, question, unit)
     return "\n".join(lines) + "\n"
 
 

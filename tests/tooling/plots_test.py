@@ -348,6 +348,15 @@ class Plots(unittest.TestCase):
         rows = [line for line in text.splitlines() if "&" in line]
         self.assertEqual(len({row.count(" & ") for row in rows}), 1)
 
+    def test_markdown_and_html_show_the_html_of_names(self):
+        self.table([record(scene="<img src=x onerror=alert(1)>&|", seed=s) for s in (1, 2)])
+        self.succeeds()
+        for name in ("summary.md", "index.html"):
+            text = (self.report / name).read_text(encoding="utf-8")
+            self.assertNotIn("<img src=x", text, name)
+            self.assertIn("&lt;img src=x onerror=alert(1)&gt;&amp;", text, name)
+        self.assertIn(r"&amp;\| |", (self.report / "summary.md").read_text(encoding="utf-8"))
+
     def test_what_is_the_same_in_all_rows_has_no_column(self):
         header = (*FIXED, "photons", "height", "filter_k")
         self.table([record(seed=s, photons=n, height=96) for s in (1, 2) for n in (1000, 2000)], header)

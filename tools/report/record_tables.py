@@ -122,12 +122,17 @@ def missed_light(records):
 
 
 def summary_md(records):
-    line = lambda fields: "| " + " | ".join(field.replace("|", r"\|") for field in fields) + " |\n"
+    line = lambda fields: "| " + " | ".join(map(markdown, fields)) + " |\n"
     titles = heading(records)
-    return (CAPTION + said_of_shared(records) + "\n\n" + line(titles) + "|" + "---|" * len(titles) + "\n"
+    return (CAPTION + said_of_shared(records, markdown) + "\n\n" + line(titles) + "|" + "---|" * len(titles) + "\n"
             + "".join(line(row) for row in body(records))
             + "".join(["\nLight that caustics lack:\n\n"] * any(missed_light(records)))
-            + "".join(f"* {sentence}\n" for sentence in missed_light(records)))
+            + "".join(f"* {markdown(sentence)}\n" for sentence in missed_light(records)))
+
+
+def markdown(text):
+    """A text of others in Markdown: its HTML is shown, not obeyed, and it stays in its line and its cell."""
+    return " ".join(html.escape(text, quote=False).replace("|", r"\|").split())
 
 
 def summary_tex(records):
