@@ -38,7 +38,7 @@ LIBRARIES = {
     "OpenImageIO/": ["core/picture/openimageio_source.cpp"],
     "OpenEXR/": ["core/picture/exr_file.cpp"],
     "png.h": ["core/picture/png_file.cpp", "tests/support/png_kinds.cpp"],
-    "nlohmann/": ["core/scene_file/json_reader.cpp", "core/scene_file/json_document.h", "core/scene_file/json_document.cpp",
+    "nlohmann/": ["core/scene_file/json_reader.h", "core/scene_file/json_reader.cpp", "core/scene_file/json_document.h", "core/scene_file/json_document.cpp",
                   "experiments/", "tests/"],
     "tbb/": ["core/base/parallel.cpp"],
     "oneapi/": ["core/base/parallel.cpp"],

@@ -1,6 +1,7 @@
 #include "core/base/isa.h"
 
 #include "core/base/error.h"
+#include "core/base/near_words.h"
 
 namespace caustics {
 
@@ -29,12 +30,14 @@ Isa widest_isa() { return supported_isas().back(); }
 
 Isa isa_from_name(const std::string& wanted) {
     std::string known;
+    std::vector<std::string> names;
     for (const Isa isa : supported_isas()) {
         if (wanted == name(isa)) return isa;
-        known += (known.empty() ? "" : ", ") + std::string(name(isa));
+        names.emplace_back(name(isa));
+        known += (known.empty() ? "" : ", ") + names.back();
     }
-    throw InputError("instruction set \"" + wanted + "\" cannot be run here (known: " + known +
-                     ")");
+    throw InputError("instruction set \"" + wanted + "\" cannot be run here" +
+                     did_you_mean(wanted, names) + " (known: " + known + ")");
 }
 
 }  // namespace caustics

@@ -1,5 +1,6 @@
 #include "core/material/conductor.h"
 
+#include "core/base/lower_case.h"
 #include "core/material/fresnel.h"
 
 namespace caustics {
@@ -24,7 +25,7 @@ ObjectText Conductor::text() {
 
 Conductor Conductor::read(const JsonNode& node, Assets&) {
     if (const auto material = node.find("material"))
-        if (material->as_string() != "none")
+        if (lower_case(material->as_string()) != "none")
             material->fail("material \"" + material->as_string() +
                            "\" is not supported (yet) (known: none)");
     return {read_colour(node, "specular_reflectance", 1, 1)};

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/lower_case.h"
+#include "core/base/near_words.h"
 
 namespace caustics::scene_file {
 namespace {
@@ -22,9 +23,13 @@ constexpr std::array<std::pair<const char*, float>, 23> named_iors{{
 
 Ior read_named_glass(const JsonNode& node) {
     const std::string name = lower_case(node.as_string());
-    for (const NamedGlass& glass : named_glasses())
+    std::vector<std::string> known;
+    for (const NamedGlass& glass : named_glasses()) {
         if (name == glass.name) return Ior::sellmeier(glass.terms);
-    node.fail("unknown glass \"" + node.as_string() + "\" (known: " + named_glass_list() + ")");
+        known.emplace_back(glass.name);
+    }
+    node.fail("unknown glass \"" + node.as_string() + "\"" + did_you_mean(name, known) +
+              " (known: " + named_glass_list() + ")");
 }
 
 Ior read_sellmeier(const JsonNode& node) {

@@ -7,6 +7,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/hash.h"
+#include "core/base/lower_case.h"
 #include "core/lights/ambient_light.h"
 #include "core/material/bsdf_reader.h"
 #include "core/scene/scene_frame.h"
@@ -139,7 +140,7 @@ struct Draft {
 
 // The children of the scene differ by their types alone.
 void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
-    const std::string type = node.at("type").as_string();
+    const std::string type = lower_case(node.at("type").as_string());
     std::vector<std::string> known{"perspective"};
     std::vector<std::string> later{"envmap",      "projector", "directionalarea",
                                    "sunsky",      "thinlens",  "orthographic",

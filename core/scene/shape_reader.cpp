@@ -192,7 +192,7 @@ void read_nested(const JsonNode& node, Shape& shape, Assets& assets) {
     const auto children = node.children();
     node.finish();
     for (const auto& [key, child] : children) {
-        const std::string type = child.at("type").as_string();
+        const std::string type = lower_case(child.at("type").as_string());
         if (is_bsdf_type(type)) {
             if (bsdf_key) child.fail(takes_one("bsdf", *bsdf_key, key));
             bsdf_key = key;

@@ -18,31 +18,45 @@ constexpr std::size_t max_depth = 64;
 constexpr std::size_t most_inclusions = 10'000;
 constexpr std::size_t most_included_bytes = std::size_t{1} << 26;
 
-/// Follows the parser's events to know the pointer of each key, and refuses a key's second time and
-/// control characters: a file's name would end at a NUL, and no name is printed with them.
-class DocumentGuard {
+/// The library's message without its "[json.exception…] " tag.
+std::string untagged(const std::string& message) {
+    const std::size_t end = message.find("] ");
+    return end == std::string::npos ? message : message.substr(end + 2);
+}
+
+/// Reads a text without keeping its values. Knows the pointer of each key, and refuses what the grammar does not
+/// allow, a key's second time and control characters: a file's name would end at a NUL, and no name is printed with
+/// them. A callback of json::parse() could do the same, but with one the library looks through all of an object's
+/// children at the end of each child that is an object.
+class DocumentGuard final : public nlohmann::json_sax<json> {
 public:
     explicit DocumentGuard(const std::string& origin) : origin_(origin) {}
 
-    bool operator()(int, json::parse_event_t event, json& value) {
-        switch (event) {
-            case json::parse_event_t::object_start:
-            case json::parse_event_t::array_start:
-                begin_value();
-                if (levels_.size() >= max_depth)
-                    throw InputError(origin_ + ": " + pointer() + ": nested more than " +
-                                     std::to_string(max_depth) + " levels deep");
-                levels_.push_back({event == json::parse_event_t::array_start, 0, {}, {}});
-                break;
-            case json::parse_event_t::object_end:
-            case json::parse_event_t::array_end: levels_.pop_back(); break;
-            case json::parse_event_t::value:
-                begin_value();
-                if (value.is_string()) require_printable(value.get_ref<const std::string&>());
-                break;
-            case json::parse_event_t::key: begin_key(value.get<std::string>()); break;
-        }
+    bool null() override { return begin_value(); }
+    bool boolean(bool) override { return begin_value(); }
+    bool number_integer(number_integer_t) override { return begin_value(); }
+    bool number_unsigned(number_unsigned_t) override { return begin_value(); }
+    bool number_float(number_float_t, const string_t&) override { return begin_value(); }
+    bool binary(binary_t&) override { return begin_value(); }
+    bool string(string_t& value) override {
+        begin_value();
+        require_printable(value);
         return true;
+    }
+    bool start_object(std::size_t) override { return begin_level(false); }
+    bool start_array(std::size_t) override { return begin_level(true); }
+    bool end_object() override { return end_level(); }
+    bool end_array() override { return end_level(); }
+    bool key(string_t& name) override {
+        require_printable(name);
+        levels_.back().key = name;
+        if (!levels_.back().keys.insert(name).second)
+            throw InputError(origin_ + ": " + pointer() + ": key " + shown(name) +
+                             " is given twice in one object");
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&, const json::exception& error) override {
+        throw InputError(origin_ + ": " + untagged(error.what()));
     }
 
 private:
@@ -50,12 +64,27 @@ private:
         bool array;
         std::size_t count;
         std::string key;
-        std::set<std::string> keys;
+        std::unordered_set<std::string> keys;
     };
 
-    void begin_value() {
+    bool begin_value() {
         if (!levels_.empty() && levels_.back().array)
             levels_.back().key = std::to_string(levels_.back().count++);
+        return true;
+    }
+
+    bool begin_level(bool array) {
+        begin_value();
+        if (levels_.size() >= max_depth)
+            throw InputError(origin_ + ": " + pointer() + ": nested more than " +
+                             std::to_string(max_depth) + " levels deep");
+        levels_.push_back({array, 0, {}, {}});
+        return true;
+    }
+
+    bool end_level() {
+        levels_.pop_back();
+        return true;
     }
 
     void require_printable(const std::string& text) const {
@@ -67,14 +96,6 @@ private:
                              shown(text));
     }
 
-    void begin_key(const std::string& key) {
-        require_printable(key);
-        levels_.back().key = key;
-        if (!levels_.back().keys.insert(key).second)
-            throw InputError(origin_ + ": " + pointer() + ": key " + shown(key) +
-                             " is given twice in one object");
-    }
-
     std::string pointer() const {
         std::string path;
         for (const Level& level : levels_) path = child_pointer(path, level.key);
@@ -84,12 +105,6 @@ private:
     std::string origin_;
     std::vector<Level> levels_;
 };
-
-/// The library's message without its "[json.exception…] " tag.
-std::string untagged(const std::string& message) {
-    const std::size_t end = message.find("] ");
-    return end == std::string::npos ? message : message.substr(end + 2);
-}
 
 std::string numeral(double value) {
     std::string text(32, '\0');
@@ -176,6 +191,28 @@ private:
 
 }  // namespace
 
+bool JsonDocument::is_known(const json* object, const std::string& key) {
+    const auto name = names.find(key);
+    const std::vector<const std::string*>& known = keys[object].known;
+    return name != names.end() && std::ranges::find(known, &*name) != known.end();
+}
+
+void JsonDocument::make_known(const json* object, const std::string& key) {
+    if (!is_known(object, key)) keys[object].known.push_back(&*names.insert(key).first);
+}
+
+std::vector<std::string> JsonDocument::known_keys(const json* object) {
+    std::vector<std::string> all;
+    for (const std::string* const name : keys[object].known) all.push_back(*name);
+    return all;
+}
+
+void JsonDocument::forget_keys(const json& value) {
+    if (value.is_object()) keys.erase(&value);
+    if (value.is_structured())
+        for (const json& child : value) forget_keys(child);
+}
+
 std::map<std::string, std::filesystem::path>::const_iterator JsonDocument::inclusion(
     const std::string& pointer) const {
     for (std::string prefix = pointer;;) {
@@ -229,22 +266,23 @@ std::string join(const std::vector<std::string>& words) {
     return text.empty() ? "none" : text;
 }
 
-std::string key_list(const json& object) {
+std::vector<std::string> keys_of(const json& value) {
     std::vector<std::string> keys;
-    for (const auto& [key, child] : object.items()) keys.push_back(key);
-    return join(keys);
+    if (value.is_object())
+        for (const auto& [key, child] : value.items()) keys.push_back(key);
+    return keys;
 }
+
+std::string key_list(const json& object) { return join(keys_of(object)); }
 
 json parse_json(const std::string& text, const std::string& origin) {
     // The library takes a NUL for the end of the text, whatever follows.
     if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
         throw InputError(origin + ": byte " + std::to_string(nul + 1) +
                          " is NUL, which JSON has not (write it as UTF-8 text)");
-    try {
-        return json::parse(text, DocumentGuard(origin));
-    } catch (const json::exception& e) {
-        throw InputError(origin + ": " + untagged(e.what()));
-    }
+    DocumentGuard guard(origin);
+    json::sax_parse(text, &guard);
+    return json::parse(text);
 }
 
 void resolve_includes(json& value, const std::string& pointer, const std::filesystem::path& file,

@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 #include <string>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -14,9 +16,9 @@ namespace caustics {
 struct JsonDocument {
     /// The keys of one object that its reader asked for.
     struct Keys {
-        std::vector<std::string> known;  ///< by name, in the order of asking
-        std::set<std::string> taken;     ///< as children of any name
-        bool takes_objects = false;      ///< of any name
+        std::vector<const std::string*> known;  ///< by name, in the order of asking; of `names`
+        std::set<std::string> taken;            ///< as children of any name
+        bool takes_objects = false;             ///< of any name
     };
 
     nlohmann::json root;
@@ -25,11 +27,16 @@ struct JsonDocument {
     /// Where a value came from another file: its pointer -> that file.
     std::map<std::string, std::filesystem::path> included;
     std::vector<std::filesystem::path> files_included;  ///< all, also where others took their place
-    mutable std::map<std::string, Keys> keys;           ///< by the pointer of the object
+    std::unordered_map<const nlohmann::json*, Keys> keys;  ///< by the object
+    std::unordered_set<std::string> names;                 ///< all keys that readers asked for
 
-    const nlohmann::json& value(const std::string& pointer) const {
-        return root.at(nlohmann::json::json_pointer(pointer));
-    }
+    bool is_known(const nlohmann::json* object, const std::string& key);
+    void make_known(const nlohmann::json* object, const std::string& key);
+    /// The keys that the object's reader asked for.
+    std::vector<std::string> known_keys(const nlohmann::json* object);
+    /// What was asked for in a value that another one is about to replace.
+    void forget_keys(const nlohmann::json& value);
+
     /// The entry of `included` at or above a pointer, nearest first; end() for the main file.
     std::map<std::string, std::filesystem::path>::const_iterator inclusion(
         const std::string& pointer) const;
@@ -42,7 +49,9 @@ struct JsonDocument {
 std::string child_pointer(const std::string& pointer, const std::string& key);
 /// A key or value as JSON text on one line, cut to a readable length.
 std::string shown(const nlohmann::json& value);
-/// `"a", "b"`, or a word for none.
+/// The keys of an object; none of any other value.
+std::vector<std::string> keys_of(const nlohmann::json& value);
+/// "a, b", or a word for none.
 std::string key_list(const nlohmann::json& object);
 std::string join(const std::vector<std::string>& words);
 

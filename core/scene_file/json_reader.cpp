@@ -9,6 +9,8 @@
 #include "core/base/atomic_file.h"
 #include "core/base/decimal.h"
 #include "core/base/error.h"
+#include "core/base/lower_case.h"
+#include "core/base/near_words.h"
 #include "core/scene_file/json_document.h"
 
 namespace caustics {
@@ -53,24 +55,20 @@ json value_or_string(const std::string& text, const std::string& place) {
     return parse_json(json(text).dump(), place);
 }
 
-template <class Value>
-void erase_at_or_below(std::map<std::string, Value>& map, const std::string& pointer) {
-    std::erase_if(map, [&](const auto& entry) {
-        return entry.first == pointer || entry.first.starts_with(pointer + "/");
-    });
-}
-
 }  // namespace
 
-JsonNode::JsonNode(std::shared_ptr<JsonDocument> document, std::string pointer)
-    : document_(std::move(document)), pointer_(std::move(pointer)) {}
+JsonNode::JsonNode(std::shared_ptr<JsonDocument> document)
+    : document_(std::move(document)), value_(&document_->root) {}
+
+JsonNode::JsonNode(const JsonNode& parent, const std::string& key, const json& value)
+    : document_(parent.document_), pointer_(child_pointer(parent.pointer_, key)), value_(&value) {}
 
 JsonNode JsonNode::parse_file(const std::filesystem::path& file) {
     const auto document = std::make_shared<JsonDocument>();
     document->file = file;
     document->root = parse_json(read_whole_file(file), file.string());
     resolve_includes(document->root, "", file, *document);
-    return {document, ""};
+    return JsonNode(document);
 }
 
 JsonNode JsonNode::parse_text(const std::string& text, const std::string& origin,
@@ -79,7 +77,7 @@ JsonNode JsonNode::parse_text(const std::string& text, const std::string& origin
     document->file = origin;
     document->written_in = written_in;
     document->root = parse_json(text, origin);
-    return {document, ""};
+    return JsonNode(document);
 }
 
 void JsonNode::set(const std::string& pointer, const std::string& value) {
@@ -97,27 +95,30 @@ void JsonNode::set(const std::string& pointer, const std::string& value) {
             if (target->contains(tokens[i]) || i + 1 == tokens.size()) next = &(*target)[tokens[i]];
         }
         if (next == nullptr)
-            throw InputError(fmt::format("{}: there is nothing of that name; {} {}", what,
+            throw InputError(fmt::format("{}: there is nothing of that name{}; {} {}", what,
+                                         did_you_mean(tokens[i], keys_of(*target)),
                                          reached.empty() ? "/" : reached, contents(*target)));
         target = next;
         reached = child_pointer(reached, tokens[i]);
     }
-    erase_at_or_below(document_->included, reached);
-    erase_at_or_below(document_->keys, reached);
+    std::erase_if(document_->included, [&](const auto& entry) {
+        return entry.first == reached || entry.first.starts_with(reached + "/");
+    });
+    document_->forget_keys(*target);
     *target = value_or_string(value, what);
-    resolve_includes(*target, reached, JsonNode(document_, reached).file(), *document_);
+    resolve_includes(*target, reached, file_at(reached), *document_);
 }
 
-bool JsonNode::is_object() const { return document_->value(pointer_).is_object(); }
-bool JsonNode::is_array() const { return document_->value(pointer_).is_array(); }
-bool JsonNode::is_number() const { return document_->value(pointer_).is_number(); }
-bool JsonNode::is_string() const { return document_->value(pointer_).is_string(); }
-bool JsonNode::is_bool() const { return document_->value(pointer_).is_boolean(); }
+bool JsonNode::is_object() const { return value_->is_object(); }
+bool JsonNode::is_array() const { return value_->is_array(); }
+bool JsonNode::is_number() const { return value_->is_number(); }
+bool JsonNode::is_string() const { return value_->is_string(); }
+bool JsonNode::is_bool() const { return value_->is_boolean(); }
 
-std::string JsonNode::words() const { return shown(document_->value(pointer_)); }
+std::string JsonNode::words() const { return shown(*value_); }
 
 double JsonNode::as_number() const {
-    const json& value = document_->value(pointer_);
+    const json& value = *value_;
     if (!value.is_number()) fail("expected a number, got " + shown(value));
     const double number = value.get<double>();
     if (!std::isfinite(number)) fail("expected a finite number");
@@ -132,9 +133,15 @@ double JsonNode::as_number_in(double low, double high) const {
 }
 
 std::int64_t JsonNode::as_integer_in(std::int64_t low, std::int64_t high) const {
-    const json& value = document_->value(pointer_);
-    if (!value.is_number()) fail("expected a whole number, got " + shown(value));
+    const json& value = *value_;
     const std::string range = fmt::format("is out of range (from {} to {})", low, high);
+    if (value.is_string()) {
+        const auto count = suffixed_count(value.get_ref<const std::string&>());
+        if (!count) fail("expected a whole number, got " + shown(value));
+        if (*count < low || *count > high) fail(shown(value) + " " + range);
+        return *count;
+    }
+    if (!value.is_number()) fail("expected a whole number, got " + shown(value));
     if (value.is_number_float()) {
         // 1e6 is a whole number too; beyond 2^53 a double no longer says which one.
         const double number = value.get<double>();
@@ -153,26 +160,27 @@ std::int64_t JsonNode::as_integer_in(std::int64_t low, std::int64_t high) const 
 
 bool JsonNode::as_bool() const {
     if (!is_bool()) fail("expected true or false, got " + words());
-    return document_->value(pointer_).get<bool>();
+    return value_->get<bool>();
 }
 
 std::string JsonNode::as_string() const {
     if (!is_string()) fail("expected a string, got " + words());
-    return document_->value(pointer_).get<std::string>();
+    return value_->get<std::string>();
 }
 
 std::size_t JsonNode::as_choice(const std::vector<std::string>& choices) const {
-    const json& value = document_->value(pointer_);
-    const auto found = value.is_string() ? std::find(choices.begin(), choices.end(),
-                                                     value.get_ref<const std::string&>())
-                                         : choices.end();
+    const json& value = *value_;
+    const auto found =
+        value.is_string() ? find_word(choices, value.get_ref<const std::string&>()) : choices.end();
     if (found == choices.end())
-        fail(fmt::format("{} is none of the choices ({})", shown(value), join(choices)));
+        fail(fmt::format("{} is none of the choices{} ({})", shown(value),
+                         value.is_string() ? did_you_mean(value.get<std::string>(), choices) : "",
+                         join(choices)));
     return static_cast<std::size_t>(found - choices.begin());
 }
 
 std::vector<double> JsonNode::as_numbers(std::size_t count) const {
-    const json& value = document_->value(pointer_);
+    const json& value = *value_;
     if (!value.is_array() || value.size() != count)
         fail(fmt::format("expected an array of {} numbers, got {}", count, shown(value)));
     std::vector<double> numbers;
@@ -181,53 +189,63 @@ std::vector<double> JsonNode::as_numbers(std::size_t count) const {
 }
 
 std::vector<JsonNode> JsonNode::as_array() const {
-    const json& value = document_->value(pointer_);
+    const json& value = *value_;
     if (!value.is_array()) fail("expected an array, got " + shown(value));
     std::vector<JsonNode> nodes;
     for (std::size_t i = 0; i < value.size(); ++i)
-        nodes.push_back(JsonNode(document_, child_pointer(pointer_, std::to_string(i))));
+        nodes.push_back(JsonNode(*this, std::to_string(i), value[i]));
     return nodes;
 }
 
 bool JsonNode::has(const std::string& key) const {
-    const json& value = document_->value(pointer_);
+    const json& value = *value_;
     if (!value.is_object()) fail("expected an object, got " + shown(value));
     return value.contains(key);
 }
 
 std::optional<JsonNode> JsonNode::find(const std::string& key) const {
-    const json& value = document_->value(pointer_);
+    const json& value = *value_;
     if (!value.is_object()) fail("expected an object, got " + shown(value));
-    std::vector<std::string>& known = document_->keys[pointer_].known;
-    if (std::find(known.begin(), known.end(), key) == known.end()) known.push_back(key);
-    if (!value.contains(key)) return std::nullopt;
-    return JsonNode(document_, child_pointer(pointer_, key));
+    document_->make_known(value_, key);
+    const auto child = value.find(key);
+    if (child == value.end()) return std::nullopt;
+    return JsonNode(*this, key, *child);
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
     const std::optional<JsonNode> child = find(key);
-    if (!child)
-        fail(fmt::format("key {} is missing (present: {})", shown(key),
-                         key_list(document_->value(pointer_))));
+    if (!child) fail_for_missing(key);
     return *child;
 }
 
+void JsonNode::fail_for_missing(const std::string& key) const {
+    const std::vector<std::string> present = keys_of(*value_);
+    std::vector<std::string> unknown;
+    std::ranges::copy_if(present, std::back_inserter(unknown), [&](const std::string& each) {
+        return !document_->is_known(value_, each);
+    });
+    const std::vector<std::string> near = near_words(key, unknown);
+    fail(fmt::format("key {} is missing{} (present: {})", shown(key),
+                     near.empty() ? "" : fmt::format(": did you mean it by {}?", near.front()),
+                     join(present)));
+}
+
 std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {
-    const json& value = document_->value(pointer_);
+    const json& value = *value_;
     if (!value.is_object()) fail("expected an object, got " + shown(value));
-    JsonDocument::Keys& keys = document_->keys[pointer_];
+    JsonDocument::Keys& keys = document_->keys[value_];
     std::vector<std::pair<std::string, JsonNode>> nodes;
     for (const auto& [key, child] : value.items()) {
-        if (std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end()) continue;
+        if (document_->is_known(value_, key)) continue;
         if (!keys.taken.insert(key).second) continue;
-        nodes.emplace_back(key, JsonNode(document_, child_pointer(pointer_, key)));
+        nodes.emplace_back(key, JsonNode(*this, key, child));
     }
     return nodes;
 }
 
 std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
     std::vector<std::pair<std::string, JsonNode>> nodes = others();
-    JsonDocument::Keys& keys = document_->keys[pointer_];
+    JsonDocument::Keys& keys = document_->keys[value_];
     keys.takes_objects = true;
     std::erase_if(nodes, [&](const auto& entry) {
         if (entry.second.is_object()) return false;
@@ -238,17 +256,17 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
 }
 
 void JsonNode::finish() const {
-    const json& value = document_->value(pointer_);
+    const json& value = *value_;
     if (!value.is_object()) fail("expected an object, got " + shown(value));
-    const JsonDocument::Keys& keys = document_->keys[pointer_];
+    const JsonDocument::Keys& keys = document_->keys[value_];
     for (const auto& [key, child] : value.items()) {
-        const bool known = std::find(keys.known.begin(), keys.known.end(), key) != keys.known.end();
-        if (!known && !keys.taken.contains(key))
-            fail(fmt::format(
-                "unknown key {} (known: {}{})", shown(key), join(keys.known),
-                keys.takes_objects
-                    ? "; with a name of its own: an object with a type, not " + shown(child)
-                    : ""));
+        if (document_->is_known(value_, key) || keys.taken.contains(key)) continue;
+        const std::vector<std::string> known = document_->known_keys(value_);
+        fail(fmt::format(
+            "unknown key {}{} (known: {}{})", shown(key), did_you_mean(key, known), join(known),
+            keys.takes_objects
+                ? "; with a name of its own: an object with a type, not " + shown(child)
+                : ""));
     }
 }
 
@@ -256,8 +274,10 @@ void JsonNode::fail(const std::string& reason) const { document_->fail(pointer_,
 
 std::string JsonNode::place() const { return document_->place(pointer_); }
 
-std::filesystem::path JsonNode::file() const {
-    const auto inclusion = document_->inclusion(pointer_);
+std::filesystem::path JsonNode::file() const { return file_at(pointer_); }
+
+std::filesystem::path JsonNode::file_at(const std::string& pointer) const {
+    const auto inclusion = document_->inclusion(pointer);
     if (inclusion != document_->included.end()) return inclusion->second;
     return document_->written_in.empty() ? document_->file : document_->written_in;
 }
@@ -268,6 +288,6 @@ std::vector<std::filesystem::path> JsonNode::files() const {
     return all;
 }
 
-std::string JsonNode::canonical() const { return canonical_json(document_->value(pointer_)); }
+std::string JsonNode::canonical() const { return canonical_json(*value_); }
 
 }  // namespace caustics

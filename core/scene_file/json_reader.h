@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace caustics {
 
 struct JsonDocument;
@@ -27,7 +29,7 @@ public:
 
     /// Replaces the value at a JSON pointer of RFC 6901 ("/water/resolution"), or adds its last key
     /// to an existing object. `value` is JSON, or else taken as a string. Of the whole document,
-    /// whatever node it is called on; call it before reading.
+    /// whatever node it is called on; call it before reading: nodes in what it replaces are not valid any more.
     void set(const std::string& pointer, const std::string& value);
 
     bool is_object() const;
@@ -38,10 +40,11 @@ public:
 
     double as_number() const;  ///< finite
     double as_number_in(double low, double high) const;
+    /// A whole number, or text that suffixed_count() reads: "100k".
     std::int64_t as_integer_in(std::int64_t low, std::int64_t high) const;
     bool as_bool() const;
     std::string as_string() const;
-    /// The index of the string among the choices.
+    /// The index of the string among the choices; capital letters count as small ones.
     std::size_t as_choice(const std::vector<std::string>& choices) const;
     std::vector<double> as_numbers(std::size_t count) const;  ///< an array of so many numbers
     std::vector<JsonNode> as_array() const;
@@ -72,9 +75,13 @@ public:
     std::string canonical() const;
 
 private:
-    JsonNode(std::shared_ptr<JsonDocument> document, std::string pointer);
+    explicit JsonNode(std::shared_ptr<JsonDocument> document);
+    JsonNode(const JsonNode& parent, const std::string& key, const nlohmann::json& value);
+    std::filesystem::path file_at(const std::string& pointer) const;
+    [[noreturn]] void fail_for_missing(const std::string& key) const;
     std::shared_ptr<JsonDocument> document_;
     std::string pointer_;
+    const nlohmann::json* value_;  ///< of the document
 };
 
 }  // namespace caustics

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/base/atomic_file.h"
+#include "core/base/lower_case.h"
+#include "core/base/near_words.h"
 #include "core/math/coordinate_limit.h"
 
 namespace caustics::scene_file {
@@ -160,10 +162,11 @@ std::string read_type(const JsonNode& node, const std::string& family,
                       const std::vector<std::string>& known,
                       const std::vector<std::string>& later) {
     const std::string type = node.at("type").as_string();
-    if (std::ranges::find(known, type) != known.end()) return type;
-    const bool planned = std::ranges::find(later, type) != later.end();
+    if (const auto found = find_word(known, type); found != known.end()) return *found;
+    const bool planned = find_word(later, type) != later.end();
     node.fail(family + " type \"" + type + "\" is " +
-              (planned ? "not supported (yet)" : "unknown") + " (known: " + joined(known) + ")");
+              (planned ? "not supported (yet)" : "unknown" + did_you_mean(type, known)) +
+              " (known: " + joined(known) + ")");
 }
 
 }  // namespace caustics::scene_file

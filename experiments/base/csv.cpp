@@ -10,8 +10,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/base/decimal.h"
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
+#include "core/base/key_text.h"
+#include "core/base/near_words.h"
 #include "experiments/base/file_io.h"
 
 namespace caustics::experiments {
@@ -45,28 +48,22 @@ std::vector<std::string> split(const std::string& line) {
 }
 
 double number(const std::string& text, const std::string& place, const std::string& column) {
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    // from_chars takes no leading plus sign, other writers of tables do.
-    const char* const begin = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
-    const std::from_chars_result result = std::from_chars(begin, end, value);
-    if (result.ec != std::errc() || result.ptr != end)
+    const std::optional<double> value = foreign_number(text);
+    if (!value)
         throw InputError(fmt::format("{}: {} is \"{}\", not a number", place, column, text));
-    if (!std::isfinite(value))
+    if (!std::isfinite(*value))
         throw InputError(fmt::format("{}: {} is {}, not a finite number", place, column, text));
-    return value;
+    return *value;
 }
 
 void check_header(const std::string& file, const std::vector<std::string>& header,
                   const std::vector<std::string>& required,
                   const std::vector<std::string>& optional) {
+    const std::vector<std::string> all = joined(required, optional);
     for (std::size_t i = 0; i < header.size(); ++i) {
-        const bool known = std::ranges::count(required, header[i]) > 0 ||
-                           std::ranges::count(optional, header[i]) > 0;
-        if (!known)
-            throw InputError(fmt::format("{}: unknown column \"{}\" (known: {}, {})", file,
-                                         header[i], fmt::join(required, ", "),
-                                         fmt::join(optional, ", ")));
+        if (std::ranges::find(all, header[i]) == all.end())
+            throw InputError(fmt::format("{}: unknown column \"{}\"{} (known: {})", file, header[i],
+                                         did_you_mean(header[i], all), fmt::join(all, ", ")));
         if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i), header[i]) !=
             header.begin() + static_cast<std::ptrdiff_t>(i))
             throw InputError(fmt::format("{}: column \"{}\" stands twice", file, header[i]));

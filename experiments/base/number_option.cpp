@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -11,10 +12,15 @@ namespace caustics::experiments {
 
 template <typename Number>
 Number number_in(const std::string& option, const std::string& text, Number low, Number high) {
-    const std::optional<Number> value = decimal<Number>(text);
+    constexpr bool is_whole = std::is_integral_v<Number>;
+    std::optional<Number> value = decimal<Number>(text);
+    if constexpr (is_whole)
+        if (const auto count = suffixed_count(text); count && std::in_range<Number>(*count))
+            value = static_cast<Number>(*count);
     if (value && *value >= low && *value <= high) return *value;
-    throw InputError(fmt::format("{} \"{}\": expected a {}number from {} to {}, in decimal", option,
-                                 text, std::is_integral_v<Number> ? "whole " : "", low, high));
+    throw InputError(fmt::format("{} \"{}\": expected a {}number from {} to {}, in decimal{}",
+                                 option, text, is_whole ? "whole " : "", low, high,
+                                 is_whole ? " (100k and 1.5M are read too)" : ""));
 }
 
 template double number_in(const std::string&, const std::string&, double, double);

@@ -9,7 +9,7 @@
 namespace caustics::experiments {
 
 /// The number that an option was given as. Throws InputError naming the option unless it is a
-/// decimal() from `low` to `high`.
+/// decimal(), or for a whole number a suffixed_count(), from `low` to `high`.
 template <typename Number>
 Number number_in(const std::string& option, const std::string& text, Number low, Number high);
 extern template double number_in(const std::string&, const std::string&, double, double);

@@ -1,6 +1,7 @@
 #include "experiments/cli/command_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <sstream>
@@ -8,48 +9,39 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/near_words.h"
 #include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
+#include "experiments/cli/unknown_option.h"
 #include "experiments/cli/verbs.h"
 
 namespace caustics::experiments {
 
 namespace {
 
-std::string verb_names(const std::vector<Verb>& verbs) {
-    std::string names;
-    for (const Verb& verb : verbs) names += (names.empty() ? "" : ", ") + verb.app->get_name();
-    return names;
-}
-
-std::string option_names(const CLI::App& app) {
-    std::string names;
-    for (const CLI::Option* option : app.get_options())
-        if (!option->get_positional())
-            names += (names.empty() ? "" : ", ") + option->get_name(false, true);
-    return names;
+[[noreturn]] void refuse_no_verb(const std::vector<Verb>& verbs) {
+    throw InputError(fmt::format("no verb given (known: {})", fmt::join(names_of(verbs), ", ")));
 }
 
 /// The parser's own messages name no alternatives, and it complains of what is missing before what
 /// is misspelt; so unknown words are looked for first.
 void require_known_words(const CLI::App& app, const std::vector<Verb>& verbs,
                          const std::vector<std::string>& words) {
-    if (words.empty()) throw InputError("no verb given (known: " + verb_names(verbs) + ")");
+    if (words.empty()) refuse_no_verb(verbs);
     const CLI::App* scope = &app;
     if (words[0][0] != '-') {
         const auto verb = std::ranges::find_if(
             verbs, [&](const Verb& each) { return each.app->get_name() == words[0]; });
         if (verb == verbs.end())
-            throw InputError(
-                fmt::format("unknown verb \"{}\" (known: {})", words[0], verb_names(verbs)));
+            throw InputError(fmt::format("unknown verb \"{}\"{} (known: {})", words[0],
+                                         did_you_mean(words[0], names_of(verbs)),
+                                         fmt::join(names_of(verbs), ", ")));
         scope = verb->app;
     }
-    for (const std::string& word : words) {
-        if (word.size() < 3 || word.compare(0, 2, "--") != 0) continue;
-        const std::string name = word.substr(0, word.find('='));
-        if (scope->get_option_no_throw(name) == nullptr)
-            throw InputError(
-                fmt::format("unknown option {} (known: {})", name, option_names(*scope)));
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i].size() < 3 || words[i].compare(0, 2, "--") != 0) continue;
+        const std::string name = words[i].substr(0, words[i].find('='));
+        if (scope->get_option_no_throw(name) == nullptr) refuse_option(*scope, words, i);
     }
 }
 
@@ -65,7 +57,7 @@ void require_no_empty_word(const std::vector<Verb>& verbs) {
 std::function<int()> work_of(const std::vector<Verb>& verbs) {
     for (const Verb& verb : verbs)
         if (verb.app->parsed()) return verb.run;
-    throw InputError("no verb given (known: " + verb_names(verbs) + ")");
+    refuse_no_verb(verbs);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <sstream>
 
-#include "core/base/error.h"
 #include "core/scene/scene_keys.h"
 #include "experiments/plan/record_columns.h"
 #include "experiments/plan/sweep_keys.h"
@@ -144,8 +143,7 @@ std::string help_text(const std::string& topic) {
     if (const std::string text = indirect_help(topic); !text.empty()) return text.substr(1);
     for (const FileTopic& each : file_topics)
         if (topic == each.name) return each.text();
-    throw InputError(
-        fmt::format("unknown topic \"{}\" (known: {})", topic, fmt::join(help_topics(), ", ")));
+    return {};
 }
 
 }  // namespace caustics::experiments

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/key_text.h"
+#include "core/base/near_words.h"
 #include "experiments/base/file_io.h"
 #include "experiments/cli/help_text.h"
 #include "experiments/cli/verbs.h"
@@ -13,29 +14,38 @@ namespace caustics::experiments {
 
 namespace {
 
-/// Verbs have words of their own to say.
-void require_no_verb(const std::string& topic) {
-    const std::vector<std::string> topics = help_topics();
-    if (std::ranges::find(topics, topic) != topics.end()) return;
+/// What `causticbench VERB --help` prints; empty where no verb has that name.
+std::string verb_help(const std::vector<Verb>& verbs, const std::string& name) {
+    for (const Verb& verb : verbs)
+        if (verb.app->get_name() == name) return verb.app->help("causticbench");
+    return {};
+}
+
+void print_help(const std::string& topic) {
     CLI::App app;
-    for (const Verb& verb : add_verbs(app))
-        if (verb.app->get_name() == topic)
-            throw InputError(
-                fmt::format("\"{}\" is a verb, of which causticbench {} --help tells (topics: {})",
-                            topic, topic, fmt::join(topics, ", ")));
+    const std::vector<Verb> verbs = add_verbs(app);
+    const std::string text = verb_help(verbs, topic) + help_text(topic);
+    if (text.empty()) {
+        const std::vector<std::string> known = joined(help_topics(), names_of(verbs));
+        throw InputError(fmt::format("unknown topic \"{}\"{} (known: {})", topic,
+                                     did_you_mean(topic, known), fmt::join(known, ", ")));
+    }
+    write_stdout(text);
+    if (topic.empty())
+        write_stdout(fmt::format("help VERB prints what VERB --help does: {}.\n",
+                                 fmt::join(names_of(verbs), ", ")));
 }
 
 }  // namespace
 
 Verb add_help(CLI::App& app) {
     auto topic = std::make_shared<std::string>();
-    CLI::App* const verb =
-        app.add_subcommand("help", "Every key of a method or a kind of file, with its meaning");
-    verb->add_option("TOPIC", *topic, "What to tell about (default: the topics)");
-    verb->footer("Example:\n  causticbench help photonmap");
+    CLI::App* const verb = app.add_subcommand(
+        "help", "The options of a verb, or every key of a method or a kind of file");
+    verb->add_option("TOPIC", *topic, "Verb, method or kind of file (default: a list of them)");
+    verb->footer("Example:\n  causticbench help photonmap\n  causticbench help render");
     return {verb, [topic] {
-                require_no_verb(*topic);
-                write_stdout(help_text(*topic));
+                print_help(*topic);
                 return 0;
             }};
 }

@@ -29,7 +29,7 @@ struct SweepFlags {
     std::string shard;
     std::vector<std::string> filters;
     double timeout = 0;
-    int memory = 0;  ///< MiB
+    double memory = 0;  ///< MiB
     int jobs = 1;
 };
 
@@ -49,7 +49,7 @@ SweepOptions options_of(const SweepFlags& flags) {
     options.trials.threads = flags.machine.threads;
     options.trials.isa = flags.machine.isa;
     options.trials.timeout = flags.timeout;
-    options.trials.memory_bytes = static_cast<std::uint64_t>(flags.memory) << 20;
+    options.trials.memory_bytes = static_cast<std::uint64_t>(flags.memory * 1048576);
     return options;
 }
 
@@ -97,7 +97,7 @@ Verb add_sweep(CLI::App& app) {
     verb->add_flag("--fail-fast", flags->fail_fast, "Stop at the first trial that fails");
     add_number(*verb, "--timeout", flags->timeout, 0.001, 1e9,
                "Seconds after which a trial is given up");
-    add_number(*verb, "--memory", flags->memory, 1, 1 << 30,
+    add_number(*verb, "--memory", flags->memory, 1.0, 1073741824.0,
                "MiB that a trial may have in memory at a time");
     add_number(*verb, "--jobs", flags->jobs, 1, 4096,
                "Trials at a time (default 1, so that times hold)");

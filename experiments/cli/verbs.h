@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace caustics::experiments {
@@ -30,6 +31,12 @@ inline std::vector<Verb> add_verbs(CLI::App& app) {
     return {add_render(app), add_probe(app),  add_sweep(app),   add_compare(app),
             add_info(app),   add_merge(app),  add_explain(app), add_report(app),
             add_verify(app), add_export(app), add_help(app)};
+}
+
+inline std::vector<std::string> names_of(const std::vector<Verb>& verbs) {
+    std::vector<std::string> names;
+    for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
+    return names;
 }
 
 }  // namespace caustics::experiments

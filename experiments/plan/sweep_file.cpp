@@ -156,6 +156,16 @@ std::string read_name(const JsonNode& node, const std::vector<std::string>& know
     return known[node.at("method").as_choice(known)];
 }
 
+/// Counts that the file writes as text ("100k") become the numbers that the method read, as which they are columns.
+void resolve_counts(const ConfiguredParameters& configured, Params& params) {
+    for (const auto& [key, value] : configured.values()) {
+        const auto written = std::ranges::find(params, key, &Params::value_type::first);
+        const auto* const count = std::get_if<std::int64_t>(&value);
+        if (count != nullptr && written != params.end() && written->second.starts_with('"'))
+            written->second = fmt::format("{}", *count);
+    }
+}
+
 /// The cases of a method's entry; `parse(name, params)` makes one.
 template <typename Case, typename Parse>
 std::vector<Case> read_cases(const JsonNode& node, const std::vector<std::string>& known,
@@ -163,8 +173,11 @@ std::vector<Case> read_cases(const JsonNode& node, const std::vector<std::string
     const std::string name = read_name(node, known);
     const std::optional<JsonNode> params = node.find("param");
     std::vector<Case> cases;
-    for (const Params& each : combinations(params))
+    for (Params& each : combinations(params)) {
         cases.push_back({parse(name, node_of(object_text(each), params, node)), each});
+        if constexpr (requires { cases.back().method.configured; })
+            resolve_counts(*cases.back().method.configured, cases.back().params);
+    }
     node.finish();
     return cases;
 }

@@ -14,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/near_words.h"
 #include "experiments/base/bounded_json.h"
 #include "experiments/base/number_option.h"
 
@@ -47,7 +48,7 @@ Shard shard_of_array_task() {
     return {id - first + 1, count};
 }
 
-/// One spelling for a value however it is written: 1e5 as 100000, words without quotes, lists
+/// One spelling for a value however it is written: 1e5 and 100k as 100000, words without quotes, lists
 /// without spaces.
 std::string plain(const std::string& text) {
     double value = 0;
@@ -55,6 +56,8 @@ std::string plain(const std::string& text) {
     const auto result = std::from_chars(text.data(), end, value);
     if (result.ec == std::errc() && result.ptr == end && std::isfinite(value))
         return fmt::format("{}", value);
+    if (const auto count = suffixed_count(text))
+        return fmt::format("{}", static_cast<double>(*count));
     const nlohmann::json parsed = parse_bounded_or_discard(text);
     if (parsed.is_string()) return parsed.get<std::string>();
     return parsed.is_discarded() ? text : parsed.dump();
@@ -94,8 +97,8 @@ void require_known(const SweepPlan& plan, const Filters& filters) {
         if (known == present.end()) {
             std::vector<std::string> names;
             for (const auto& [name, ignored] : present) names.push_back(name);
-            throw InputError(
-                fmt::format("--filter {}: unknown key (known: {})", key, fmt::join(names, ", ")));
+            throw InputError(fmt::format("--filter {}: unknown key{} (known: {})", key,
+                                         did_you_mean(key, names), fmt::join(names, ", ")));
         }
         std::vector<std::string> some(known->second.begin(), known->second.end());
         const bool all_listed = some.size() <= most_listed;
@@ -103,7 +106,8 @@ void require_known(const SweepPlan& plan, const Filters& filters) {
         for (const std::string& value : values)
             if (!known->second.contains(value))
                 throw InputError(
-                    fmt::format("--filter {}={}: no trial has that value (known: {}{})", key, value,
+                    fmt::format("--filter {}={}: no trial has that value{} (known: {}{})", key,
+                                value, decimal<double>(value) ? "" : did_you_mean(value, some),
                                 fmt::join(some, ", "), all_listed ? "" : ", ..."));
     }
 }

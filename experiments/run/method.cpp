@@ -8,6 +8,7 @@
 #include "core/base/decimal.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/near_words.h"
 #include "experiments/base/bounded_json.h"
 #include "experiments/run/methods.h"
 
@@ -33,8 +34,9 @@ const MethodDescription* find_method(const std::string& name) {
 Method parse_method(const std::string& name, const JsonNode& params) {
     if (const MethodDescription* const found = find_method(name))
         return {name, found, found->configure(params)};
-    throw InputError(
-        fmt::format("unknown method \"{}\" (known: {})", name, fmt::join(method_names(), ", ")));
+    throw InputError(fmt::format("unknown method \"{}\"{} (known: {})", name,
+                                 did_you_mean(name, method_names()),
+                                 fmt::join(method_names(), ", ")));
 }
 
 const std::vector<std::string>& indirect_names() {
@@ -54,7 +56,8 @@ std::optional<IndirectMethod> parse_indirect(const std::string& name, const Json
     }
     for (const IndirectDescription* each : all_indirect_methods())
         if (each->facts().name == name) return IndirectMethod{name, each, each->configure(params)};
-    throw InputError(fmt::format("unknown indirect method \"{}\" (known: {})", name,
+    throw InputError(fmt::format("unknown indirect method \"{}\"{} (known: {})", name,
+                                 did_you_mean(name, indirect_names()),
                                  fmt::join(indirect_names(), ", ")));
 }
 

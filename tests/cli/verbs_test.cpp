@@ -7,6 +7,7 @@
 
 #include "core/render/film.h"
 #include "experiments/base/file_io.h"
+#include "experiments/cli/verbs.h"
 #include "tests/cli/program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -36,6 +37,19 @@ TEST(Program, TellsItsVersionAndHelp) {
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_NE(help.out.find("Example:\n  causticbench " + verb), std::string::npos) << help.out;
     }
+}
+
+TEST(Program, PrintsTheHelpOfAVerb) {
+    CLI::App app;
+    for (const Verb& verb : add_verbs(app)) {
+        const std::string name = verb.app->get_name();
+        const ProgramResult told = causticbench({"help", name});
+        EXPECT_EQ(told.exit_code, 0) << name << told.err;
+        EXPECT_TRUE(told.out.starts_with(causticbench({name, "--help"}).out)) << name;
+        EXPECT_NE(told.out.find("Usage: causticbench " + name), std::string::npos) << told.out;
+    }
+    EXPECT_NE(causticbench({"help", "sweep"}).out.find("Sweep files: JSON"), std::string::npos);
+    EXPECT_NE(causticbench({"help"}).out.find("help VERB prints"), std::string::npos);
 }
 
 TEST(Program, TakesWordsAfterAVerbForItsArguments) {

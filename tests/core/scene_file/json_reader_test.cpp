@@ -70,6 +70,52 @@ TEST(JsonNode, NamesPlaceReasonAndAlternatives) {
               "t.json: /a/f: expected true or false, got 1.5");
 }
 
+TEST(JsonNode, AsksWhetherANearWordWasMeant) {
+    const JsonNode root = node(R"({"scnes": [], "version": 1, "bound": "hybird"})");
+    const auto error = [&](const auto& read) { return error_of([&] { return read(root), 0; }); };
+    EXPECT_EQ(error([](const JsonNode& n) { n.at("scenes"); }),
+              "t.json: /: key \"scenes\" is missing: did you mean it by scnes? (present: bound, "
+              "scnes, version)");
+    EXPECT_EQ(error([](const JsonNode& n) { n.at("bound").as_choice({"single", "hybrid"}); }),
+              "t.json: /bound: \"hybird\" is none of the choices: did you mean hybrid? (single, "
+              "hybrid)");
+    EXPECT_EQ(
+        error_of([] { return node(R"({"ball": {"radius": 1}})").set("/bal/radius", "2"), 0; }),
+        "t.json: setting /bal/radius: there is nothing of that name: did you mean ball?; / is "
+        "an object with the keys: ball");
+}
+
+TEST(JsonNode, TakesNoKeyForMisspeltThatWasAskedFor) {
+    const JsonNode root = node(R"({"to": [0, 0, 1]})");
+    static_cast<void>(root.at("to"));
+    EXPECT_EQ(error_of([&] { return root.at("up"), 0; }),
+              "t.json: /: key \"up\" is missing (present: to)");
+}
+
+TEST(JsonNode, ReadsCountsWithALetterForThousands) {
+    const auto whole = [](const std::string& text) {
+        return node("\"" + text + "\"").as_integer_in(0, 10'000'000'000);
+    };
+    EXPECT_EQ(whole("100k"), 100'000);
+    EXPECT_EQ(whole("100K"), 100'000);
+    EXPECT_EQ(whole("1M"), 1'000'000);
+    EXPECT_EQ(whole("1.5M"), 1'500'000);
+    EXPECT_EQ(whole("1.1M"), 1'100'000);
+    EXPECT_EQ(whole("2G"), 2'000'000'000);
+    for (const std::string text :
+         {"k", "1m", "1.0005k", "1e3k", "1kk", "1 k", "0x1k", "010k", "1000"})
+        EXPECT_EQ(error_of([&] { return whole(text); }),
+                  "t.json: /: expected a whole number, got \"" + text + "\"");
+    for (const std::string text : {"-1k", "11G"})
+        EXPECT_EQ(error_of([&] { return whole(text); }),
+                  "t.json: /: \"" + text + "\" is out of range (from 0 to 10000000000)");
+}
+
+TEST(JsonNode, ReadsChoicesInCapitals) {
+    EXPECT_EQ(node(R"("Diamond")").as_choice({"bk7", "diamond"}), 1U);
+    EXPECT_EQ(node(R"("A")").as_choice({"a", "A"}), 1U) << "the word itself comes first";
+}
+
 TEST(JsonNode, WholeNumbersBeyondTheRangeAreRefusedNotWrapped) {
     for (const char* text : {"18446744073709551615", "9223372036854775808", "1e300", "-1e300"})
         EXPECT_NE(
@@ -83,8 +129,9 @@ TEST(JsonNode, UnknownKeysAreNamedWithTheKnownOnesInTheOrderOfAsking) {
     const JsonNode ball = node(R"({"ball": {"bsdf": {"iro": 1.5}}})").at("ball").at("bsdf");
     static_cast<void>(ball.find("ior"));
     static_cast<void>(ball.find("dispersion"));
-    EXPECT_EQ(error_of([&] { return ball.finish(), 0; }),
-              "t.json: /ball/bsdf: unknown key \"iro\" (known: ior, dispersion)");
+    EXPECT_EQ(
+        error_of([&] { return ball.finish(), 0; }),
+        "t.json: /ball/bsdf: unknown key \"iro\": did you mean ior? (known: ior, dispersion)");
 }
 
 TEST(JsonNode, KnownKeysAreSharedByTheNodesOfOneObject) {
@@ -100,10 +147,10 @@ TEST(JsonNode, ChildrenTakesObjectsAndLeavesTheRestUnknown) {
     ASSERT_EQ(children.size(), 2U);
     EXPECT_EQ(children[0].first, "a");
     EXPECT_EQ(children[1].first, "b");
-    EXPECT_EQ(
-        error_of([&] { return root.finish(), 0; }),
-        "t.json: /: unknown key \"typo\" (known: type; with a name of its own: an object with "
-        "a type, not 3)");
+    EXPECT_EQ(error_of([&] { return root.finish(), 0; }),
+              "t.json: /: unknown key \"typo\": did you mean type? (known: type; with a name of "
+              "its own: an "
+              "object with a type, not 3)");
     EXPECT_EQ(root.others().size(), 1U);
     EXPECT_NO_THROW(root.finish());
 }

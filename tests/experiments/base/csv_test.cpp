@@ -63,6 +63,12 @@ TEST_F(NumberTables, TakeTheirColumnsInAnyOrder) {
     EXPECT_EQ(table.column("z"), table.header.size());
 }
 
+TEST_F(NumberTables, AreReadAsOtherProgramsWriteThem) {
+    EXPECT_EQ(read("x,y\n1.5D-1,+2d+1\n").rows[0], (std::vector<double>{0.15, 20}));
+    EXPECT_EQ(error("x,y\n+-1,2\n"), "t.csv: row 1: x is \"+-1\", not a number");
+    EXPECT_EQ(error("x,y\n1D,2\n"), "t.csv: row 1: x is \"1D\", not a number");
+}
+
 TEST_F(NumberTables, MayBeginWithAByteOrderMark) {
     EXPECT_EQ(read("\xEF\xBB\xBFx,y\n1,2\n").rows[0][1], 2);
 }

@@ -65,6 +65,17 @@ TEST(NumberOptions, RefuseWhatIsNoDecimalNumberOfTheirRange) {
     EXPECT_GE(count, 14U) << "a numeric option is not looked at";
 }
 
+TEST(NumberOptions, ReadWholeNumbersWithALetterForThousands) {
+    EXPECT_EQ(number_in("--spp", "1k", 1, 1'000'000), 1000);
+    EXPECT_EQ(number_in<std::uint64_t>("--seed", "1.5M", 0, ~std::uint64_t{0}), 1'500'000U);
+    EXPECT_THROW(number_in("--spp", "2M", 1, 1'000'000), InputError);
+    EXPECT_THROW(number_in("--spp", "9G", 1, 2147483647), InputError) << "no int";
+    EXPECT_THROW(number_in<std::uint64_t>("--seed", "-1k", 0, 10'000), InputError);
+    EXPECT_THROW(number_in("--seconds", "1k", 0.0, 1e6), InputError) << "no count";
+    EXPECT_NE(refusal_of_option("sweep", "--memory", "4M"), "") << "a number of MiB, no count";
+    EXPECT_EQ(refusal_of_option("render", "--spp", "4k"), "");
+}
+
 TEST(NumberOptions, RefuseAnEmptyText) {
     EXPECT_THROW(number_in("--seed", "", 0, 9), InputError);
     EXPECT_THROW(number_in("--dot", "", 0.0, 9.0), InputError);

@@ -54,13 +54,16 @@ TEST(Filters, ChooseWhatFitsAllKeysAndOneOfAKeysValues) {
     EXPECT_EQ(chosen({"method=beamtree"}), 30U);
     EXPECT_EQ(chosen({"method=beamtree", "seed=1", "seed=2"}), 12U);
     EXPECT_EQ(chosen({"photons=1e5", "repeat=3"}), 10U) << "numbers by value";
+    EXPECT_EQ(chosen({"photons=100k", "repeat=3"}), 10U);
     EXPECT_EQ(chosen({"mode=split"}), 60U);
     EXPECT_EQ(chosen({"tint=[0.1, 0.2]"}), 60U);
     EXPECT_EQ(chosen({"trial=beamtree-10-1-1"}), 1U);
 }
 
 TEST(Filters, RefuseWhatNoTrialHas) {
-    EXPECT_NE(error_of([] { chosen({"methd=beamtree"}); }).find("known: method, mode, photons"),
+    EXPECT_NE(error_of([] {
+                  chosen({"methd=beamtree"});
+              }).find("did you mean method? (known: method, mode, photons"),
               std::string::npos);
     EXPECT_NE(error_of([] { chosen({"photons=11"}); }).find("known: 10, 100000"),
               std::string::npos);

@@ -194,10 +194,11 @@ TEST(Methods, TakeValuesAsJsonOrElseAsStrings) {
 }
 
 TEST(Methods, NameTheAlternatives) {
-    EXPECT_EQ(
-        error("photonmpa", {}),
-        "unknown method \"photonmpa\" (known: none, pathtrace, lighttrace, photonmap, beamtree, "
-        "illuminationmap, causticpolygons)");
+    EXPECT_EQ(error("photonmpa", {}),
+              "unknown method \"photonmpa\": did you mean photonmap? (known: none, pathtrace, "
+              "lighttrace, "
+              "photonmap, beamtree, illuminationmap, causticpolygons)");
+    EXPECT_EQ(describe(method("photonmap", {"photons=1.5M"})).at("photons"), 1'500'000);
     const std::string unknown = error("photonmap", {"photns=10"});
     EXPECT_NE(unknown.find("photns"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("photons"), std::string::npos) << unknown;
