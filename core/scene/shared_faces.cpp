@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/base/interrupt.h"
@@ -48,9 +49,9 @@ public:
     std::vector<SharedFace> run() {
         for (std::uint32_t i = 0; i < scene_.shapes().size(); ++i)
             if (is_caster(scene_.shapes()[i].bsdf)) search(i);
-        std::ranges::sort(
-            found_, {}, [](const SharedFace& face) { return std::pair(face.caster, face.other); });
-        return std::move(found_);
+        std::vector<SharedFace> faces;
+        for (const auto& [caster, other] : found_) faces.push_back({caster, other});
+        return faces;
     }
 
 private:
@@ -62,16 +63,10 @@ private:
         const Box box = bounds(shape);
         const float reach = reach_share * box.diagonal().norm();
         boxes_.any_at(widened(box, reach), [&](std::uint32_t other) {
-            if (other != caster && !is_large(scene_.shapes()[other]) && !is_found(other, caster) &&
-                lie_on(middles, other, reach))
-                found_.push_back({caster, other});
+            if (other != caster && !is_large(scene_.shapes()[other]) &&
+                !found_.contains({other, caster}) && lie_on(middles, other, reach))
+                found_.emplace(caster, other);
             return false;
-        });
-    }
-
-    bool is_found(std::uint32_t caster, std::uint32_t other) const {
-        return std::ranges::any_of(found_, [&](const SharedFace& face) {
-            return face.caster == caster && face.other == other;
         });
     }
 
@@ -100,7 +95,7 @@ private:
 
     const Scene& scene_;
     BoxTree boxes_;
-    std::vector<SharedFace> found_;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> found_;  ///< caster, other
 };
 
 }  // namespace

@@ -23,42 +23,39 @@ std::string dispersion(const Bsdf& bsdf) {
                        (glass->int_ior.at(d_line) - 1) / (n_f - n_c));
 }
 
-// The casters after this one that share triangles with it.
-std::string coincident(const Scene& scene, std::size_t index) {
-    std::string text;
-    const Shape& shape = scene.shapes()[index];
-    for (std::size_t i = index + 1; i < scene.shapes().size(); ++i) {
-        const Shape& other = scene.shapes()[i];
-        if (other.primitive != Primitive::mesh || !is_caster(other.bsdf)) continue;
-        const std::size_t common = common_triangles(shape.mesh, other.mesh);
-        if (common > 0) text += fmt::format(", {} triangles lie on {}", common, other.name);
+/// What is amiss with each shape: the flaws of meshes, and the casters after a caster that share triangles with it.
+std::vector<std::string> flaws(const Scene& scene, const std::vector<ExaminedMesh>& meshes) {
+    const std::vector<Shape>& shapes = scene.shapes();
+    std::vector<std::string> texts(shapes.size());
+    for (const ExaminedMesh& mesh : meshes) texts[mesh.shape] += listed(mesh.diagnosis);
+    std::vector<std::size_t> casters;
+    std::vector<const TriangleMesh*> caster_meshes;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (shapes[i].primitive != Primitive::mesh || !is_caster(shapes[i].bsdf)) continue;
+        casters.push_back(i);
+        caster_meshes.push_back(&shapes[i].mesh);
     }
-    return text;
-}
-
-std::string flaws(const Scene& scene, std::size_t index, const std::vector<ExaminedMesh>& meshes) {
-    std::string text;
-    for (const ExaminedMesh& mesh : meshes)
-        if (mesh.shape == index) text += listed(mesh.diagnosis);
-    const Shape& shape = scene.shapes()[index];
-    const bool is_mesh = shape.primitive == Primitive::mesh;
-    return is_mesh && is_caster(shape.bsdf) ? text + coincident(scene, index) : text;
+    for (const auto& [first, second, count] : common_triangles(caster_meshes))
+        texts[casters[first]] +=
+            fmt::format(", {} triangles lie on {}", count, shapes[casters[second]].name);
+    return texts;
 }
 
 }  // namespace
 
 std::vector<std::string> shape_lines(const Scene& scene, const std::vector<ExaminedMesh>& meshes) {
+    const std::vector<std::string> amiss = flaws(scene, meshes);
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < scene.shapes().size(); ++i) {
         const Shape& shape = scene.shapes()[i];
         const bool caster = is_caster(shape.bsdf);
         const bool receiver = is_receiver(shape.bsdf);
-        lines.push_back(fmt::format("  {:<16} {:<28} {}{}\n", shape.name, kind_of(shape),
-                                    caster && receiver ? "caster and receiver"
-                                    : caster           ? "caster"
-                                                       : "receiver",
-                                    (shape.radiance ? ", area light" : "") +
-                                        dispersion(shape.bsdf) + flaws(scene, i, meshes)));
+        lines.push_back(fmt::format(
+            "  {:<16} {:<28} {}{}\n", shape.name, kind_of(shape),
+            caster && receiver ? "caster and receiver"
+            : caster           ? "caster"
+                               : "receiver",
+            (shape.radiance ? ", area light" : "") + dispersion(shape.bsdf) + amiss[i]));
     }
     return lines;
 }
