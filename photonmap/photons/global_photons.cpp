@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/light_path/whole_path.h"
+#include "photonmap/photons/photon_yield.h"
 
 namespace caustics::photonmap {
 namespace {
@@ -42,7 +43,8 @@ double photons_per_path(const GlobalPaths& pilot, const Spectrum& power, std::ui
     constexpr std::uint64_t enough = 1000;
     constexpr std::uint64_t most = 1'000'000;
     PhotonChunk chunk(Spectrum::Ones() / power.maxCoeff(), seed);
-    for (std::uint64_t paths = 4096, done = 0; done < most; done = paths, paths *= 4) {
+    for (std::uint64_t paths = 4096, done = 0; done < most || chunk.counts.stored == 0;
+         done = paths, paths *= 4) {
         pilot.trace(done, paths, chunk);
         if (chunk.counts.stored >= enough) break;
     }
@@ -57,21 +59,26 @@ TracedPhotons trace_global(const Scene& scene, const GlobalMapParams& params,
     if (emission.empty())
         throw UnsupportedScene("globalphotonmap: no photon can be stored: the scene has no light");
     const WholePathSettings settings{params.max_bounces, params.diffuse_bounces};
-    const auto paths_of = [&](Stage stage) {
-        return GlobalPaths(scene, emission, settings, options.seed, stage);
+    const auto paths_of = [&](Stage stage, std::uint64_t seed) {
+        return GlobalPaths(scene, emission, settings, seed, stage);
     };
-    const double yield =
-        photons_per_path(paths_of(Stage::global_pilot), emission.total_power(), options.seed);
-    if (!(yield > 0))
-        throw UnsupportedScene(
-            "globalphotonmap: no photon can be stored: no light falls on a diffuse surface");
+    require_yield(paths_of(Stage::global_pilot, seed_of_yield),
+                  {.count = params.photons,
+                   .path_flux = emission.total_power(),
+                   .method = "globalphotonmap",
+                   .otherwise = "ask for fewer `photons`",
+                   .why_none = [](const LightPathCounts&) -> std::string {
+                       return "no light falls on a diffuse surface";
+                   }});
+    const double yield = photons_per_path(paths_of(Stage::global_pilot, options.seed),
+                                          emission.total_power(), options.seed);
     const auto wanted = static_cast<double>(params.photons);
     for (double paths = (wanted * 1.05 + 100 * std::sqrt(wanted)) / yield;; paths *= 1.1) {
         const PhotonTarget target{.emitted = static_cast<std::uint64_t>(std::ceil(paths)),
                                   .capacity = 4 * params.photons + 10'000'000,
                                   .certain = params.photons};
-        TracedPhotons photons =
-            trace_photons(paths_of(Stage::global_photons), emission.total_power(), target, options);
+        TracedPhotons photons = trace_photons(paths_of(Stage::global_photons, options.seed),
+                                              emission.total_power(), target, options);
         if (photons.store.size() < params.photons) continue;
         drop_photons(photons, params.photons, options.seed);
         return photons;

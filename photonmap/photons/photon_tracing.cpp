@@ -13,7 +13,6 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/light_path/empty_caustic.h"
 #include "core/math/rng.h"
 #include "photonmap/photons/facing_code.h"
 
@@ -139,13 +138,7 @@ private:
         }
         counts_.add(chunk.counts);
         if (end == last_path_) done_ = true;
-        if (!done_ && target_.stored > 0 && is_hopeless()) give_up(counts_, target_.stored);
         return store_.extend(chunk.counts.stored);
-    }
-
-    bool is_hopeless() const {
-        if (counts_.stored == 0) return counts_.emitted >= target_.patience_for_first;
-        return counts_.emitted >= target_.patience && counts_.stored < counts_.emitted / 2000;
     }
 
     /// Counts of the paths from `path` on, before the one that would store photon `limit` + 1.
@@ -233,18 +226,6 @@ void PhotonChunk::add(std::uint64_t path, const Deposit& deposit) {
                         wi.phi,
                         facing_flags({n.x(), n.y(), n.z()})});
     if (deposit.diffuse_bounces > 0) photons_.back().flags |= from_diffuse_mark;
-}
-
-void give_up(const LightPathCounts& counts, std::uint64_t wanted) {
-    std::ostringstream message;
-    message << "photonmap: ";
-    if (counts.stored == 0)
-        message << "no photon can be stored: " << why_nothing_arrives(counts);
-    else
-        message << counts.emitted << " light paths stored only " << counts.stored << " of "
-                << wanted << " photons: " << ends_of(counts);
-    message << " (give `emitted` instead of `photons` to accept few or none)";
-    throw UnsupportedScene(message.str());
 }
 
 Spectrum TracedPhotons::flux_per_energy() const {

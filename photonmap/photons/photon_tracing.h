@@ -17,10 +17,6 @@ struct PhotonTarget {
     std::uint64_t emitted = 0;   ///< paths to trace
     std::uint64_t capacity = 0;  ///< the most photons that may come
     std::uint64_t certain = 0;   ///< photons that surely come
-    /// Tracing for `stored` gives up when, after this many paths, fewer than one in 2,000 stored,
-    std::uint64_t patience = 50'000'000;
-    /// and when, after this many, none did.
-    std::uint64_t patience_for_first = 2'000'000;
 };
 
 /// What a run of consecutive paths brought.
@@ -84,13 +80,10 @@ struct TracedPhotons {
 /// without bias when the (n+1)-th success is trial M. The number of paths up to the n-th success
 /// would read high by n / (n-1).
 ///
-/// Throws UnsupportedScene when `target.stored` cannot be reached, InputError for more photons than
+/// Goes on until `target.stored` are there: ask require_yield() before. Throws InputError for more photons than
 /// the capacity, std::runtime_error naming the path for a photon that is not finite.
 TracedPhotons trace_photons(const PathTracer& tracer, const Spectrum& path_flux,
                             const PhotonTarget& target, const RunOptions& options);
-
-/// Throws UnsupportedScene saying what became of the paths.
-[[noreturn]] void give_up(const LightPathCounts& counts, std::uint64_t wanted);
 
 /// Leaves `wanted` photons, every set of them equally likely, by random numbers of their own; the
 /// last photons move to where others were dropped. With a number of paths chosen beforehand this

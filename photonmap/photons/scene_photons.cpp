@@ -10,6 +10,7 @@
 #include "core/light_path/aimed_emission.h"
 #include "core/light_path/empty_caustic.h"
 #include "core/light_path/stratified_square.h"
+#include "photonmap/photons/photon_yield.h"
 
 namespace caustics::photonmap {
 
@@ -19,10 +20,12 @@ namespace {
 constexpr std::uint64_t most_photons = 2'000'000'000;
 
 constexpr std::size_t pilot_parts = 16;
-/// The pilot goes on until it has stored this many photons, or lost patience.
+/// The pilot goes on until it has stored this many photons.
 constexpr std::uint64_t pilot_photons = 256;
 /// How many standard errors the planned number of paths leaves room for.
 constexpr double safety = 4.5;
+
+constexpr const char* accept_few = "give `emitted` instead of `photons` to accept few or none";
 
 /// Paths of a scene: emission, specular chain, photons.
 class ScenePaths final : public PathTracer {
@@ -174,6 +177,10 @@ public:
             if (stratified()) plan.strata = StratifiedSquare::at_most(plan.emitted);
             return trace_planned(plan);
         }
+        require_yield(yield_paths(), {.count = params_.photons,
+                                      .path_flux = emission_.total_power(),
+                                      .method = "photonmap",
+                                      .otherwise = accept_few});
         if (stratified() || most_per_path() > 1) return trace_exactly();
         const PhotonTarget target{
             .stored = params_.photons, .capacity = params_.photons, .certain = params_.photons};
@@ -204,9 +211,8 @@ private:
 
     TracedPhotons none() const {
         if (params_.photons > 0)
-            throw UnsupportedScene(
-                "photonmap: no photon can be stored: " + why_nothing_is_aimed(scene_).value() +
-                " (give `emitted` instead of `photons` to accept an empty map)");
+            throw UnsupportedScene("photonmap: no photon can be stored: " +
+                                   why_nothing_is_aimed(scene_).value() + " (" + accept_few + ")");
         LightPathCounts counts;
         counts.emitted = params_.emitted;
         return {PhotonStore(0), counts, Spectrum::Ones()};
@@ -239,23 +245,21 @@ private:
         return {strata.size(), strata};
     }
 
+    ScenePaths yield_paths() const {
+        ScenePaths::Settings alone = settings({});
+        alone.path.traced = nullptr;
+        alone.seed = seed_of_yield;
+        alone.stage = Stage::photon_pilot;
+        return {scene_, emission_, alone};
+    }
+
     Pilot run_pilot() const {
-        constexpr PhotonTarget defaults;
         const std::uint64_t part =
             std::clamp<std::uint64_t>(params_.photons / (32 * pilot_parts), 64, 16'384);
         for (Plan plan = plan_of(static_cast<double>(part));;
              plan = plan_of(4 * static_cast<double>(plan.emitted))) {
             const Pilot pilot = run_pilot(plan);
-            const LightPathCounts counts = pilot.total();
-            const std::uint64_t patience =
-                counts.stored == 0 ? defaults.patience_for_first : defaults.patience;
-            if (counts.stored < pilot_photons && counts.emitted < patience) continue;
-            // What would be given up while tracing is given up before.
-            const auto wanted = static_cast<double>(params_.photons);
-            if (counts.stored == 0 || (counts.stored < counts.emitted / 2000 &&
-                                       pilot.paths_for(wanted) >= static_cast<double>(patience)))
-                give_up(counts, params_.photons);
-            return pilot;
+            if (pilot.total().stored >= pilot_photons) return pilot;
         }
     }
 

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/math/rng.h"
+#include "photonmap/photons/photon_yield.h"
 #include "tests/support/statistics.h"
 
 namespace caustics::photonmap {
@@ -202,28 +203,50 @@ TEST(PhotonTracing, TheUnitOfNoPhotonsIsFinite) {
     EXPECT_LT((some.flux_per_energy() / unit - 0.4F).abs().maxCoeff(), 1e-6F);
 }
 
-TEST(PhotonTracing, GivesUpAndSaysWhy) {
+std::string refusal_of_yield(const OnePath& paths, std::uint64_t wanted) {
     try {
-        trace(synthetic_paths(0.0001F), {.stored = 1'000, .patience = 20'000});
-        FAIL() << "expected UnsupportedScene";
-    } catch (const UnsupportedScene& e) {
-        const std::string message = e.what();
-        EXPECT_NE(message.find("of 1000 photons"), std::string::npos) << message;
-        EXPECT_NE(message.find("met no caster first"), std::string::npos) << message;
-        EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
+        require_yield(GivenPaths(paths), {.count = wanted,
+                                          .path_flux = Spectrum::Ones(),
+                                          .method = "photonmap",
+                                          .otherwise = "give `emitted`"});
+    } catch (const UnsupportedScene& error) {
+        return error.what();
     }
-    try {
-        trace(synthetic_paths(0), {.stored = 1, .patience_for_first = 20'000});
-        FAIL() << "expected UnsupportedScene";
-    } catch (const UnsupportedScene& e) {
-        const std::string message = e.what();
-        EXPECT_NE(message.find("no photon can be stored: no light path met a caster"),
-                  std::string::npos)
-            << message;
-    }
-    EXPECT_EQ(trace(synthetic_paths(0.01F), {.stored = 1'000, .patience = 20'000}).store.size(),
-              1'000U);
-    EXPECT_EQ(trace(synthetic_paths(0), {.emitted = 1'000}).store.size(), 0U);
+    return "";
+}
+
+TEST(PhotonYield, IsRefusedByTheRateOfHits) {
+    EXPECT_EQ(refusal_of_yield(synthetic_paths(0.5F), 1'000'000'000), "");
+    EXPECT_EQ(refusal_of_yield(synthetic_paths(0.001F), 1'000'000), "") << "one in a thousand";
+    EXPECT_EQ(refusal_of_yield(synthetic_paths(0.0001F), 1'000), "") << "ten million paths";
+    const std::string few = refusal_of_yield(synthetic_paths(0.0001F), 1'000'000);
+    EXPECT_NE(few.find("of 1000000 photons, which would take some 1e+10 light paths"),
+              std::string::npos)
+        << few;
+    EXPECT_NE(few.find("met no caster first"), std::string::npos) << few;
+    EXPECT_NE(few.find("(give `emitted`)"), std::string::npos) << few;
+    EXPECT_NE(refusal_of_yield(synthetic_paths(0.000001F), 1), "") << "the rate is not known";
+    const std::string none = refusal_of_yield(synthetic_paths(0), 1);
+    EXPECT_NE(none.find("no photon can be stored: no light path met a caster"), std::string::npos)
+        << none;
+}
+
+TEST(PhotonYield, TakesBoundedWork) {
+    const auto followed = [](float rate) {
+        std::uint64_t count = 0;
+        const OnePath paths = synthetic_paths(rate);
+        refusal_of_yield(
+            [&](std::uint64_t path) {
+                ++count;
+                return paths(path);
+            },
+            1'000'000'000);
+        return count;
+    };
+    EXPECT_EQ(followed(0), 2'000'000U);
+    EXPECT_EQ(followed(0.000001F), 2'000'000U);
+    EXPECT_LE(followed(0.01F), 100'000U);
+    EXPECT_EQ(followed(1), 4096U);
 }
 
 TEST(PhotonTracing, NamesThePathOfAPhotonThatIsNotFinite) {

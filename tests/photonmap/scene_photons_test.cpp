@@ -224,9 +224,10 @@ SceneDesc dull_mirror(float reflectance, bool with_lid = false) {
     return desc;
 }
 
-std::string refusal_of_tracing(const Scene& scene, const PhotonMapParams& p) {
+std::string refusal_of_tracing(const Scene& scene, const PhotonMapParams& p,
+                               std::uint64_t seed = 1) {
     try {
-        trace(scene, p);
+        trace(scene, p, seed);
     } catch (const UnsupportedScene& error) {
         return error.what();
     }
@@ -253,6 +254,16 @@ TEST(ScenePhotons, GiveUpWhereFewPathsArriveAndManyPhotonsAreAsked) {
     EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
     const TracedPhotons few = trace(scene, params(modes[1], 20));
     EXPECT_EQ(few.store.size(), 20U);
+}
+
+// One in some two million paths arrives, so that a run of one seed meets it and a run of another does not.
+TEST(ScenePhotons, AreRefusedForEverySeedAlikeWhereHardlyAnyPathArrives) {
+    const Scene scene(dull_mirror(0.000003F));
+    const std::string message = refusal_of_tracing(scene, params(modes[0], 10'000));
+    EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
+    for (const Mode& mode : {modes[0], modes[1]})
+        for (const std::uint64_t seed : {2U, 3U})
+            EXPECT_EQ(refusal_of_tracing(scene, params(mode, 10'000), seed), message) << seed;
 }
 
 // Light through a ball without an edge, n = 1, onto a floor under its one half: in strata that the middle does not cut the
