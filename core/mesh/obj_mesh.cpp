@@ -4,11 +4,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
+#include "core/base/decimal.h"
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
 #include "core/math/polygon.h"
@@ -19,18 +22,23 @@
 namespace caustics {
 namespace {
 
-constexpr std::array<std::string_view, 16> ignored_keywords = {
-    "o", "g", "s",   "mg",    "usemtl",   "mtllib",   "usemap",     "maplib",
-    "l", "p", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+// Names, groups, materials, points, lines, curves, and attributes of surfaces: none has an area.
+constexpr std::string_view ignored_keywords[] = {
+    "o",      "g",   "s",     "mg",       "usemtl",   "mtllib",     "usemap",    "maplib", "l",
+    "p",      "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "vp",     "vw",
+    "cstype", "deg", "bmat",  "step",     "curv",     "curv2",      "parm",      "trim",   "hole",
+    "scrv",   "sp",  "end",   "con",      "ctech",    "stech",      "cdc",       "cdp",    "res"};
+// Curved surfaces, whose light would be missing.
+constexpr std::string_view surface_keywords[] = {"surf", "bsp", "bzp"};
 
 constexpr std::size_t lines_between_looks = 1 << 14;          // for Ctrl-C
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 constexpr std::string_view white_space = " \t\r\v\f";
 
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-    Number value{};
-    const char* end = text.data() + text.size();
+std::optional<std::int64_t> parse_index(std::string_view text) {
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    std::int64_t value = 0;
+    const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     if (error != std::errc{} || stop != end) return {};
     return value;
@@ -54,14 +62,29 @@ public:
             take_normal();
         else if (keyword == "f")
             take_face();
-        else if (std::ranges::find(ignored_keywords, keyword) == ignored_keywords.end())
+        else if (std::ranges::find(surface_keywords, keyword) != std::end(surface_keywords))
+            fail(quoted_word(keyword) +
+                 ": curved surfaces are not supported (export triangles or polygons)");
+        else if (std::ranges::find(ignored_keywords, keyword) == std::end(ignored_keywords))
             fail(quoted_word(keyword) +
                  " is not supported (v, vt, vn, f are read; names, groups, " +
-                 "materials, points and lines are skipped)");
+                 "materials, points, lines and curves are skipped)");
+        else if (keyword == "cstype")
+            has_curves_ = true;
     }
 
     TriangleMesh finish() {
-        if (mesh_.triangles.empty()) throw InputError(name_ + ": no faces");
+        if (faces_.empty())
+            throw InputError(name_ + (has_curves_ ? ": no faces: curves are not supported (export "
+                                                    "triangles or polygons)"
+                                                  : ": no faces"));
+        const Corner* corners = corners_.data();
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            if (i % lines_between_looks == 0) throw_if_interrupted();
+            line_ = faces_[i].line;
+            cut_face({corners, faces_[i].size});
+            corners += faces_[i].size;
+        }
         std::vector<Vec3d> positions;
         for (const VertexTable::Vertex& v : table_.vertices()) {
             positions.emplace_back(v[0], v[1], v[2]);
@@ -73,13 +96,22 @@ public:
     }
 
 private:
-    /// A corner of a face, by places in the lists above.
+    /// A corner of a face: numbers in the file's lists, from 1; 0 where there is none.
     struct Corner {
-        std::size_t position = 0;
-        std::optional<std::size_t> uv = {};
-        std::optional<std::size_t> normal = {};
+        std::uint32_t position = 0;
+        std::uint32_t uv = 0;
+        std::uint32_t normal = 0;
 
-        int form() const { return (uv ? 2 : 0) + (normal ? 4 : 0); }
+        int form() const { return (uv > 0 ? 2 : 0) + (normal > 0 ? 4 : 0); }
+        std::string text() const {
+            std::string words = std::to_string(position);
+            if (form() > 0) words += "/" + (uv > 0 ? std::to_string(uv) : "");
+            return words + (normal > 0 ? "/" + std::to_string(normal) : "");
+        }
+    };
+    struct Face {
+        std::size_t line;
+        std::size_t size;  ///< its corners
     };
 
     [[noreturn]] void fail(const std::string& reason) const {
@@ -97,7 +129,7 @@ private:
     }
 
     double number(std::string_view word) const {
-        const std::optional<double> value = parse<double>(word);
+        const std::optional<double> value = foreign_number(word);
         if (!value) fail(quoted_word(word) + " is not a number");
         // Negated, so that NaN is caught too.
         if (!(std::abs(*value) <= static_cast<double>(std::numeric_limits<float>::max())))
@@ -116,18 +148,22 @@ private:
         return found;
     }
 
-    // x y z, or x y z w, or x y z r g b; colours are left out.
+    // x y z, or homogeneous x y z w, or x y z r g b; colours are left out.
     void take_position() {
         const std::size_t count = words_.size() - 1;
-        if (count == 4 && number(words_[4]) != 1)
-            fail("positions with a weight w other than 1 are not supported");
         const auto [x, y, z] = numbers(count == 3 || count == 4 || count == 6, "3, 4 or 6");
-        positions_.emplace_back(x, y, z);
+        const double w = count == 4 ? number(words_[4]) : 1;
+        const Vec3d position = Vec3d(x, y, z) / w;
+        constexpr double largest{std::numeric_limits<float>::max()};
+        if (w == 0 || position.cwiseAbs().maxCoeff() > largest)
+            fail("the weight w is " + std::string(words_[4]) +
+                 ": the position, divided by it, is not finite");
+        positions_.push_back(position);
     }
 
     // Turned as Mitsuba's `flip_tex_coords` has it.
     void take_uv() {
-        const auto [u, v, w] = numbers(words_.size() == 3 || words_.size() == 4, "2 or 3");
+        const auto [u, v, w] = numbers(words_.size() >= 2 && words_.size() <= 4, "1 to 3");
         uvs_.emplace_back(static_cast<float>(u), 1 - static_cast<float>(v));
     }
 
@@ -136,16 +172,17 @@ private:
         normals_.emplace_back(Vec3d(x, y, z).cast<float>());
     }
 
-    // An index counts from 1, or backwards from the last one (-1); all must stand before the face.
-    std::size_t place(std::string_view word, std::string_view index, std::size_t count,
-                      const char* what) const {
-        const std::optional<long> value = parse<long>(index);
+    // An index counts from 1, or backwards from the last one above (-1). Faces may come before what they name.
+    std::uint32_t place(std::string_view word, std::string_view index, std::size_t count_above,
+                        const char* what) const {
+        const std::optional<std::int64_t> value = parse_index(index);
         if (!value) fail("face corner " + quoted_word(word) + " is not v, v/vt, v//vn or v/vt/vn");
-        const auto all = static_cast<long>(count);
-        if (*value == 0 || *value > all || *value < -all)
+        const std::int64_t from_one =
+            *value < 0 ? static_cast<std::int64_t>(count_above) + 1 + *value : *value;
+        if (from_one < 1 || from_one > std::numeric_limits<std::uint32_t>::max())
             fail("face corner " + quoted_word(word) + ": no " + what + " " + std::string(index) +
-                 " among the " + std::to_string(count) + " above");
-        return static_cast<std::size_t>(*value > 0 ? *value - 1 : all + *value);
+                 " among the " + std::to_string(count_above) + " above");
+        return static_cast<std::uint32_t>(from_one);
     }
 
     Corner corner(std::string_view word) const {
@@ -171,24 +208,43 @@ private:
         const std::size_t count = words_.size() - 1;
         if (count < 3)
             fail("a face needs at least 3 corners, this one has " + std::to_string(count));
-        corners_.clear();
-        polygon_.clear();
+        const std::size_t first = corners_.size();
         for (std::size_t i = 1; i <= count; ++i) {
             corners_.push_back(corner(words_[i]));
-            if (corners_.back().form() != corners_[0].form())
+            if (corners_.back().form() != corners_[first].form())
                 fail("the corners of one face must all have the same form");
-            polygon_.push_back(positions_[corners_.back().position]);
         }
-        has_uvs_ = has_uvs_ || corners_[0].uv;
-        has_normals_ = has_normals_ || corners_[0].normal;
-        for (const auto& [a, b, c] : cut_face()) {
-            const std::uint32_t first = vertex(corners_[a]);
-            const std::uint32_t second = vertex(corners_[b]);
-            mesh_.triangles.push_back({first, second, vertex(corners_[c])});
+        faces_.push_back({line_, count});
+    }
+
+    void require_there(const Corner& corner) const {
+        const auto require = [&](std::uint32_t number, std::size_t count, const char* what) {
+            if (number > count)
+                fail("face corner '" + corner.text() + "': no " + what + " " +
+                     std::to_string(number) + " among the " + std::to_string(count) +
+                     " of the file");
+        };
+        require(corner.position, positions_.size(), "position");
+        require(corner.uv, uvs_.size(), "uv");
+        require(corner.normal, normals_.size(), "normal");
+    }
+
+    void cut_face(std::span<const Corner> corners) {
+        polygon_.clear();
+        for (const Corner& corner : corners) {
+            require_there(corner);
+            polygon_.push_back(positions_[corner.position - 1]);
+        }
+        has_uvs_ = has_uvs_ || corners[0].uv > 0;
+        has_normals_ = has_normals_ || corners[0].normal > 0;
+        for (const auto& [a, b, c] : cut_polygon()) {
+            const std::uint32_t first = vertex(corners[a]);
+            const std::uint32_t second = vertex(corners[b]);
+            mesh_.triangles.push_back({first, second, vertex(corners[c])});
         }
     }
 
-    std::vector<std::array<std::uint32_t, 3>> cut_face() const {
+    std::vector<std::array<std::uint32_t, 3>> cut_polygon() const {
         try {
             return triangulate_polygon(polygon_);
         } catch (const InputError& error) {
@@ -197,23 +253,25 @@ private:
     }
 
     std::uint32_t vertex(const Corner& corner) {
-        const Vec3d& p = positions_[corner.position];
+        const Vec3d& p = positions_[corner.position - 1];
         const Vec3d n =
-            corner.normal ? Vec3d(normals_[*corner.normal].cast<double>()) : Vec3d(0, 0, 0);
-        const Vec2d t = corner.uv ? Vec2d(uvs_[*corner.uv].cast<double>()) : Vec2d(0, 1);
+            corner.normal > 0 ? Vec3d(normals_[corner.normal - 1].cast<double>()) : Vec3d(0, 0, 0);
+        const Vec2d t = corner.uv > 0 ? Vec2d(uvs_[corner.uv - 1].cast<double>()) : Vec2d(0, 1);
         return table_.index_of({p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), t.x(), t.y()});
     }
 
     std::string name_;
     std::size_t line_ = 0;
     std::vector<std::string_view> words_;
-    std::vector<Corner> corners_;  // of the face at work
-    std::vector<Vec3d> polygon_;
+    std::vector<Face> faces_;
+    std::vector<Corner> corners_;  // of all faces, one after the other
+    std::vector<Vec3d> polygon_;   // of the face at work
     std::vector<Vec3d> positions_;
     std::vector<Vec2> uvs_;
     std::vector<Vec3> normals_;
     bool has_uvs_ = false;
     bool has_normals_ = false;
+    bool has_curves_ = false;
     VertexTable table_;
     TriangleMesh mesh_;
 };

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/base/decimal.h"
 #include "core/base/error.h"
 #include "core/mesh/quoted_word.h"
 
@@ -145,14 +146,10 @@ double PlyFile::read_ascii(const std::string& element, std::size_t index) {
     const std::size_t end = std::min(bytes_.find_first_of(" \t\r\n\v\f", at_), bytes_.size());
     const std::string_view word(bytes_.data() + at_, end - at_);
     at_ = end;
-    const std::size_t sign = word[0] == '+' ? 1 : 0;
-    double value = 0;
-    const auto [stop, error] =
-        std::from_chars(word.data() + sign, word.data() + word.size(), value);
-    if (error != std::errc{} || stop != word.data() + word.size())
-        fail(element + " " + std::to_string(index) + ": " + quoted_word(std::string(word)) +
-             " is not a number");
-    return value;
+    const std::optional<double> value = foreign_number(word);
+    if (!value)
+        fail(element + " " + std::to_string(index) + ": " + quoted_word(word) + " is not a number");
+    return *value;
 }
 
 template <class Value>

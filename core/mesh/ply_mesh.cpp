@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,13 @@
 namespace caustics {
 namespace {
 
+using namespace std::string_literals;
+
 constexpr std::size_t values_between_looks = 1 << 14;  // for Ctrl-C
+
+// Names that programs give to the list of a face's corners.
+constexpr std::string_view names_of_corners[] = {"vertex_indices", "vertex_index", "indices"};
+constexpr const char* corner_lists = "vertex_indices, vertex_index or indices";
 
 // Which properties of a vertex are kept, and under which name. A group is kept whole or not at all.
 struct KeptGroup {
@@ -161,10 +168,11 @@ private:
         bool found = false;
         for (const PlyProperty& property : element.properties) {
             const std::vector<double>& corners = read_property(element, property, index);
-            const bool indices = property.count_type && (property.name == "vertex_indices" ||
-                                                         property.name == "vertex_index");
-            if (!indices) continue;
-            if (found) file_.fail("faces have both lists, 'vertex_indices' and 'vertex_index'");
+            if (!property.count_type ||
+                std::ranges::find(names_of_corners, property.name) == std::end(names_of_corners))
+                continue;
+            if (found)
+                file_.fail("faces have more than one list of corners ("s + corner_lists + ")");
             found = true;
             if (corners.size() < 3)
                 fail(element, index,
@@ -179,7 +187,7 @@ private:
                 corners_.push_back(static_cast<std::uint32_t>(corner));
             }
         }
-        if (!found) file_.fail("faces have no list 'vertex_indices' or 'vertex_index'");
+        if (!found) file_.fail("faces have no list of corners ("s + corner_lists + ")");
     }
 
     std::vector<std::array<std::uint32_t, 3>> cut_face(const std::vector<Vec3d>& polygon,

@@ -76,6 +76,26 @@ TEST_F(MeshIo, ObjMayCountBackwardsContinueLinesAndColourVertices) {
     expect_same(plain, load("f.OBJ", dos));
 }
 
+TEST_F(MeshIo, ObjIsReadAsOtherProgramsWriteIt) {
+    const TriangleMesh plain = load("a.obj", corners + "f 1 2 3 4\n");
+    expect_same(plain,
+                load("b.obj", "v 0 +0 0\nv +1 0 0\nv 1.0D0 10d-1 0\nv 0 +1.0E+00 0\nf 1 2 3 4\n"));
+    expect_same(plain, load("c.obj", "f 1 2 3 4\n" + corners));  // the face comes first
+    expect_same(plain, load("d.obj", corners + "f +1 +2 +3 +4\n"));
+    const std::string homogeneous = "v 0 0 0 2\nv 2 0 0 2\nv -3 -3 -0 -3\nv 0 0.5 0 0.5\n";
+    expect_same(plain, load("e.obj", homogeneous + "f 1 2 3 4\n"));
+    expect_same(plain, load("f.obj", "cstype bezier\nvw 0 1\nvp 0.5\n" + corners +
+                                         "curv 0 1 1 2\nend\nf 1 2 3 4\n"));  // curves have no area
+    expect_same(load("g.obj", corners + "vt 0.5 0\nvn 0 0 2\nf 1/1/1 2/1/1 3/1/1\n"),
+                load("h.obj", "f 1/1/1 2/1/1 3/1/1\n" + corners + "vt 0.5\nvn 0 0 2\n"));
+}
+
+TEST_F(MeshIo, ObjIndicesBelowZeroCountFromTheFace) {
+    const TriangleMesh mesh = load("a.obj", corners + "f -4 -3 -2\nv 0 0 1\nf -5 -4 -1\n");
+    EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 1, 3}}));
+    EXPECT_EQ(mesh.positions[3], Vec3(0, 0, 1));
+}
+
 TEST_F(MeshIo, VerticesWithoutNormalOrUvBesideOthersAreCompleted) {
     const TriangleMesh mesh =
         load("a.obj", corners + "vt 0.5 0.5\nvn 1 0 0\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4\n");
@@ -143,8 +163,17 @@ TEST_F(MeshIo, BrokenObjFilesAreRefusedWithTheLine) {
     expect_refused("a.obj", "v 0 nan 0\n", ":1: 'nan' is not a finite number");
     expect_refused("a.obj", "v 0 1e39 0\n", "not a finite number");
     expect_refused("a.obj", "v 0 1.0.0 0\n", "is not a number");
-    expect_refused("a.obj", "v 0 0 0 2\n", "weight w");
-    expect_refused("a.obj", "curv2 1 2\n", "'curv2' is not supported");
+    expect_refused("a.obj", corners + "v 0 0 0 0\nf 1 2 3\n", ":5: the weight w is 0");
+    expect_refused("a.obj", corners + "v 1e30 0 0 1e-30\nf 1 2 3\n", ":5: the weight w is 1e-30");
+    expect_refused("a.obj", corners + "f 1 2 3\nsurf 0 1 0 1 1 2 3 4\n",
+                   ":6: 'surf': curved surfaces");
+    expect_refused("a.obj", corners + "cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nend\n",
+                   ": no faces: curves are not supported");
+    expect_refused("a.obj", corners + "f -1 -2 -3\nv 0 0 1\nf -6 1 2\n", ":7: face corner '-6'");
+    expect_refused("a.obj", corners + "f 1 2 +-3\n", "face corner '+-3' is not v");
+    expect_refused("a.obj", "v 0 +-1 0\n", "'+-1' is not a number");
+    expect_refused("a.obj", "v 0 1.0D 0\n", "'1.0D' is not a number");
+    expect_refused("a.obj", "vx 1 2\n", "'vx' is not supported");
     expect_refused("a.obj", std::string("\0\1\2rubbish", 10), "is not supported");
 }
 

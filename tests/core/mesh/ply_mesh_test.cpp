@@ -94,6 +94,17 @@ TEST_F(PlyMesh, OtherPlyElementsAndPropertiesAreSteppedOver) {
     EXPECT_EQ(mesh.triangles.size(), 1U);
 }
 
+TEST_F(PlyMesh, IsReadAsOtherProgramsWriteIt) {
+    const std::string text = ascii_ply(square());
+    const TriangleMesh plain = load("a.ply", text);
+    const auto with = [&](std::string changed, const std::string& what, const std::string& by) {
+        return changed.replace(changed.find(what), what.size(), by);
+    };
+    for (const std::string name : {"vertex_index", "indices"})
+        expect_same(plain, load("b.ply", with(text, "vertex_indices", name)));
+    expect_same(plain, load("c.ply", with(text, "1 1 0", "+1 1.0D+0 0d0")));
+}
+
 TEST_F(PlyMesh, VerticesOfNoTriangleAreNoPartOfTheMesh) {
     const TriangleMesh mesh =
         load("u.ply",
@@ -130,7 +141,7 @@ TEST_F(PlyMesh, FacesHaveOneListOfCorners) {
     const std::string first = "vertex_indices\n";
     bytes.insert(bytes.find(first) + first.size(), "property list uchar int vertex_index\n");
     bytes.insert(bytes.rfind("4 0 1 2 3") + 9, " 3 2 1 0");
-    expect_refused("a.ply", bytes, "faces have both lists");
+    expect_refused("a.ply", bytes, "faces have more than one list of corners (vertex_indices, ");
 }
 
 TEST_F(PlyMesh, BrokenPlyFilesAreRefusedWithTheReason) {
