@@ -151,20 +151,25 @@ function(caustics_executable name)
     caustics_use_precompiled(${name} caustics_precompiled)
     target_link_libraries(${name} PRIVATE ${depends})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+    add_dependencies(${name} caustics_helpers)
 endfunction()
 
-# caustics_module(foreign_pictures SOURCES ... DEPENDS ...): a library that programs load when they need it, from
-# ../<CAUSTICS_MODULE_FOLDER> beside their own folder, both where they are built and where they are installed.
+# caustics_helper(read_pictures SOURCES ... DEPENDS ...): a program that other programs start, from
+# ../<CAUSTICS_HELPER_FOLDER> beside their own folder, both where they are built and where they are installed.
 include(GNUInstallDirs)
-set(CAUSTICS_MODULE_FOLDER "${CMAKE_INSTALL_LIBDIR}/causticbench")
-function(caustics_module name)
+set(CAUSTICS_HELPER_FOLDER "${CMAKE_INSTALL_LIBDIR}/causticbench")
+add_custom_target(caustics_helpers)
+function(caustics_helper name)
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
     caustics_resolve_targets(depends ${arg_DEPENDS})
-    add_library(caustics_${name} MODULE ${arg_SOURCES})
-    caustics_configure_target(caustics_${name})
-    target_link_libraries(caustics_${name} PRIVATE ${depends})
-    set_target_properties(caustics_${name} PROPERTIES PREFIX ""
-        LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/${CAUSTICS_MODULE_FOLDER}")
+    add_executable(${name} ${arg_SOURCES})
+    caustics_configure_target(${name})
+    target_link_libraries(${name} PRIVATE ${depends})
+    # It starts faster without the libraries of core that it does not call.
+    target_link_options(${name} PRIVATE -Wl,--as-needed)
+    set_target_properties(${name} PROPERTIES
+        RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/${CAUSTICS_HELPER_FOLDER}")
+    add_dependencies(caustics_helpers ${name})
 endfunction()
 
 # caustics_test(kd_tree SOURCES ... DEPENDS ... LABELS ... [DEFINES ...] [SHARED_MESHES])
@@ -208,6 +213,7 @@ function(caustics_test name)
         "CAUSTICS_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" ${arg_DEFINES})
     set_target_properties(${program} PROPERTIES
         RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+    add_dependencies(${program} caustics_helpers)
     if("unit" IN_LIST arg_LABELS)
         add_dependencies(unit_tests ${program})
     endif()

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/hash.h"
 #include "core/picture/picture_file.h"
 
 namespace caustics {
@@ -49,6 +51,7 @@ struct Evaluate {
         return (fraction(p.x()) > 0.5F) == (fraction(p.y()) > 0.5F) ? board.color0 : board.color1;
     }
     Spectrum operator()(const Bitmap& bitmap) const {
+        if (bitmap.texels.empty()) throw std::logic_error("the texels of a picture were not read");
         const Vec2 p = transformed(bitmap.to_uv, uv);
         const float x = folded(p.x(), bitmap.wrap) * static_cast<float>(bitmap.width);
         const float y = folded(p.y(), bitmap.wrap) * static_cast<float>(bitmap.height);
@@ -78,7 +81,7 @@ struct AddTo {
     void operator()(const Bitmap& bitmap) const {
         hash.add(bitmap.width);
         hash.add(bitmap.height);
-        for (const Spectrum& texel : bitmap.texels) hash.add(texel);
+        hash.add(bitmap.source);
         hash.add(bitmap.filter);
         hash.add(bitmap.wrap);
         hash.add(bitmap.to_uv.matrix());
@@ -100,8 +103,9 @@ void add_to(ValueHash& hash, const Texture& texture) {
     std::visit(AddTo{hash}, texture);
 }
 
-Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {
-    PictureFile picture(file);
+Bitmap load_bitmap(PictureReader& reader, const std::filesystem::path& file, bool raw,
+                   PictureDepth depth) {
+    PictureFile picture(reader, file);
     const bool decode = !raw && !picture.shape().is_float;
     const auto channels = static_cast<std::size_t>(picture.shape().channels);
     // One or two channels are grey, with alpha ignored.
@@ -109,6 +113,8 @@ Bitmap load_bitmap(const std::filesystem::path& file, bool raw) {
     Bitmap bitmap;
     bitmap.width = picture.shape().width;
     bitmap.height = picture.shape().height;
+    bitmap.source = fnv1a(raw ? "raw" : "", picture.hash());
+    if (depth == PictureDepth::header) return bitmap;
     bitmap.texels.reserve(picture.pixel_count());
     picture.read_rows([&](int y, const float* values) {
         for (int x = 0; x < bitmap.width; ++x, values += channels) {

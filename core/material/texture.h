@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <variant>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "core/math/spectrum.h"
 #include "core/math/value_hash.h"
 #include "core/math/vec.h"
+#include "core/picture/picture_reader.h"
 
 namespace caustics {
 
@@ -17,7 +19,8 @@ struct Bitmap {
 
     int width = 0;
     int height = 0;
-    std::vector<Spectrum> texels;  ///< row by row from the top
+    std::vector<Spectrum> texels;  ///< row by row from the top; none where only the header was read
+    std::uint64_t source = 0;      ///< hash of the file's bytes and of how they are read
     Filter filter = Filter::bilinear;
     Wrap wrap = Wrap::repeat;
     Eigen::Affine3f to_uv = Eigen::Affine3f::Identity();
@@ -33,13 +36,14 @@ struct Checkerboard {
 
 using Texture = std::variant<Spectrum, Checkerboard, Bitmap>;
 
-/// Reflectance at texture coordinates (u, v).
+/// Reflectance at texture coordinates (u, v). Throws std::logic_error for a picture of which only the header was read.
 Spectrum evaluate(const Texture& texture, const Vec2& uv);
 /// Adds all that evaluate() depends on.
 void add_to(ValueHash& hash, const Texture& texture);
 
 /// Reads a picture file of any format; 8- and 16-bit files are sRGB-decoded unless `raw`.
 /// One channel is grey; alpha is ignored. Throws InputError.
-Bitmap load_bitmap(const std::filesystem::path& file, bool raw);
+Bitmap load_bitmap(PictureReader& reader, const std::filesystem::path& file, bool raw,
+                   PictureDepth depth = PictureDepth::whole);
 
 }  // namespace caustics

@@ -15,7 +15,9 @@ Bitmap read_bitmap(const JsonNode& node, Assets& assets) {
     const auto raw = node.find("raw");
     const JsonNode name = node.at("filename");
     const std::filesystem::path file = read_file_name(name, assets);
-    Bitmap bitmap = load_for(name, [&] { return load_bitmap(file, raw && raw->as_bool()); });
+    Bitmap bitmap = load_for(name, [&] {
+        return load_bitmap(assets.pictures, file, raw && raw->as_bool(), assets.textures);
+    });
     if (const auto filter = node.find("filter_type"))
         bitmap.filter = static_cast<Bitmap::Filter>(filter->as_choice({"bilinear", "nearest"}));
     if (const auto wrap = node.find("wrap_mode"))

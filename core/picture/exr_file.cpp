@@ -15,11 +15,13 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "core/picture/exr_header.h"
+#include "core/picture/picture_limits.h"
 #include "core/picture/primaries.h"
 
 namespace caustics {
@@ -198,6 +200,20 @@ std::map<std::string, std::string> ExrFile::texts() const {
     return found;
 }
 
+void ExrFile::read_rows(int first, int last, float* values) {
+    const Imath::Box2i& window = opened_->header().dataWindow();
+    const auto across = static_cast<std::size_t>(width());
+    const std::vector<std::string> names = channels();
+    const std::size_t row = across * names.size() * sizeof(float);
+    Imf::FrameBuffer buffer;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        buffer.insert(names[i], Imf::Slice::Make(Imf::FLOAT, values + i * across,
+                                                 Imath::V2i(window.min.x, window.min.y + first),
+                                                 width(), last - first, sizeof(float), row));
+    opened_->file.setFrameBuffer(buffer);
+    opened_->file.readPixels(window.min.y + first, window.min.y + last - 1);
+}
+
 void ExrFile::read(const std::vector<ExrChannel<float>>& channels) {
     const Imath::Box2i& window = opened_->header().dataWindow();
     Imf::FrameBuffer buffer;
@@ -205,6 +221,39 @@ void ExrFile::read(const std::vector<ExrChannel<float>>& channels) {
     const ExrThreads threads(value_count(width(), height(), channels.size()));
     opened_->file.setFrameBuffer(buffer);
     opened_->file.readPixels(window.min.y, window.max.y);
+}
+
+namespace {
+
+/// A film, some rows at a time: all values of one channel after those of another, row by row.
+class ExrFilmSource : public PictureSource {
+public:
+    explicit ExrFilmSource(const std::string& bytes) : file_(bytes) {
+        shape_.width = file_.width();
+        shape_.height = file_.height();
+        shape_.names = file_.channels();
+        shape_.channels = static_cast<int>(shape_.names.size());
+        shape_.bytes_per_value = sizeof(float);
+        shape_.is_float = true;
+        shape_.format = "openexr";
+        shape_.texts = file_.texts();
+    }
+
+    void read_rows(int first, int last, float* values) override {
+        if (!threads_)
+            threads_.emplace(row_values(shape_) * static_cast<std::size_t>(shape_.height));
+        file_.read_rows(first, last, values);
+    }
+
+private:
+    ExrFile file_;
+    std::optional<ExrThreads> threads_;
+};
+
+}  // namespace
+
+std::unique_ptr<PictureSource> open_exr_film(const std::string& bytes) {
+    return std::make_unique<ExrFilmSource>(bytes);
 }
 
 }  // namespace caustics

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/picture/picture_source.h"
+
 namespace caustics {
 
 /// A float32 channel: width x height values, row by row from the top, which belong to somebody else.
@@ -42,9 +44,16 @@ public:
     /// Reads whole channels. Throws std::runtime_error for a broken file.
     void read(const std::vector<ExrChannel<float>>& channels);
 
+    /// Reads the rows from `first` up to, not including, `last`: all values of a row of the first of channels(), then those
+    /// of the next one.
+    void read_rows(int first, int last, float* values);
+
 private:
     struct Opened;
     std::unique_ptr<Opened> opened_;
 };
+
+/// Opens an OpenEXR file with all that an ExrFile has; `bytes` must outlive it. Throws std::runtime_error as ExrFile does.
+std::unique_ptr<PictureSource> open_exr_film(const std::string& bytes);
 
 }  // namespace caustics

@@ -1,45 +1,21 @@
-// The module with OpenImageIO, which foreign_picture loads.
+#include "core/picture/openimageio_source.h"
 
-#include <fcntl.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
-#include "core/picture/foreign_picture.h"
+#include "core/picture/exr_header.h"
+#include "core/picture/picture_limits.h"
 #include "core/picture/primaries.h"
 
 namespace caustics {
 namespace {
-
-/// Standard error leads nowhere as long as it lives.
-class SilentStandardError {
-public:
-    SilentStandardError() : kept_(fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) {
-        if (kept_ < 0) return;  // it could not be brought back
-        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-        if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
-        if (nowhere >= 0) close(nowhere);
-    }
-    ~SilentStandardError() {
-        if (kept_ < 0) return;
-        std::fflush(stderr);
-        dup2(kept_, STDERR_FILENO);
-        close(kept_);
-    }
-    SilentStandardError(const SilentStandardError&) = delete;
-    SilentStandardError& operator=(const SilentStandardError&) = delete;
-
-private:
-    int kept_;
-};
 
 OIIO::ImageSpec reading() {
     OIIO::ImageSpec config;
@@ -95,10 +71,9 @@ public:
 
 class OpenImageIoSource : public PictureSource {
 public:
-    OpenImageIoSource(const std::filesystem::path& file, const std::string& bytes,
-                      const std::string& format) {
-        const SilentStandardError silent;
-        open_input(file, bytes, format);
+    OpenImageIoSource(const std::string& bytes, const std::string& format)
+        : memory_(bytes.data(), bytes.size()) {
+        open_input(format);
         const OIIO::ImageSpec& spec = input_->spec();
         if (format == "openexr") require_plain_exr(spec);
         shape_ = {spec.width,
@@ -110,59 +85,77 @@ public:
     }
 
     void read_rows(int first, int last, float* values) override {
-        const SilentStandardError silent;
-        const OIIO::ImageSpec& spec = input_->spec();
-        const int top = spec.y;
-        const bool done = spec.tile_width > 0 ? read_tiles(first, last, values)
-                                              : input_->read_scanlines(
-                                                    0, 0, top + first, top + last, 0, 0,
-                                                    shape_.channels, OIIO::TypeDesc::FLOAT, values);
-        if (!done) throw std::runtime_error(input_->geterror());
+        const std::size_t row = row_values(shape_);
+        for (int y = first; y < last; ++y, values += row) {
+            const bool done =
+                input_->spec().tile_width > 0 ? read_row_of_tiles(y, values) : read_row(y, values);
+            // Also of what was read: many complaints would end the process.
+            const std::string why = input_->geterror();
+            if (!done) throw std::runtime_error(why);
+        }
     }
 
 private:
-    void open_input(const std::filesystem::path& file, const std::string& bytes,
-                    const std::string& format) {
+    void open_input(const std::string& format) {
         const OIIO::ImageSpec config = reading();
         OIIO::ImageSpec found;
         input_ = OIIO::ImageInput::create(format);
         if (!input_) throw std::runtime_error(OIIO::geterror());
-        if (input_->supports("ioproxy")) {
-            memory_ = std::make_unique<Memory>(bytes.data(), bytes.size());
-            input_->set_ioproxy(memory_.get());
-            const std::string name = "picture." + format;
-            if (input_->open(name, found, config)) return;
-            std::string why = input_->geterror();
-            if (const std::size_t at = why.find('"' + name + '"'); at != std::string::npos)
-                why.replace(at, name.size() + 2, "it");
-            throw std::runtime_error(why);
-        }
-        if (!input_->open(file.string(), found, config))
-            throw std::runtime_error(input_->geterror());
+        input_->set_ioproxy(&memory_);
+        const std::string name = "picture." + format;
+        if (input_->open(name, found, config)) return;
+        std::string why = input_->geterror();
+        if (const std::size_t at = why.find('"' + name + '"'); at != std::string::npos)
+            why.replace(at, name.size() + 2, "it");
+        throw std::runtime_error(why);
     }
 
-    // Tiles are read whole, once: all rows are kept.
-    bool read_tiles(int first, int last, float* values) {
-        const auto row = static_cast<std::ptrdiff_t>(shape_.width) * shape_.channels;
-        if (tiles_.empty()) {
-            tiles_.resize(static_cast<std::size_t>(row) * static_cast<std::size_t>(shape_.height));
-            if (!input_->read_image(0, 0, 0, shape_.channels, OIIO::TypeDesc::FLOAT, tiles_.data()))
-                return false;
-        }
-        std::copy(tiles_.begin() + row * first, tiles_.begin() + row * last, values);
+    // One row by itself: for many the library makes 64 MB of room, however small they are.
+    bool read_row(int y, float* values) {
+        const OIIO::ImageSpec& spec = input_->spec();
+        const auto channels = static_cast<std::size_t>(spec.nchannels);
+        const auto taken = static_cast<std::size_t>(shape_.channels);
+        row_.resize(static_cast<std::size_t>(shape_.width) * channels);
+        if (!input_->read_scanline(spec.y + y, 0, OIIO::TypeDesc::FLOAT, row_.data())) return false;
+        for (std::size_t from = 0; from < row_.size(); from += channels)
+            values = std::copy_n(&row_[from], taken, values);
         return true;
     }
 
-    std::unique_ptr<Memory> memory_;
+    // A row of tiles is read whole, and kept for the rows of pixels in it.
+    bool read_row_of_tiles(int y, float* values) {
+        const OIIO::ImageSpec& spec = input_->spec();
+        const std::size_t row = row_values(shape_);
+        const int top = y - y % spec.tile_height;
+        if (tiles_.empty() || top != tiles_top_) {
+            const int bottom = std::min(top + spec.tile_height, shape_.height);
+            tiles_.resize(row * static_cast<std::size_t>(bottom - top));
+            tiles_top_ = top;
+            if (!input_->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + top,
+                                    spec.y + bottom, 0, 1, 0, shape_.channels,
+                                    OIIO::TypeDesc::FLOAT, tiles_.data()))
+                return false;
+        }
+        std::copy_n(&tiles_[row * static_cast<std::size_t>(y - top)], row, values);
+        return true;
+    }
+
+    Memory memory_;
     std::unique_ptr<OIIO::ImageInput> input_;
-    std::vector<float> tiles_;
+    std::vector<float> row_;    ///< with all its channels
+    std::vector<float> tiles_;  ///< the rows of pixels from tiles_top_ on
+    int tiles_top_ = 0;
 };
 
 }  // namespace
-}  // namespace caustics
 
-extern "C" caustics::PictureSource* caustics_open_picture(const char* file,
-                                                          const std::string& bytes,
-                                                          const std::string& format) {
-    return new caustics::OpenImageIoSource(file, bytes, format);
+std::unique_ptr<PictureSource> open_with_openimageio(const std::string& bytes,
+                                                     const std::string& format) {
+    // Threads would take more memory than small pictures.
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+    if (format == "openexr") require_attributes_within(bytes);
+    return std::make_unique<OpenImageIoSource>(bytes, format);
 }
+
+}  // namespace caustics

@@ -1,45 +1,45 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <string>
 
+#include "core/picture/picture_limits.h"
+#include "core/picture/picture_reader.h"
 #include "core/picture/picture_source.h"
 
 namespace caustics {
 
-/// A picture of a format in picture_format.h, which its content tells, not its name: PNG by libpng, others by OpenImageIO.
+/// A picture of a format in picture_format.h, which its content tells, not its name. It is decoded by another process.
 class PictureFile {
 public:
-    /// As many pixels as a film may have.
-    static constexpr std::size_t most_pixels = std::size_t{1} << 27;
-
-    /// As many as a file of so many bytes may have, so that a megabyte takes at most 220 MB as a texture: 2^24, and more where a
-    /// pixel has half a bit in the file.
-    static constexpr std::size_t most_pixels_of(std::size_t bytes) {
-        constexpr std::size_t always = std::size_t{1} << 24;
-        return std::min(most_pixels, std::max(always, 16 * bytes));
-    }
-
-    /// Throws InputError for what is no picture, and for more pixels than its file may have.
-    explicit PictureFile(const std::filesystem::path& file);
+    /// Reads the header alone. Throws InputError for what is no picture, and for more pixels than its file may have.
+    /// `reader` outlives it.
+    PictureFile(PictureReader& reader, const std::filesystem::path& file,
+                PictureUse use = PictureUse::texture);
+    /// With a process of its own.
+    explicit PictureFile(const std::filesystem::path& file, PictureUse use = PictureUse::texture);
     PictureFile(const PictureFile&) = delete;
     PictureFile& operator=(const PictureFile&) = delete;
 
-    const PictureShape& shape() const { return source_->shape(); }
+    const PictureShape& shape() const { return shape_; }
     std::size_t pixel_count() const;
-    /// Hands over the values of a row after another: `channels` floats a pixel. Throws InputError for a broken
-    /// picture.
+    /// Hash of the file's bytes.
+    std::uint64_t hash() const { return hash_; }
+    /// Hands over the values of a row after another, as PictureSource has them. Once. Throws InputError for a broken picture.
     void read_rows(const std::function<void(int y, const float* values)>& take);
     [[noreturn]] void fail(std::string why) const;
 
 private:
+    void open(PictureUse use);
+
     std::filesystem::path file_;
-    std::string bytes_;
-    std::unique_ptr<PictureSource> source_;
+    std::optional<PictureReader> own_reader_;
+    PictureReader& reader_;
+    PictureShape shape_;
+    std::uint64_t hash_ = 0;
 };
 
 }  // namespace caustics

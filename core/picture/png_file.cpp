@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/picture/picture_limits.h"
+
 namespace caustics {
 namespace {
 
@@ -85,17 +87,16 @@ public:
     }
 
     void read_rows(int first, int last, float* values) override {
-        if (pixels_.empty()) decode();
-        const std::size_t row = row_values();
-        const std::size_t begin = row * static_cast<std::size_t>(first);
-        const std::size_t end = row * static_cast<std::size_t>(last);
-        for (std::size_t i = begin; i < end; ++i) *values++ = value(i);
+        if (pixels_.empty() || !is_whole()) decode(first, last);
+        const std::size_t count = row_values(shape_) * static_cast<std::size_t>(last - first);
+        const std::size_t begin =
+            is_whole() ? row_values(shape_) * static_cast<std::size_t>(first) : 0;
+        for (std::size_t i = begin; i < begin + count; ++i) *values++ = value(i);
     }
 
 private:
-    std::size_t row_values() const {
-        return static_cast<std::size_t>(shape_.width) * static_cast<std::size_t>(shape_.channels);
-    }
+    /// An interlaced picture is decoded at once.
+    bool is_whole() const { return passes_ > 1; }
 
     void read_header() {
         png_structp png = file_.png;
@@ -112,14 +113,20 @@ private:
         shape_.bytes_per_value = png_get_bit_depth(png, info) / 8;
     }
 
-    void decode() {
-        const std::size_t row = row_values() * static_cast<std::size_t>(shape_.bytes_per_value);
-        pixels_.resize(row * static_cast<std::size_t>(shape_.height));
-        guarded(file_.png, file_.why, [this, row] {
+    void decode(int first, int last) {
+        if (is_whole()) {
+            first = 0;
+            last = shape_.height;
+        }
+        const std::size_t row =
+            row_values(shape_) * static_cast<std::size_t>(shape_.bytes_per_value);
+        pixels_.resize(row * static_cast<std::size_t>(last - first));
+        guarded(file_.png, file_.why, [this, row, first, last] {
             for (int pass = 0; pass < passes_; ++pass)
-                for (int y = 0; y < shape_.height; ++y)
-                    png_read_row(file_.png, &pixels_[row * static_cast<std::size_t>(y)], nullptr);
-            png_read_end(file_.png, nullptr);
+                for (int y = first; y < last; ++y)
+                    png_read_row(file_.png, &pixels_[row * static_cast<std::size_t>(y - first)],
+                                 nullptr);
+            if (last == shape_.height) png_read_end(file_.png, nullptr);
         });
     }
 
@@ -133,7 +140,7 @@ private:
     Png file_{Png::Use::read};
     std::string_view rest_;
     int passes_ = 1;
-    std::vector<unsigned char> pixels_;
+    std::vector<unsigned char> pixels_;  ///< of the rows that were read last, or of all
 };
 
 }  // namespace

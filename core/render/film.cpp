@@ -41,18 +41,21 @@ auto with_reasons(const fs::path& file, const std::string& doing, const Work& wo
     }
 }
 
-Film decode(const std::string& bytes) {
-    ExrFile file(bytes);
-    Film film(file.width(), file.height());
-    if (film.pixel_count() > PictureFile::most_pixels)
-        throw std::runtime_error(std::to_string(film.width()) + " x " +
-                                 std::to_string(film.height()) + " pixels, more than " +
-                                 std::to_string(PictureFile::most_pixels));
-    std::vector<ExrChannel<float>> channels;
-    for (const std::string& name : file.channels())
-        channels.push_back({name, film.plane(name).data()});
-    file.read(channels);
-    for (const auto& [name, text] : file.texts())
+Film film_of(PictureFile& file) {
+    const PictureShape& shape = file.shape();
+    Film film(shape.width, shape.height);
+    std::vector<float*> planes;
+    for (const std::string& name : shape.names) film.plane(name);
+    for (const std::string& name : shape.names) planes.push_back(film.plane(name).data());
+    const auto width = static_cast<std::size_t>(shape.width);
+    file.read_rows([&](int y, const float* values) {
+        const std::size_t begin = width * static_cast<std::size_t>(y);
+        for (float* const plane : planes) {
+            std::copy_n(values, width, plane + begin);
+            values += width;
+        }
+    });
+    for (const auto& [name, text] : shape.texts)
         if (name.starts_with(text_prefix)) film.metadata[name.substr(text_prefix.size())] = text;
     return film;
 }
@@ -110,12 +113,8 @@ void write_exr(const Film& film, const fs::path& file) {
 }
 
 Film read_exr(const fs::path& file) {
-    const std::string bytes = read_whole_file(file);
-    if (!is_exr(bytes)) {
-        const PictureFile picture(file);
-        picture.fail("holds " + picture.shape().format + " values, not radiance as OpenEXR does");
-    }
-    return with_reasons(file, "read", [&] { return decode(bytes); });
+    PictureFile picture(file, PictureUse::film);
+    return with_reasons(file, "read", [&] { return film_of(picture); });
 }
 
 void write_png(int width, int height, const std::vector<unsigned char>& rgb, const fs::path& file) {

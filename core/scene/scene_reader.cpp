@@ -205,12 +205,14 @@ SceneDesc placed(Draft& draft) {
 
 }  // namespace
 
-SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrides) {
+SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrides,
+                     PictureDepth textures) {
     JsonNode root = JsonNode::parse_file(file);
     for (const auto& [pointer, value] : overrides) root.set(pointer, value);
     if (const auto type = root.find("type")) type->as_choice({"scene"});
     if (const auto version = root.find("version")) version->as_integer_in(1, 1);
     Draft draft;
+    draft.assets.textures = textures;
     const auto children = root.children();
     root.finish();
     for (const auto& [key, child] : children) read_child(key, child, draft);
@@ -221,7 +223,7 @@ SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrid
     scene.canonical = root.canonical();
     scene.files = root.files();
     std::uint64_t state = fnv1a(scene.canonical);
-    for (const auto& [path, name] : draft.assets) {
+    for (const auto& [path, name] : draft.assets.files) {
         scene.files.push_back(path);
         scene.assets.emplace_back(name, hex(fnv1a(read_whole_file(path))));
         state = fnv1a(name + scene.assets.back().second, state);

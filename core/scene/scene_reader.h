@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/picture/picture_source.h"
 #include "core/scene/scene.h"
 
 namespace caustics {
@@ -24,7 +25,9 @@ struct SceneFile {
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 
 /// Reads a scene file (contract: JSON with Mitsuba 3's words). Throws InputError with file, JSON
-/// pointer and alternatives for anything unknown, missing, of the wrong type or out of range.
-SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrides = {});
+/// pointer and alternatives for anything unknown, missing, of the wrong type or out of range. Where only the headers of
+/// textures are read, their colours are unknown: such a scene is described, not rendered.
+SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrides = {},
+                     PictureDepth textures = PictureDepth::whole);
 
 }  // namespace caustics

@@ -154,7 +154,7 @@ std::filesystem::path read_file_name(const JsonNode& node, Assets& assets) {
     const std::filesystem::path file = node.file().parent_path() / name;
     load_for(node, [&] { require_regular_file(file); });
     const std::pair<std::filesystem::path, std::string> asset{file, name};
-    if (std::ranges::find(assets, asset) == assets.end()) assets.push_back(asset);
+    if (std::ranges::find(assets.files, asset) == assets.files.end()) assets.files.push_back(asset);
     return file;
 }
 

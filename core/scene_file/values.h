@@ -7,12 +7,18 @@
 #include "core/base/error.h"
 #include "core/math/spectrum.h"
 #include "core/math/vec.h"
+#include "core/picture/picture_reader.h"
 #include "core/scene_file/json_reader.h"
 
 namespace caustics::scene_file {
 
-/// What a scene file refers to: absolute file -> name as written.
-using Assets = std::vector<std::pair<std::filesystem::path, std::string>>;
+/// What a scene file refers to, and how its pictures are read.
+struct Assets {
+    /// Absolute file -> name as written.
+    std::vector<std::pair<std::filesystem::path, std::string>> files = {};
+    PictureDepth textures = PictureDepth::whole;
+    PictureReader pictures = PictureReader();
+};
 
 /// The range of numbers that have no range of their own: their squares fit a double, and they a float.
 inline constexpr double unlimited = 1e30;

@@ -48,8 +48,8 @@ HeightGrid read_fractal(const JsonNode& node, const Vec2d& half_size) {
 }
 
 // Pixels are the corners of the cells; the top row lies at +y, as the picture looks from above.
-HeightGrid load_heights(const std::filesystem::path& file, double height) {
-    PictureFile picture(file);
+HeightGrid load_heights(PictureReader& reader, const std::filesystem::path& file, double height) {
+    PictureFile picture(reader, file);
     const PictureShape& shape = picture.shape();
     if (shape.channels != 1)
         picture.fail(fmt::format("heights are one channel, and not {}", shape.channels));
@@ -76,7 +76,7 @@ HeightGrid read_picture(const JsonNode& name, const std::optional<JsonNode>& hei
                         const Vec2d& half_size, Assets& assets) {
     const double metres = height ? height->as_number_in(-unlimited, unlimited) : 1;
     const std::filesystem::path file = read_file_name(name, assets);
-    HeightGrid grid = load_for(name, [&] { return load_heights(file, metres); });
+    HeightGrid grid = load_for(name, [&] { return load_heights(assets.pictures, file, metres); });
     grid.half_size = half_size;
     return grid;
 }

@@ -22,7 +22,6 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupt.h"
-#include "core/base/shared_library.h"
 #include "experiments/base/file_io.h"
 
 namespace caustics::experiments {
@@ -43,10 +42,17 @@ constexpr int end_signals[] = {SIGINT, SIGTERM, SIGHUP};
     throw std::system_error(errno, std::generic_category(), what);
 }
 
-const std::size_t threads_at_start = thread_count();  // 0: they could not be counted
+/// Threads of this process; 0 where there is no /proc to count them by.
+std::size_t thread_count() {
+    std::error_code none;
+    const std::filesystem::directory_iterator threads("/proc/self/task", none);
+    return static_cast<std::size_t>(std::distance(begin(threads), end(threads)));
+}
+
+const std::size_t threads_at_start = thread_count();
 
 void require_no_other_thread() {
-    if (threads_at_start > 0 && thread_count() > threads_at_start + library_threads())
+    if (threads_at_start > 0 && thread_count() > threads_at_start)
         throw std::logic_error("a child must be forked before any thread begins");
 }
 

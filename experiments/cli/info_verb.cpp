@@ -142,7 +142,7 @@ void info_on_scene(const InfoOptions& options) {
         throw InputError("--beams and -o belong together, for a scene; --param is for them");
     if (options.dot) throw InputError("--dot is for photons, which -o draws of a photon map");
     if (options.beams) require_png("-o", options.output, "beams");
-    SceneFile file = options.scene.load();
+    SceneFile file = options.scene.load(options.beams ? PictureDepth::whole : PictureDepth::header);
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     if (options.beams) {
         require_files_apart({options.output}, {}, file.files);

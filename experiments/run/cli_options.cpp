@@ -43,10 +43,10 @@ Overrides SceneOptions::overrides() const {
     return all;
 }
 
-SceneFile SceneOptions::load() const {
+SceneFile SceneOptions::load(PictureDepth textures) const {
     StatusLine line;
     if (line.is_on_terminal()) line.show(fmt::format("reading {} ...", file));
-    return load_scene(file, overrides());
+    return load_scene(file, overrides(), textures);
 }
 
 void MethodOptions::add_to(CLI::App& verb, bool required) {

@@ -20,7 +20,7 @@ struct SceneOptions {
     void add_to(CLI::App& verb);
     /// `--set` as pairs; throws InputError without '='.
     Overrides overrides() const;
-    SceneFile load() const;
+    SceneFile load(PictureDepth textures = PictureDepth::whole) const;
 };
 
 struct MethodOptions {
@@ -58,7 +58,7 @@ struct RunFlags {
 
 /// Samples a pixel as asked for, or the scene's when `asked` is 0. Throws InputError when they do
 /// not fit the scene's sampler.
-int samples_per_pixel(const PixelSampling& sampling, int asked);
+int samples_per_pixel(const PixelSampling& sampling, int asked, const std::string& place = "--spp");
 
 /// What a user should know beside the answer: a line each on stderr.
 void print_notes(const std::vector<std::string>& notes);

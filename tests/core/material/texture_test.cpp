@@ -8,10 +8,13 @@
 
 #include "core/base/error.h"
 #include "core/render/film.h"
+#include "tests/support/bitmap_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {
+
+using support::load_bitmap;
 
 namespace fs = std::filesystem;
 

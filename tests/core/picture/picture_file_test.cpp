@@ -8,23 +8,22 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
-#include <random>
 #include <vector>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/material/texture.h"
-#include "core/picture/foreign_picture.h"
 #include "core/picture/picture_format.h"
-#include "core/picture/png_file.h"
 #include "core/picture/primaries.h"
 #include "core/render/film.h"
+#include "tests/support/bitmap_file.h"
 #include "tests/support/exr_kinds.h"
-#include "tests/support/png_kinds.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics {
 namespace {
+
+using support::load_bitmap;
 
 std::string refusal(const std::function<void()>& reading) {
     try {
@@ -97,46 +96,12 @@ TEST(PictureFile, OtherFormatsAreRefusedBeforeAnyLibraryReadsThem) {
         }
 }
 
-std::vector<float> all_values(PictureSource& source) {
-    const PictureShape& shape = source.shape();
-    std::vector<float> values(static_cast<std::size_t>(shape.width) *
-                              static_cast<std::size_t>(shape.height) *
-                              static_cast<std::size_t>(shape.channels));
-    source.read_rows(0, shape.height, values.data());
-    return values;
-}
-
-TEST(PictureFile, PngsOfEveryKindAreReadAsOpenImageIoReadsThem) {
-    const support::TemporaryFolder folder;
-    constexpr int width = 37;
-    constexpr int height = 29;
-    std::mt19937 random(5);
-    for (const support::PngKind& kind : support::all_png_kinds()) {
-        std::vector<std::uint16_t> values(width * height * kind.channels());
-        for (std::uint16_t& value : values)
-            value = static_cast<std::uint16_t>(random() & ((1U << kind.bits) - 1));
-        const std::string bytes = support::png_of_kind(kind, width, height, values);
-        const auto ours = open_png(bytes);
-        const auto theirs = open_foreign_picture(folder / "a.png", bytes, "png");
-        SCOPED_TRACE(testing::Message()
-                     << "colours " << static_cast<int>(kind.colours) << " bits " << kind.bits
-                     << " interlaced " << kind.interlaced << " transparent " << kind.transparent
-                     << " gamma " << kind.has_gamma);
-        EXPECT_EQ(ours->shape().width, width);
-        EXPECT_EQ(ours->shape().height, height);
-        EXPECT_EQ(ours->shape().channels, theirs->shape().channels);
-        EXPECT_EQ(ours->shape().bytes_per_value, theirs->shape().bytes_per_value);
-        EXPECT_EQ(ours->shape().is_float, theirs->shape().is_float);
-        EXPECT_EQ(ours->shape().format, theirs->shape().format);
-        EXPECT_EQ(all_values(*ours), all_values(*theirs));
-    }
-}
-
 TEST(PictureFile, PrintsNothingOfItsOwnWhereThePictureIsBroken) {
     const support::TemporaryFolder folder;
     const std::filesystem::path file = folder / "a.png";
     write_png(64, 64, std::vector<unsigned char>(3 * 64 * 64, 7), file);
     const std::string good = read_whole_file(file);
+    PictureReader reader;
     int refused = 0;
     testing::internal::CaptureStderr();
     for (std::size_t at = 8; at < good.size(); ++at) {
@@ -144,7 +109,7 @@ TEST(PictureFile, PrintsNothingOfItsOwnWhereThePictureIsBroken) {
         broken[at] = static_cast<char>(broken[at] ^ 0x55);
         write_atomic_file(file, broken);
         try {
-            static_cast<void>(load_bitmap(file, true));
+            static_cast<void>(caustics::load_bitmap(reader, file, true));
         } catch (const InputError& error) {
             ++refused;
             EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": "));
@@ -325,10 +290,10 @@ TEST(PictureFile, AnOpenExrFileThatAsksForMoreThanItHoldsIsRefused) {
 
 TEST(PictureFile, AMegabyteTakesAtMost220MegabytesAsATexture) {
     constexpr std::size_t bytes_per_pixel = sizeof(Spectrum);
-    EXPECT_LT(PictureFile::most_pixels_of(1 << 20) * bytes_per_pixel, 210'000'000);
-    EXPECT_EQ(PictureFile::most_pixels_of(100), 4096 * 4096);
-    EXPECT_EQ(PictureFile::most_pixels_of(4'000'000), 64'000'000);
-    EXPECT_EQ(PictureFile::most_pixels_of(1'000'000'000), PictureFile::most_pixels);
+    EXPECT_LT(most_texture_pixels(1 << 20) * bytes_per_pixel, 210'000'000);
+    EXPECT_EQ(most_texture_pixels(100), 4096 * 4096);
+    EXPECT_EQ(most_texture_pixels(4'000'000), 64'000'000);
+    EXPECT_EQ(most_texture_pixels(1'000'000'000), most_pixels);
     const support::TemporaryFolder folder;
     constexpr int width = 5000;
     constexpr int height = 4000;

@@ -78,6 +78,7 @@ TEST(TransportHash, OfAllPhotonsSeesHowReceiversScatter) {
         bitmap.width = width;
         bitmap.height = static_cast<int>(texels.size()) / width;
         for (const float texel : texels) bitmap.texels.push_back(Spectrum::Constant(texel));
+        bitmap.source = texels[0] > texels[1] ? 1 : 2;
         bitmap.wrap = wrap;
         Bsdf bsdf = support::diffuse(0.5F);
         std::get<Diffuse>(bsdf.model).reflectance = bitmap;

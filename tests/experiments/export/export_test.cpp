@@ -11,11 +11,14 @@
 #include "experiments/export/exported_scene.h"
 #include "experiments/export/mesh_bytes.h"
 #include "experiments/export/xml_writer.h"
+#include "tests/support/bitmap_file.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace caustics::experiments {
 namespace {
+
+using support::load_bitmap;
 
 /// A glass ball and a mirror over a floor, under a lamp and the sun, seen askew.
 SceneDesc small_scene() {
