@@ -130,7 +130,8 @@ private:
             };
             std::ranges::copy(branch.made.leaves, at(all.leaves, branch.first_leaf));
             std::ranges::transform(branch.made.nodes, at(all.nodes, branch.first_node),
-                                   [&](SliceNode node) {
+                                   [&](const SliceNode& made) {
+                                       SliceNode node = made;
                                        for (std::uint32_t& child : node.child)
                                            child = moved(child, branch);
                                        return node;
