@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -42,7 +43,17 @@ std::string runner_at_work_on(const std::filesystem::path& folder) {
     return held ? read_whole_file(name) : std::string();
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder) {
+std::string why_not_locked(const std::filesystem::path& folder, int error) {
+    const bool has_none =
+        error == ENOLCK || error == EOPNOTSUPP || error == ENOSYS || error == EINVAL;
+    return fmt::format("{}: cannot be locked ({}){}", lock_file(folder).string(), reason(error),
+                       has_none
+                           ? "; its file system has no locks, as a network file system without "
+                             "a lock service: write to a folder on a local disk and copy it there"
+                           : "");
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder) : folder_(folder) {
     namespace fs = std::filesystem;
     const auto is_there = [](const fs::path& path) {
         std::error_code none;
@@ -77,8 +88,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
         const int refusal = errno;
         close(file_);
         if (refusal != EACCES && refusal != EAGAIN)
-            throw InputError(
-                fmt::format("{}: cannot be locked ({})", name.string(), reason(refusal)));
+            throw InputError(why_not_locked(folder, refusal));
         throw InputError(
             fmt::format("{}: another runner works on it ({}); wait for it, or use a folder of its "
                         "own and merge "
@@ -92,5 +102,17 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
 }
 
 FolderLock::~FolderLock() { close(file_); }
+
+void FolderLock::require_same_folder() const {
+    struct stat held{}, there{};
+    if (fstat(file_, &held) == 0 && stat(lock_file(folder_).c_str(), &there) == 0 &&
+        held.st_dev == there.st_dev && held.st_ino == there.st_ino)
+        return;
+    throw InputError(fmt::format(
+        "{}: was renamed, removed or made anew while this process worked on it; nothing "
+        "more is written there. What was finished stays in the renamed folder: name "
+        "that by -o to go on",
+        folder_.string()));
+}
 
 }  // namespace caustics::experiments

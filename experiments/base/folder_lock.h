@@ -16,9 +16,17 @@ public:
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
 
+    /// Throws InputError where the path no longer leads to this folder: it was renamed, removed or made
+    /// anew while the process worked on it.
+    void require_same_folder() const;
+
 private:
+    std::filesystem::path folder_;
     int file_ = -1;
 };
+
+/// The error line where the system refuses a lock on the folder with this errno, and what to do.
+std::string why_not_locked(const std::filesystem::path& folder, int error);
 
 /// "process 12 on host" where another process holds the lock of a folder; else empty. Needs no
 /// leave to write there. Throws InputError when the lock is there but cannot be looked at.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <clocale>
@@ -48,6 +49,16 @@ int run_and_report(int argc, char** argv) {
     }
 }
 
+/// 128 KiB serve most commands; less ends a process by SIGSEGV, which leaves no word.
+constexpr rlim_t least_stack = 512 * 1024;
+
+/// The stack that the system gives each thread, where that is too small; else 0.
+rlim_t small_stack() {
+    struct rlimit stack{};
+    if (getrlimit(RLIMIT_STACK, &stack) != 0 || stack.rlim_cur == RLIM_INFINITY) return 0;
+    return stack.rlim_cur < least_stack ? stack.rlim_cur : 0;
+}
+
 /// What no function caught; memory and threads that the system refuses by the limits that refuse them.
 std::string uncaught_reason() {
     const std::string limits = " (threads or memory may be limited: ulimit -u, -v)";
@@ -88,6 +99,11 @@ int main(int argc, char** argv) {
     std::set_terminate(report_uncaught);
     std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failed write like others
     try {
+        if (const rlim_t stack = small_stack(); stack > 0)
+            return report(fmt::format("the stack is limited to {} KiB, and {} KiB are needed "
+                                      "(ulimit -s {})",
+                                      stack / 1024, least_stack / 1024, least_stack / 1024),
+                          failed);
         return run_and_report(argc, argv);
     } catch (const std::bad_alloc&) {  // not even for the message
         write_stderr("causticbench: error: out of memory\n");

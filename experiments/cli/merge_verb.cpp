@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -7,6 +8,28 @@
 #include "experiments/sweep/merge.h"
 
 namespace caustics::experiments {
+
+namespace {
+
+/// What was put together: records, the folders they came from, references, the table.
+std::string merged_text(const Merged& merged, const std::filesystem::path& target) {
+    std::size_t records = 0;
+    std::vector<std::string> from, statuses;
+    for (const auto& [folder, count] : merged.trials) {
+        records += count;
+        from.push_back(fmt::format("{} of {}", count, folder.string()));
+    }
+    for (const auto& [status, count] : merged.statuses)
+        statuses.push_back(fmt::format("{} {}", count, status));
+    return fmt::format(
+        "records    {} in {} ({}); none is in two folders\n"
+        "from       {}\n"
+        "references {} ({} duplicates left out)\n",
+        records, (target / "records.csv").string(), fmt::join(statuses, ", "),
+        fmt::join(from, ", "), merged.references, merged.repeated_references);
+}
+
+}  // namespace
 
 Verb add_merge(CLI::App& app) {
     struct Flags {
@@ -25,10 +48,11 @@ Verb add_merge(CLI::App& app) {
         "instruction set must be the same.\nMixed processors are warned of: their times do not "
         "compare.\nExample:\n  causticbench merge out/1 out/2 out/3 -o out/all");
     return {verb, [flags] {
-                const auto warnings =
+                const Merged merged =
                     merge_results({flags->folders.begin(), flags->folders.end()}, flags->target);
-                for (const std::string& warning : warnings)
+                for (const std::string& warning : merged.warnings)
                     write_stderr(fmt::format("warning: {}\n", warning));
+                write_stdout(merged_text(merged, flags->target));
                 return 0;
             }};
 }

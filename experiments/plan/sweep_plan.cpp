@@ -79,13 +79,16 @@ SceneFile load(const SweepFile& sweep, const SceneVariant& variant) {
 /// whatever is wrong shows before anything runs.
 json examine(const SweepFile& sweep, const SceneVariant& variant) {
     SceneFile file = load(sweep, variant);
-    samples_per_pixel(file.desc.sampling, sweep.spp);
+    const auto place = [&](const char* key) {
+        return fmt::format("{}: {}: for {}:", sweep.file.string(), key, variant.file.string());
+    };
+    samples_per_pixel(file.desc.sampling, sweep.spp, place("/spp"));
     json facts = {{"hash", file.hash}};
     if (!variant.reference) return facts;
     const RunRequest& request = variant.reference->request;
     PixelSampling fixed_rate = file.desc.sampling;
     fixed_rate.max_sample_count = 0;
-    samples_per_pixel(fixed_rate, request.samples_per_pixel);
+    samples_per_pixel(fixed_rate, request.samples_per_pixel, place("/reference/spp"));
     const Scene scene(take_shapes(file));
     const auto require = [&](const std::optional<std::string>& reason) {
         if (reason)

@@ -60,9 +60,7 @@ void SweepSummary::add(const TableRow& row) {
     if (*rmse < judged.best.rmse) judged.best = {*rmse, row.text("method"), values};
 }
 
-std::string SweepSummary::Range::text() const {
-    return low > high ? "-" : fmt::format("{:.4g} to {:.4g}", low, high);
-}
+std::string SweepSummary::Range::text() const { return fmt::format("{:.4g} to {:.4g}", low, high); }
 
 std::string SweepSummary::statuses_text() const {
     std::vector<std::string> parts;
@@ -96,7 +94,6 @@ std::string SweepSummary::best_text() const {
     std::vector<std::string> lines;
     for (const auto& [scene, settings] : scenes_)
         for (const auto& [reference, judged] : settings) lines.push_back(best_line(scene, judged));
-    if (lines.empty()) return "-";
     std::ranges::sort(lines);
     if (lines.size() > most + 1) {
         const std::size_t more = lines.size() - most;
@@ -106,15 +103,30 @@ std::string SweepSummary::best_text() const {
     return fmt::format("{}", fmt::join(lines, "\n           "));
 }
 
+/// The lines on errors, or why there are none.
+std::string SweepSummary::errors_text() const {
+    if (!statuses_.contains("done")) return "errors     none: no trial is done\n";
+    if (scenes_.empty())
+        return "errors     none: the sweep has no reference (\"reference\" in the sweep file asks "
+               "for "
+               "one)\n";
+    std::string text = fmt::format("best RMSE  {}\n", best_text());
+    if (!energy_.is_empty())
+        text += fmt::format("energy     mean(caustic) / mean(reference) from {}\n", energy_.text());
+    if (!reference_error_.is_empty())
+        text += fmt::format("references standard error a pixel {} of the mean\n",
+                            reference_error_.text());
+    return text;
+}
+
 std::string SweepSummary::text(std::size_t planned, std::size_t ran, double seconds) const {
-    return fmt::format(
-        "trials     {} planned: {}; {} run now in {}\n"
-        "best RMSE  {}\n"
-        "energy     mean(caustic) / mean(reference) from {}\n"
-        "time       a trial takes {} s, peak memory {} MiB\n"
-        "references standard error a pixel {} of the mean\n",
-        planned, statuses_text(), ran, clock_text(seconds), best_text(), energy_.text(),
-        seconds_.text(), memory_.text(), reference_error_.text());
+    std::string text = fmt::format("trials     {} planned: {}; {} run now in {}\n", planned,
+                                   statuses_text(), ran, clock_text(seconds));
+    text += errors_text();
+    if (!seconds_.is_empty())
+        text += fmt::format("time       a trial takes {} s, peak memory {} MiB\n", seconds_.text(),
+                            memory_.text());
+    return text;
 }
 
 }  // namespace caustics::experiments

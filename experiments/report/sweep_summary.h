@@ -27,6 +27,7 @@ private:
         double low = std::numeric_limits<double>::infinity();
         double high = -std::numeric_limits<double>::infinity();
         void take_in(std::optional<double> value);
+        bool is_empty() const { return low > high; }
         std::string text() const;
     };
     using Values = std::map<std::string, std::string>;  ///< of swept columns, where they apply
@@ -44,6 +45,7 @@ private:
     Values values_of(const TableRow& row) const;
     std::string words(const Values& values) const;
     std::string statuses_text() const;
+    std::string errors_text() const;
     std::string best_text() const;
     std::string best_line(const std::string& scene, const Judged& judged) const;
 

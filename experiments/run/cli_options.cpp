@@ -102,18 +102,18 @@ RunOptions RunFlags::options(int samples_per_pixel) const {
     return options;
 }
 
-int samples_per_pixel(const PixelSampling& sampling, int asked) {
+int samples_per_pixel(const PixelSampling& sampling, int asked, const std::string& place) {
     const int count = asked > 0 ? asked : sampling.sample_count;
     const int below = static_cast<int>(std::sqrt(count));
     if (sampling.stratified && below * below != count)
         throw InputError(fmt::format(
-            "--spp {}: the scene's stratified sampler takes n^2 samples a pixel, as {} or {}; a "
+            "{} {}: the scene's stratified sampler takes n^2 samples a pixel, as {} or {}; a "
             "sampler of type \"independent\" takes any number",
-            count, below * below, (below + 1) * (below + 1)));
+            place, count, below * below, (below + 1) * (below + 1)));
     if (sampling.max_sample_count > 0 && (count < 2 || count > sampling.max_sample_count))
-        throw InputError(fmt::format(
-            "--spp {}: the scene's adaptive sampler starts with 2 to {} samples a pixel", count,
-            sampling.max_sample_count));
+        throw InputError(
+            fmt::format("{} {}: the scene's adaptive sampler starts with 2 to {} samples a pixel",
+                        place, count, sampling.max_sample_count));
     return count;
 }
 

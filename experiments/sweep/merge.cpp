@@ -47,6 +47,7 @@ struct Survey {
     Origins code;
     Origins isa;
     Origins cpu;
+    std::map<std::string, std::size_t> statuses;
 };
 
 constexpr std::size_t most_named = 5;
@@ -110,6 +111,7 @@ void take_in(Survey& survey, const PlanFile& plan, const fs::path& folder) {
             throw InputError(fmt::format("{}: is in {} and in {}", trial.id, place->second.string(),
                                          folder.string()));
         require_same_judge(survey, *row, folder);
+        ++survey.statuses[row->text("status")];
         survey.code.emplace(row->text("code_version"), folder.string());
         survey.isa.emplace(row->text("isa"), folder.string());
         survey.cpu.emplace(row->text("cpu"), folder.string());
@@ -170,7 +172,8 @@ void copy_plain(const fs::path& from, const fs::path& to) {
 }
 
 /// References of one name that two folders have are one picture: `--references extend` makes others of the same name.
-void require_same_references(const std::vector<fs::path>& folders) {
+/// Counts them.
+void take_in_references(const std::vector<fs::path>& folders, Merged& merged) {
     std::map<std::string, fs::path> first;
     for (const fs::path& folder : folders) {
         if (!fs::is_directory(folder / "references")) continue;
@@ -179,6 +182,7 @@ void require_same_references(const std::vector<fs::path>& folders) {
             if (file.path().extension() != ".exr" || !fs::is_regular_file(file.symlink_status()))
                 continue;
             const auto [same, is_new] = first.emplace(file.path().filename().string(), file.path());
+            ++(is_new ? merged.references : merged.repeated_references);
             if (!is_new && read_whole_file(same->second) != read_whole_file(file.path()))
                 throw InputError(fmt::format(
                     "{} and {} are different pictures: errors against them do not compare (put one "
@@ -261,8 +265,7 @@ std::vector<std::string> write_whole(const std::vector<fs::path>& folders, const
 
 }  // namespace
 
-std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
-                                       const fs::path& target) {
+Merged merge_results(const std::vector<fs::path>& folders, const fs::path& target) {
     if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target)))
         throw InputError(fmt::format("{}: is there already (name a new folder)", target.string()));
     for (const fs::path& folder : folders) require_outside(target, folder);
@@ -270,12 +273,17 @@ std::vector<std::string> merge_results(const std::vector<fs::path>& folders,
     Survey survey;
     for (const fs::path& folder : folders) take_in(survey, plans[0], folder);
     require_whole(survey, plans[0], folders[0]);
-    require_same_references(folders);
+    Merged merged;
+    take_in_references(folders, merged);
+    merged.statuses = survey.statuses;
+    for (const fs::path& folder : folders) merged.trials[folder];
+    for (const auto& [id, folder] : survey.folder_of) ++merged.trials[folder];
 
-    std::vector<std::string> warnings = write_whole(folders, plans[0], survey, target);
+    merged.warnings = write_whole(folders, plans[0], survey, target);
     if (survey.cpu.size() > 1)
-        warnings.push_back("times from different processors do not compare: " + all(survey.cpu));
-    return warnings;
+        merged.warnings.push_back("times from different processors do not compare: " +
+                                  all(survey.cpu));
+    return merged;
 }
 
 }  // namespace caustics::experiments

@@ -215,6 +215,7 @@ private:
         bool stop = left_ > 0 && options_.fail_fast;
         while (!runner.running().empty() || (!stop && next_ < status_.todo.size())) {
             end_if_interrupted(runner);
+            folder_.require_same();
             while (!stop && next_ < status_.todo.size() && runner.has_room())
                 stop = !start(*status_.todo[next_++]) && options_.fail_fast;
             for (const TrialRunner::Finished& each : runner.wait())
@@ -301,6 +302,7 @@ private:
     }
 
     std::vector<std::string> write_table(SweepSummary* summary) const {
+        folder_.require_same();
         return write_records(options_.folder, store_, plan_file(plan_), unfinished_,
                              [&](const TableRow& row) {
                                  if (summary != nullptr) summary->add(row);

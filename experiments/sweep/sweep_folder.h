@@ -13,6 +13,8 @@ class SweepFolder {
 public:
     explicit SweepFolder(const std::filesystem::path& folder);
 
+    /// Throws InputError where the path leads to another folder by now.
+    void require_same() const { lock_.require_same_folder(); }
     const TrialStore& store() const { return store_; }
     std::filesystem::path figures() const { return folder_ / "report" / "figures"; }
     std::filesystem::path references() const { return folder_ / "references"; }

@@ -68,6 +68,43 @@ TEST_F(Surroundings, AnAnswerThatCannotBeWrittenIsAnError) {
         }
 }
 
+// With less than 64 KiB the system's loader may end the program before it has begun.
+TEST_F(Surroundings, TooSmallAStackIsOneLine) {
+    if (CAUSTICS_ADDRESS_SANITIZER || CAUSTICS_THREAD_SANITIZER)
+        GTEST_SKIP() << "sanitizers need a larger stack to start";
+    for (const int kibibytes : {64, 100, 128, 256, 511})
+        for (const std::string verb : {"--version", "render $S --method none -o $D/a.exr",
+                                       "sweep $D/sweep.json -o $D/out"}) {
+            const ProgramResult result = run(fmt::format("ulimit -s {}; $P {}", kibibytes, verb));
+            EXPECT_EQ(result.exit_code, 1) << kibibytes << verb;
+            EXPECT_EQ(
+                result.err,
+                fmt::format("causticbench: error: the stack is limited to {} KiB, and 512 KiB are "
+                            "needed (ulimit -s 512)\n",
+                            kibibytes))
+                << verb;
+        }
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    EXPECT_EQ(run("ulimit -s 512; $P render $S --method beamtree -o $D/a.exr").exit_code, 0);
+    EXPECT_EQ(run("ulimit -s unlimited; $P --version").exit_code, 0);
+}
+
+TEST_F(Surroundings, ASweepWhoseFolderIsMadeAnewLeavesNothingInTheNewOne) {
+    write_atomic_file(folder_ / "many.json",
+                      fmt::format(R"({{"version": 1, "scenes": ["{}"], "spp": 1, "repeats": 2000,
+                                       "methods": [{{"method": "none"}}]}})",
+                                  scene_path));
+    const ProgramResult result =
+        run("$P sweep $D/many.json -o $D/out & sweep=$!; "
+            "until ls $D/out/trials/*/record.json >/dev/null 2>&1; do sleep 0.02; done; "
+            "mv $D/out $D/old; mkdir $D/out; wait $sweep");
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(result.err.find("out: was renamed, removed or made anew while"), std::string::npos)
+        << result.err;
+    EXPECT_TRUE(fs::is_empty(folder_ / "out"));
+    EXPECT_FALSE(fs::is_empty(folder_ / "old/trials"));
+}
+
 TEST_F(Surroundings, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
     for (const std::string verb :
          {"render $S --method none -o $D/a.exr", "sweep $D/sweep.json -o $D/out",

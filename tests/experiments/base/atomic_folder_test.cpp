@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <set>
 #include <string>
@@ -112,6 +113,32 @@ TEST_F(WholeFolders, NameALockThatIsNoFile) {
         EXPECT_NE(std::string(error.what()).find("/.lock: cannot be written"), std::string::npos)
             << error.what();
     }
+}
+
+TEST(FolderLocks, NameAWayOutWhereTheFileSystemHasNone) {
+    for (const int error : {ENOLCK, EOPNOTSUPP, ENOSYS, EINVAL}) {
+        const std::string told = why_not_locked("there", error);
+        EXPECT_TRUE(told.starts_with("there/.lock: cannot be locked (")) << told;
+        EXPECT_NE(told.find("write to a folder on a local disk"), std::string::npos) << told;
+    }
+    EXPECT_EQ(why_not_locked("there", EIO), "there/.lock: cannot be locked (Input/output error)");
+}
+
+TEST_F(WholeFolders, AreMissedWhereAnotherTookTheirPath) {
+    const FolderLock lock(target_);
+    EXPECT_NO_THROW(lock.require_same_folder());
+    fs::rename(target_, folder_ / "renamed");
+    EXPECT_THROW(lock.require_same_folder(), InputError) << "none is there";
+    const FolderLock other(target_);
+    try {
+        lock.require_same_folder();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("target: was renamed, removed or made anew"),
+                  std::string::npos)
+            << error.what();
+    }
+    EXPECT_NO_THROW(other.require_same_folder());
 }
 
 TEST_F(WholeFolders, TakeBackWhatCannotBePutInPlace) {

@@ -255,6 +255,24 @@ TEST_F(SweepPlans, TakeAsManySamplesAsARenderedPicture) {
         << error_with(1'002'001);
 }
 
+TEST_F(SweepPlans, NameFileKeyAndSceneOfSamplesThatASamplerCannotTake) {
+    const std::filesystem::path file = folder_ / "samples.json";
+    const auto error_with = [&](const std::string& members) {
+        write_atomic_file(file, fmt::format(R"({{"version": 1, "scenes": ["{}"], {}, {}}})", scene,
+                                            members, none));
+        return error_of({file});
+    };
+    EXPECT_TRUE(error_with(R"("spp": 3)")
+                    .starts_with(fmt::format("{}: /spp: for {}: 3: the scene's stratified sampler",
+                                             file.string(), scene)))
+        << error_with(R"("spp": 3)");
+    const std::string reference =
+        R"("spp": 4, "reference": {"method": "lighttrace", "param": {"paths": 10}, "spp": 5})";
+    EXPECT_TRUE(error_with(reference).starts_with(fmt::format(
+        "{}: /reference/spp: for {}: 5: the scene's stratified sampler", file.string(), scene)))
+        << error_with(reference);
+}
+
 // All files of a command make one table.
 TEST_F(SweepPlans, RefuseAnAxisNamedAsAParameterOfAnotherFile) {
     const std::filesystem::path params =

@@ -77,5 +77,24 @@ TEST(SweepSummary, MemoryIsInMiB) {
     EXPECT_NE(told.find("peak memory 69.37 to 69.37 MiB"), std::string::npos) << told;
 }
 
+TEST(SweepSummary, ASweepWithoutReferenceSaysSoInWords) {
+    const std::vector<std::string> fields = {"ring", "photonmap", "done", "1", "1000", "64", "",
+                                             "1.5",  "72740864",  "",     "",  "",     ""};
+    const std::string told = text({TableRow(columns, fields)});
+    EXPECT_NE(told.find("errors     none: the sweep has no reference"), std::string::npos) << told;
+    EXPECT_EQ(told.find("best RMSE"), std::string::npos) << told;
+    EXPECT_EQ(told.find("energy"), std::string::npos) << told;
+    EXPECT_NE(told.find("time       a trial takes 1.5 to 1.5 s"), std::string::npos) << told;
+    EXPECT_EQ(told.find(" -\n"), std::string::npos) << told;
+}
+
+TEST(SweepSummary, ASweepWithoutADoneTrialSaysSoInWords) {
+    const std::vector<std::string> fields = {"ring", "photonmap", "failed", "1", "1000", "64", "",
+                                             "",     "",          "",       "",  "",     ""};
+    EXPECT_NE(text({TableRow(columns, fields)}).find("errors     none: no trial is done\n"),
+              std::string::npos);
+    EXPECT_NE(text({}).find("trials     0 planned: none;"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace caustics::experiments

@@ -46,7 +46,8 @@ protected:
                           {"isa", isa},
                           {"machine", {{"cpu", cpu}}}});
     }
-    std::vector<std::string> merge() { return merge_results({one_, two_}, whole_); }
+    Merged merge_all() { return merge_results({one_, two_}, whole_); }
+    std::vector<std::string> merge() { return merge_all().warnings; }
     std::string error() {
         try {
             merge();
@@ -62,6 +63,22 @@ protected:
     fs::path two_ = folder_ / "2";
     fs::path whole_ = folder_ / "whole";
 };
+
+TEST_F(Merges, TellWhatCameFromWhere) {
+    const fs::path none = folder_ / "3";
+    fs::create_directories(none);
+    write_plan(plan_, none);
+    for (const fs::path& folder : {one_, two_}) {
+        fs::create_directories(folder / "references");
+        write_atomic_file(folder / "references/key.exr", "picture");
+    }
+    write_atomic_file(two_ / "references/other.exr", "picture");
+    const Merged merged = merge_results({one_, two_, none}, whole_);
+    EXPECT_EQ(merged.trials, (std::map<fs::path, std::size_t>{{one_, 2}, {two_, 2}, {none, 0}}));
+    EXPECT_EQ(merged.statuses, (std::map<std::string, std::size_t>{{"unsupported", 4}}));
+    EXPECT_EQ(merged.references, 2U);
+    EXPECT_EQ(merged.repeated_references, 1U);
+}
 
 TEST_F(Merges, PutShardsTogether) {
     fs::create_directories(one_ / "references");
