@@ -18,8 +18,8 @@ def named(text):
 
 
 def stem(library):
-    """libpng16 of libpng16.so.16, libOpenEXR of libOpenEXR-3_1.so.30."""
-    return re.sub(r"(-[\d_.]+|-linux.*)?\.so.*$", "", pathlib.Path(library).name)
+    """libpng16 of libpng16.so.16, libOpenEXR of libOpenEXR-3_1.so.30, ld-linux of ld-linux-x86-64.so.2."""
+    return re.sub(r"(-[\d_.]+|-x86-64|-aarch64)?\.so.*$", "", pathlib.Path(library).name)
 
 
 def linked(program):
