@@ -190,11 +190,16 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
         beams += one.set.beams.size();
     }
     const RestPhotons rest(scene_, surface_, with_sample(settings_, flux));
+    const Shape& caster = scene_.shapes()[surface_.caster().shape];
+    std::optional<SpecularSurface> exact;
+    if (settings_.intensity == Intensity::refined && caster.primitive != Primitive::mesh)
+        exact.emplace(caster);
     for (const Event event : events) {
         if (first[event].set.beams.empty()) continue;
         Level level;
         level.event = event;
         level.traced = std::move(first[event]);
+        level.exact = exact ? &*exact : nullptr;
         level.departures = first_departures(level.traced);
         Follower(scene_, boxes_, surface_, extras_, settings_, budget_, rest, traced_)
             .follow(level, flux, flux / static_cast<double>(beams),

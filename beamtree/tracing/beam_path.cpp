@@ -7,12 +7,16 @@ namespace caustics::beamtree {
 Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam)
     : scene_(scene),
       surface_(surface),
-      facing_(surface.facing(level.traced.set.beams[beam].triangle)) {
+      facing_(surface.facing(level.traced.set.beams[beam].triangle)),
+      exact_offset_(surface.corner_offset(level.traced.set.beams[beam].triangle)) {
     const Level* at = &level;
     for (; at->parent != nullptr; beam = at->parents[beam], at = at->parent)
         steps_.push_back({&at->places[beam], at->event});
     std::reverse(steps_.begin(), steps_.end());
     first_event_ = at->event;
+    if (at->exact == nullptr) return;
+    exact_ = at->exact;
+    exact_offset_ = std::max(exact_offset_, least_offset(scene.shapes()[surface.caster().shape]));
 }
 
 PathPoint Path::between(const PathPoint& a, const PathPoint& b, float t) const {
@@ -52,14 +56,29 @@ PathPoint Path::go(const Vec3& position, const Vec3& normal, float offset) const
 // Of what the triangle itself says nothing goes into the way: its neighbour goes it too, from their common edge.
 PathPoint Path::go_steps(const Vec3& position, const Vec3& normal, float offset,
                          bool by_facets) const {
+    if (exact_ == nullptr) return go_steps(position, normal, offset, facing_, by_facets);
+    const SpecularSurface::Place place = exact_->beside(exact_->local(position.cast<double>()));
+    const Vec3 on_surface = place.position.cast<float>();
+    const Vec3 across = place.across.cast<float>();
+    const bool is_front = across.dot(to_light(surface_.light(), on_surface)) > 0;
+    if (is_front == facing_.front)
+        return go_steps(on_surface, across, exact_offset_, {across, is_front, false}, by_facets);
+    PathPoint dark;
+    dark.origin = {on_surface, across, black()};
+    dark.origin.offset = exact_offset_;
+    return dark;
+}
+
+PathPoint Path::go_steps(const Vec3& position, const Vec3& normal, float offset,
+                         const Facing& facing, bool by_facets) const {
     PathPoint point;
     const MeshPoint first = surface_.bender().at(position, normal);
     point.origin = {first.position, first.normal, first.bent.weight[first_event_]};
     point.origin.offset = offset;
     point.from = {
         first.normal, offset,
-        surface_.bender().medium_after(facing_.normal, first.bent.direction[first_event_])};
-    if (!sends_on(first, facing_, first_event_)) return point;
+        surface_.bender().medium_after(facing.normal, first.bent.direction[first_event_])};
+    if (!sends_on(first, facing, first_event_)) return point;
     if (!sees(scene_, {position, first.normal, offset}, surface_.light())) return point;
     point.ray = {position, first.bent.direction[first_event_]};
     for (const Step& step : steps_) {

@@ -6,6 +6,7 @@
 
 #include "beamtree/beams/lit_caster.h"
 #include "beamtree/beams/ray_origin.h"
+#include "beamtree/light/specular_surface.h"
 #include "beamtree/tracing/ray_arrival.h"
 
 namespace caustics::beamtree {
@@ -28,6 +29,8 @@ struct Level {
     std::vector<RayArrival> places;
     /// One a beam, or none where all are 1: what division for detail (piece_detail.h) has left of the polygon.
     std::vector<float> shares;
+    /// Of the first level: the exact first surface, on which ways between corners begin; null: they begin on the polygons.
+    const SpecularSurface* exact = nullptr;
     /// Of its beams, were the media clear and they not divided: what they are worth following for [W].
     double worth = 0;
 
@@ -65,10 +68,14 @@ private:
     PathPoint go(const Vec3& position, const Vec3& normal, float offset) const;
     PathPoint go_steps(const Vec3& position, const Vec3& normal, float offset,
                        bool by_facets) const;
+    PathPoint go_steps(const Vec3& position, const Vec3& normal, float offset, const Facing& facing,
+                       bool by_facets) const;
 
     const Scene& scene_;
     const LitCaster& surface_;
     Facing facing_;
+    float exact_offset_;  ///< of places on the exact surface [m]
+    const SpecularSurface* exact_ = nullptr;
     Event first_event_;
     std::vector<Step> steps_;
 };

@@ -96,7 +96,8 @@ private:
         }
         count_lit(parent);
         if (a.goes_on() && is_receiver(scene_.shapes()[a.shape].bsdf)) stay(beam);
-        if (alike && goes_plainly(a, b, c) && !is_coarse(rays)) {
+        const bool wide = level_.exact != nullptr && is_wide(piece_of(rays));
+        if (alike && goes_plainly(a, b, c) && !is_coarse(rays) && !wide) {
             for (const Event event : events)
                 if (!is_black(a.weight[event])) {
                     BeamCorners corners;
@@ -107,7 +108,7 @@ private:
                 }
             return;
         }
-        if (!alike) stay(beam);
+        if (!alike || wide) stay(beam);
         cut_triangle(beam, rays);
     }
 
@@ -122,6 +123,17 @@ private:
     }
     static bool is_coarse(const PathPoint& a, const PathPoint& b) {
         return goes_on(a) && goes_on(b) && beamtree::is_coarse(a.origin, a.next, b.origin, b.next);
+    }
+
+    // Whether the rays of an exact surface part so widely after the first event that the corners' tell little of those
+    // between.
+    static bool is_wide(const Piece& piece) {
+        constexpr float most_apart = 0.3F;  // between unit directions
+        const auto part = [](const PathPoint& p, const PathPoint& q) {
+            return p.alive && q.alive && (p.ray.direction - q.ray.direction).norm() > most_apart;
+        };
+        const auto& [a, b, c] = piece;
+        return part(a, b) || part(b, c) || part(c, a);
     }
 
     // Where no corner goes on.
@@ -173,7 +185,8 @@ private:
             if (!sees(scene_, middle, surface_.light())) return;
             count_lit(parent);
         }
-        if (land(scene_, ray, from, set_.light.bin.nm).goes_on() || hides_a_caster(piece_of(rays)))
+        if (land(scene_, ray, from, set_.light.bin.nm).goes_on() ||
+            hides_a_caster(piece_of(rays)) || (level_.exact != nullptr && is_wide(piece_of(rays))))
             cut_triangle(beam, rays);
     }
 
@@ -242,6 +255,10 @@ private:
         const auto& [a, b, c] = piece;
         if (next_.is_too_weak(piece)) {
             leave_out(beam, piece);
+            return;
+        }
+        if (level_.exact != nullptr && is_wide(piece) && may_search(piece, share)) {
+            search(beam, path, piece, share, splits);
             return;
         }
         if (!goes_on(a) && !goes_on(b) && !goes_on(c)) {

@@ -105,6 +105,54 @@ TEST(BeamBounces, NeighboursShareTheirRays) {
     }
 }
 
+/// Water seen from a lamp below it whose waves are so steep that they send half of its light on to other waves.
+Scene below_steep_water() {
+    constexpr double half = 0.4, level = 0.25;
+    Shape water;
+    water.name = "water";
+    water.primitive = Primitive::heightfield;
+    water.field.waves = {{0.032, Vec2d(19.8, 6.3), 0}};
+    water.field.half_size = {half, half};
+    water.to_world = Eigen::Translation3d(0, 0, level);
+    water.bsdf = support::mirror();
+    SceneDesc desc;
+    desc.shapes = {water, floor_of(1)};
+    desc.shapes[0].bsdf.twosided = true;
+    desc.lights = {support::point_light({-0.35, -0.3, 0.03}, 1)};
+    return Scene(std::move(desc));
+}
+
+// What two events send onto the floor, by the middles of beams.
+double flux_of_two_events(const Scene& scene, int resolution) {
+    const beamtree::TracedBeams traced = beamtree::trace_all_beams(
+        scene, beamtree::caster_meshes(scene, resolution), beamtree::sample_lights(scene, 1, 1),
+        {beamtree::Intensity::refined, 2}, {});
+    double sum = 0;
+    for (const beamtree::BeamSet& set : traced.sets) {
+        if (set.path.size() != 2) continue;
+        for (const beamtree::Beam& beam : set.beams) {
+            Vec3 position = Vec3::Zero(), direction = Vec3::Zero();
+            for (std::size_t i = 0; i < 3; ++i) {
+                position += set.rays[beam.corners[i]].position / 3;
+                direction += set.rays[beam.corners[i]].direction;
+            }
+            const Vec3 lands = position - position.z() / direction.z() * direction;
+            if (direction.z() < 0 && lands.cwiseAbs().maxCoeff() < 1)
+                sum += static_cast<double>(beam.flux.mean());
+        }
+    }
+    return sum;
+}
+
+// Chords of few polygons to a wave lie far off its surface: light that starts on them meets other waves than light of
+// the surface does. A third of it was lost where there are six.
+TEST(BeamBounces, FollowSteepWavesFromTheirSurface) {
+    const Scene scene = below_steep_water();
+    const double truth = flux_of_two_events(scene, 128);
+    EXPECT_NEAR(flux_of_two_events(scene, 16) / truth, 1, 0.03);
+    EXPECT_NEAR(flux_of_two_events(scene, 32) / truth, 1, 0.015);
+}
+
 constexpr int cells = 11;  // odd: the spots behind balls lie in the middle of one
 
 /// Flux in cells of the floor's |x|, |y| <= half, of photons.
