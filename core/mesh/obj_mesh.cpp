@@ -154,7 +154,7 @@ private:
         const auto [x, y, z] = numbers(count == 3 || count == 4 || count == 6, "3, 4 or 6");
         const double w = count == 4 ? number(words_[4]) : 1;
         const Vec3d position = Vec3d(x, y, z) / w;
-        constexpr double largest{std::numeric_limits<float>::max()};
+        constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
         if (w == 0 || position.cwiseAbs().maxCoeff() > largest)
             fail("the weight w is " + std::string(words_[4]) +
                  ": the position, divided by it, is not finite");
