@@ -25,8 +25,9 @@ using namespace std::string_literals;
 
 constexpr std::size_t values_between_looks = 1 << 14;  // for Ctrl-C
 
-// Names that programs give to the list of a face's corners.
-constexpr std::string_view names_of_corners[] = {"vertex_indices", "vertex_index", "indices"};
+// Names that programs give to the list of a face's corners. The last counts only where neither of the others is there.
+constexpr std::string_view names_of_corners[] = {"vertex_indices", "vertex_index"};
+constexpr std::string_view spare_name_of_corners = "indices";
 constexpr const char* corner_lists = "vertex_indices, vertex_index or indices";
 
 // Which properties of a vertex are kept, and under which name. A group is kept whole or not at all.
@@ -54,6 +55,7 @@ public:
         const PlyElement& faces = the_element(elements, "face");
         vertex_count_ = vertices.count;
         choose_columns(vertices);
+        choose_corners(faces);
         for (const PlyElement& element : elements)
             for (std::size_t i = 0; i < element.count; ++i) {
                 if (i % values_between_looks == 0) throw_if_interrupted();
@@ -112,6 +114,23 @@ private:
         }
     }
 
+    void choose_corners(const PlyElement& faces) {
+        for (std::size_t i = 0; i < faces.properties.size(); ++i) {
+            const PlyProperty& property = faces.properties[i];
+            if (!property.count_type ||
+                std::ranges::find(names_of_corners, property.name) == std::end(names_of_corners))
+                continue;
+            if (corner_list_)
+                file_.fail("faces have more than one list of corners ("s + corner_lists + ")");
+            corner_list_ = i;
+        }
+        for (std::size_t i = 0; !corner_list_ && i < faces.properties.size(); ++i) {
+            const PlyProperty& property = faces.properties[i];
+            if (property.count_type && property.name == spare_name_of_corners) corner_list_ = i;
+        }
+        if (!corner_list_) file_.fail("faces have no list of corners ("s + corner_lists + ")");
+    }
+
     // The values of a property: one, or a list's.
     const std::vector<double>& read_property(const PlyElement& element, const PlyProperty& property,
                                              std::size_t index) {
@@ -165,29 +184,26 @@ private:
     }
 
     void read_face(const PlyElement& element, std::size_t index) {
-        bool found = false;
-        for (const PlyProperty& property : element.properties) {
-            const std::vector<double>& corners = read_property(element, property, index);
-            if (!property.count_type ||
-                std::ranges::find(names_of_corners, property.name) == std::end(names_of_corners))
-                continue;
-            if (found)
-                file_.fail("faces have more than one list of corners ("s + corner_lists + ")");
-            found = true;
-            if (corners.size() < 3)
-                fail(element, index,
-                     "a face needs at least 3 corners, this one has " +
-                         std::to_string(corners.size()));
-            polygon_sizes_.push_back(static_cast<std::uint32_t>(corners.size()));
-            for (const double corner : corners) {
-                if (to_index(element, index, corner) >= vertex_count_)
-                    fail(element, index,
-                         "vertex " + number_text(corner) + " is not among the " +
-                             std::to_string(vertex_count_) + " vertices");
-                corners_.push_back(static_cast<std::uint32_t>(corner));
-            }
+        for (std::size_t i = 0; i < element.properties.size(); ++i) {
+            const std::vector<double>& values =
+                read_property(element, element.properties[i], index);
+            if (i == corner_list_) take_corners(element, index, values);
         }
-        if (!found) file_.fail("faces have no list of corners ("s + corner_lists + ")");
+    }
+
+    void take_corners(const PlyElement& element, std::size_t index,
+                      const std::vector<double>& corners) {
+        if (corners.size() < 3)
+            fail(element, index,
+                 "a face needs at least 3 corners, this one has " + std::to_string(corners.size()));
+        polygon_sizes_.push_back(static_cast<std::uint32_t>(corners.size()));
+        for (const double corner : corners) {
+            if (to_index(element, index, corner) >= vertex_count_)
+                fail(element, index,
+                     "vertex " + number_text(corner) + " is not among the " +
+                         std::to_string(vertex_count_) + " vertices");
+            corners_.push_back(static_cast<std::uint32_t>(corner));
+        }
     }
 
     std::vector<std::array<std::uint32_t, 3>> cut_face(const std::vector<Vec3d>& polygon,
@@ -237,8 +253,9 @@ private:
 
     PlyFile file_;
     std::size_t vertex_count_ = 0;
-    std::vector<std::size_t> columns_;  // of the kept properties: position, normal, uv
-    std::vector<std::string> names_;    // of the kept properties
+    std::vector<std::size_t> columns_;        // of the kept properties: position, normal, uv
+    std::vector<std::string> names_;          // of the kept properties
+    std::optional<std::size_t> corner_list_;  // which property of a face
     bool has_normals_ = false;
     bool has_uvs_ = false;
     std::vector<double> values_;

@@ -144,6 +144,23 @@ TEST_F(PlyMesh, FacesHaveOneListOfCorners) {
     expect_refused("a.ply", bytes, "faces have more than one list of corners (vertex_indices, ");
 }
 
+// A list `indices` beside a list of another of the names, before or after it, is of something else.
+TEST_F(PlyMesh, AListOfIndicesBesideTheCornersIsSteppedOver) {
+    const TriangleMesh plain = load("a.ply", ascii_ply(square()));
+    for (const std::string name : {"vertex_indices", "vertex_index"})
+        for (const bool first : {true, false}) {
+            std::string bytes = ascii_ply(square());
+            const std::size_t corners = bytes.find("property list");
+            const std::size_t end = bytes.find("vertex_indices\n", corners);
+            bytes.replace(end, 14, name);
+            bytes.insert(first ? corners : end + name.size() + 1,
+                         "property list uchar int indices\n");
+            const std::size_t face = bytes.rfind("4 0 1 2 3");
+            bytes.insert(first ? face : face + 9, first ? "2 7 8 " : " 2 7 8");
+            expect_same(plain, load("b.ply", bytes));
+        }
+}
+
 TEST_F(PlyMesh, BrokenPlyFilesAreRefusedWithTheReason) {
     const std::string good = ascii_ply(square());
     const auto with = [&](const std::string& from, const std::string& to) {
