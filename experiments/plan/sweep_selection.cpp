@@ -48,16 +48,14 @@ Shard shard_of_array_task() {
     return {id - first + 1, count};
 }
 
-/// One spelling for a value however it is written: 1e5 and 100k as 100000, words without quotes, lists
-/// without spaces.
+/// One spelling for a value however it is written: 1e5 as 100000, words without quotes, lists without
+/// spaces.
 std::string plain(const std::string& text) {
     double value = 0;
     const char* const end = text.data() + text.size();
     const auto result = std::from_chars(text.data(), end, value);
     if (result.ec == std::errc() && result.ptr == end && std::isfinite(value))
         return fmt::format("{}", value);
-    if (const auto count = suffixed_count(text))
-        return fmt::format("{}", static_cast<double>(*count));
     const nlohmann::json parsed = parse_bounded_or_discard(text);
     if (parsed.is_string()) return parsed.get<std::string>();
     return parsed.is_discarded() ? text : parsed.dump();
@@ -76,22 +74,36 @@ std::map<std::string, std::string> keys_of(const Trial& trial) {
 
 using Filters = std::map<std::string, std::set<std::string>>;
 
-Filters parse_filters(const std::vector<std::string>& texts) {
+Filters values_of(const SweepPlan& plan) {
+    Filters present;
+    for (const Trial& trial : plan.trials)
+        for (const auto& [key, value] : keys_of(trial)) present[key].insert(value);
+    return present;
+}
+
+/// A filter's value: the text itself where trials have it, or else what it says; 100k says 100000.
+std::string wanted_value(const std::string& key, const std::string& text, const Filters& present) {
+    const auto known = present.find(key);
+    if (known != present.end() && known->second.contains(text)) return text;
+    if (const auto count = suffixed_count(text))
+        return fmt::format("{}", static_cast<double>(*count));
+    return plain(text);
+}
+
+Filters parse_filters(const std::vector<std::string>& texts, const Filters& present) {
     Filters filters;
     for (const std::string& text : texts) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos || equals == 0)
             throw InputError(fmt::format("--filter \"{}\": expected key=value", text));
-        filters[text.substr(0, equals)].insert(plain(text.substr(equals + 1)));
+        const std::string key = text.substr(0, equals);
+        filters[key].insert(wanted_value(key, text.substr(equals + 1), present));
     }
     return filters;
 }
 
-void require_known(const SweepPlan& plan, const Filters& filters) {
+void require_known(const Filters& present, const Filters& filters) {
     constexpr std::size_t most_listed = 12;
-    Filters present;
-    for (const Trial& trial : plan.trials)
-        for (const auto& [key, value] : keys_of(trial)) present[key].insert(value);
     for (const auto& [key, values] : filters) {
         const auto known = present.find(key);
         if (known == present.end()) {
@@ -127,8 +139,9 @@ Shard parse_shard(const std::string& text) {
 
 void choose(SweepPlan& plan, const std::vector<std::string>& texts) {
     if (texts.empty()) return;
-    const Filters filters = parse_filters(texts);
-    require_known(plan, filters);
+    const Filters present = values_of(plan);
+    const Filters filters = parse_filters(texts, present);
+    require_known(present, filters);
     plan.filters = texts;
     for (Trial& trial : plan.trials) {
         const std::map<std::string, std::string> keys = keys_of(trial);

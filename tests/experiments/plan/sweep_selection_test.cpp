@@ -60,6 +60,27 @@ TEST(Filters, ChooseWhatFitsAllKeysAndOneOfAKeysValues) {
     EXPECT_EQ(chosen({"trial=beamtree-10-1-1"}), 1U);
 }
 
+// 4k and 1k are names where the plan has them, and numbers otherwise.
+TEST(Filters, TakeATextAsItIsBeforeTheyTakeItForANumber) {
+    SweepPlan plan = some_plan();
+    plan.trials[20].scene_name = "1e3";
+    for (std::size_t i = 0; i < 10; ++i) {
+        plan.trials[i].scene_name = "4k";
+        plan.trials[i].swept.emplace_back("film", i < 4 ? "\"1k\"" : "\"2k\"");
+    }
+    const auto count = [&](const std::vector<std::string>& filters) {
+        choose(plan, filters);
+        return run_order(plan).size();
+    };
+    EXPECT_EQ(count({"scene=4k"}), 10U);
+    EXPECT_EQ(count({"scene=1e3"}), 1U);
+    EXPECT_EQ(count({"film=1k"}), 4U);
+    EXPECT_EQ(count({"film=1k", "film=2k"}), 10U);
+    EXPECT_EQ(count({"film=2k", "scene=4k", "photons=0.01k"}), 6U);
+    EXPECT_NE(error_of([&] { count({"film=3k"}); }).find("no trial has that value"),
+              std::string::npos);
+}
+
 TEST(Filters, RefuseWhatNoTrialHas) {
     EXPECT_NE(error_of([] {
                   chosen({"methd=beamtree"});
