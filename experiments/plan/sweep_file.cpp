@@ -166,6 +166,11 @@ void resolve_counts(const ConfiguredParameters& configured, Params& params) {
     }
 }
 
+const ConfiguredParameters* configured_of(const Method& method) { return method.configured.get(); }
+const ConfiguredParameters* configured_of(const std::optional<IndirectMethod>& method) {
+    return method ? method->configured.get() : nullptr;
+}
+
 /// The cases of a method's entry; `parse(name, params)` makes one.
 template <typename Case, typename Parse>
 std::vector<Case> read_cases(const JsonNode& node, const std::vector<std::string>& known,
@@ -175,8 +180,8 @@ std::vector<Case> read_cases(const JsonNode& node, const std::vector<std::string
     std::vector<Case> cases;
     for (Params& each : combinations(params)) {
         cases.push_back({parse(name, node_of(object_text(each), params, node)), each});
-        if constexpr (requires { cases.back().method.configured; })
-            resolve_counts(*cases.back().method.configured, cases.back().params);
+        if (const auto* const configured = configured_of(cases.back().method))
+            resolve_counts(*configured, cases.back().params);
     }
     node.finish();
     return cases;

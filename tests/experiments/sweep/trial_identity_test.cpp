@@ -149,6 +149,9 @@ TEST_F(ResumedSweeps, RenderNothingAgainForWhatMakesNoPicture) {
         {"nothing", [] {}},
         {"threads", [&] { sweep_["threads"] = 2; }},
         {"spelling of a number", [&] { method()["param"]["emitted"] = 5e1; }},
+        {"suffix of a number", [&] { method()["param"]["emitted"] = "0.05k"; }},
+        {"suffix of the indirect method's number",
+         [&] { sweep_["indirect"][0]["param"]["photons"] = "0.02k"; }},
         {"file that is written again", [&] { paint(80); }}};
     for (const auto& [what, change] : changes) {
         SCOPED_TRACE(what);
