@@ -1,5 +1,7 @@
 #include "photonmap/photons/global_photons.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -67,8 +69,10 @@ TracedPhotons trace_global(const Scene& scene, const GlobalMapParams& params,
                    .path_flux = emission.total_power(),
                    .method = "globalphotonmap",
                    .otherwise = "ask for fewer `photons`",
-                   .why_none = [](const LightPathCounts&) -> std::string {
-                       return "no light falls on a diffuse surface";
+                   .when_hardly_any = {},
+                   .why_none = [](const LightPathCounts& counts) -> std::string {
+                       return fmt::format("no light fell on a diffuse surface in {} light paths",
+                                          counts.emitted);
                    }});
     const double yield = photons_per_path(paths_of(Stage::global_pilot, options.seed),
                                           emission.total_power(), options.seed);

@@ -27,21 +27,30 @@ LightPathCounts counts_of_pilot(const PathTracer& paths, const Spectrum& path_fl
     return chunk.counts;
 }
 
+std::string advice(const std::string& text) { return text.empty() ? text : " (" + text + ")"; }
+
 }  // namespace
 
 void require_yield(const PathTracer& paths, const WantedPhotons& wanted) {
     const LightPathCounts counts = counts_of_pilot(paths, wanted.path_flux);
     if (counts.stored == 0)
-        throw UnsupportedScene(fmt::format("{}: no photon can be stored: {} ({})", wanted.method,
-                                           wanted.why_none(counts), wanted.otherwise));
+        throw UnsupportedScene(fmt::format("{}: no photon can be stored: {}{}", wanted.method,
+                                           wanted.why_none(counts),
+                                           advice(wanted.when_hardly_any)));
+    if (counts.stored < fewest_photons)
+        throw UnsupportedScene(fmt::format(
+            "{}: {} light paths stored only {} photon{}, too few to tell how many more it "
+            "takes: {}{}",
+            wanted.method, counts.emitted, counts.stored, counts.stored == 1 ? "" : "s",
+            ends_of(counts), advice(wanted.when_hardly_any)));
     const double rate = static_cast<double>(counts.stored) / static_cast<double>(counts.emitted);
     const double needed = static_cast<double>(wanted.count) / rate;
-    if (counts.stored >= fewest_photons && (rate >= lowest_rate || needed < most_patience)) return;
+    if (rate >= lowest_rate || needed < most_patience) return;
     throw UnsupportedScene(
         fmt::format("{}: {} light paths stored only {} of {} photons, which would take some {:.1g} "
-                    "light paths: {} ({})",
+                    "light paths: {}{}",
                     wanted.method, counts.emitted, counts.stored, wanted.count, needed,
-                    ends_of(counts), wanted.otherwise));
+                    ends_of(counts), advice(wanted.otherwise)));
 }
 
 }  // namespace caustics::photonmap

@@ -14,9 +14,10 @@ inline constexpr std::uint64_t seed_of_yield = 0;
 
 struct WantedPhotons {
     std::uint64_t count = 0;
-    Spectrum path_flux;     ///< as that of trace_photons()
-    std::string method;     ///< its name
-    std::string otherwise;  ///< what to ask for instead of so many
+    Spectrum path_flux;           ///< as that of trace_photons()
+    std::string method;           ///< its name
+    std::string otherwise;        ///< what to ask for instead of so many
+    std::string when_hardly_any;  ///< the same where hardly a photon comes; empty: nothing helps
     std::string (*why_none)(const LightPathCounts& counts) = why_nothing_arrives;
 };
 

@@ -180,7 +180,8 @@ public:
         require_yield(yield_paths(), {.count = params_.photons,
                                       .path_flux = emission_.total_power(),
                                       .method = "photonmap",
-                                      .otherwise = accept_few});
+                                      .otherwise = accept_few,
+                                      .when_hardly_any = accept_few});
         if (stratified() || most_per_path() > 1) return trace_exactly();
         const PhotonTarget target{
             .stored = params_.photons, .capacity = params_.photons, .certain = params_.photons};

@@ -256,6 +256,16 @@ TEST(ScenePhotons, GiveUpWhereFewPathsArriveAndManyPhotonsAreAsked) {
     EXPECT_EQ(few.store.size(), 20U);
 }
 
+// Some eight of two million paths arrive, whose number says nothing of how many more are needed.
+TEST(ScenePhotons, GiveUpWithoutAGuessWhereHardlyAnyPathArrives) {
+    const Scene scene(dull_mirror(0.00002F));
+    const std::string message = refusal_of_tracing(scene, params(modes[1], 10));
+    EXPECT_NE(message.find(" photons, too few to tell how many more it takes: "), std::string::npos)
+        << message;
+    EXPECT_EQ(message.find("of 10 photons"), std::string::npos) << message;
+    EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
+}
+
 // One in some two million paths arrives, so that a run of one seed meets it and a run of another does not.
 TEST(ScenePhotons, AreRefusedForEverySeedAlikeWhereHardlyAnyPathArrives) {
     const Scene scene(dull_mirror(0.000003F));

@@ -31,7 +31,10 @@ TEST(GlobalPhotons, SayWhyThereAreNone) {
     // Light falls on a mirror and leaves; the floor is behind it.
     desc.shapes.push_back(support::horizontal("mirror", 0.5, 1, true, support::mirror()));
     desc.lights = {support::directional_light({0, 0, -1}, 1)};
-    EXPECT_NE(why_unsupported(desc).find("no light falls on a diffuse surface"), std::string::npos);
+    const std::string none = why_unsupported(desc);
+    EXPECT_TRUE(none.ends_with(" light paths"))
+        << none << ", of which fewer `photons` take no less";
+    EXPECT_NE(none.find("no light fell on a diffuse surface in "), std::string::npos) << none;
 }
 
 // A quarter of all directions times cosines is in front of a flat lamp.
