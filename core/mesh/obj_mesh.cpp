@@ -179,9 +179,11 @@ private:
         if (!value) fail("face corner " + quoted_word(word) + " is not v, v/vt, v//vn or v/vt/vn");
         const std::int64_t from_one =
             *value < 0 ? static_cast<std::int64_t>(count_above) + 1 + *value : *value;
+        if (*value == 0)
+            fail("face corner " + quoted_word(word) + ": no " + what + " 0, the first one is 1");
         if (from_one < 1 || from_one > std::numeric_limits<std::uint32_t>::max())
             fail("face corner " + quoted_word(word) + ": no " + what + " " + std::string(index) +
-                 " among the " + std::to_string(count_above) + " above");
+                 (*value < 0 ? " among the " + std::to_string(count_above) + " above" : ""));
         return static_cast<std::uint32_t>(from_one);
     }
 

@@ -225,9 +225,10 @@ void JsonNode::fail_for_missing(const std::string& key) const {
         return !document_->is_known(value_, each);
     });
     const std::vector<std::string> near = near_words(key, unknown);
-    fail(fmt::format("key {} is missing{} (present: {})", shown(key),
-                     near.empty() ? "" : fmt::format(": did you mean it by {}?", near.front()),
-                     join(present)));
+    fail(
+        fmt::format("key {} is missing{} (present: {})", shown(key),
+                    near.empty() ? "" : fmt::format(": is {} meant to be it?", shown(near.front())),
+                    join(present)));
 }
 
 std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
-#include "core/base/key_text.h"
 #include "core/base/near_words.h"
 #include "experiments/base/file_io.h"
 #include "experiments/cli/help_text.h"
@@ -21,12 +23,20 @@ std::string verb_help(const std::vector<Verb>& verbs, const std::string& name) {
     return {};
 }
 
+/// Topics and verbs; a name of both is listed once.
+std::vector<std::string> known_topics(const std::vector<Verb>& verbs) {
+    std::vector<std::string> known = help_topics();
+    for (const std::string& name : names_of(verbs))
+        if (std::ranges::find(known, name) == known.end()) known.push_back(name);
+    return known;
+}
+
 void print_help(const std::string& topic) {
     CLI::App app;
     const std::vector<Verb> verbs = add_verbs(app);
     const std::string text = verb_help(verbs, topic) + help_text(topic);
     if (text.empty()) {
-        const std::vector<std::string> known = joined(help_topics(), names_of(verbs));
+        const std::vector<std::string> known = known_topics(verbs);
         throw InputError(fmt::format("unknown topic \"{}\"{} (known: {})", topic,
                                      did_you_mean(topic, known), fmt::join(known, ", ")));
     }

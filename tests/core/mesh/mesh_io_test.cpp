@@ -146,8 +146,12 @@ TEST_F(MeshIo, ObjCornersThatAgreeAreOneVertex) {
 TEST_F(MeshIo, BrokenObjFilesAreRefusedWithTheLine) {
     expect_refused("a.obj", corners + "f 1 2 5\n",
                    ":5: face corner '5': no position 5 among the 4");
-    expect_refused("a.obj", corners + "f -5 1 2\n", ":5: face corner '-5'");
-    expect_refused("a.obj", corners + "f 0 1 2\n", ":5: face corner '0'");
+    expect_refused("a.obj", corners + "f -5 1 2\n",
+                   ":5: face corner '-5': no position -5 among the 4 above");
+    expect_refused("a.obj", corners + "f 0 1 2\n",
+                   ":5: face corner '0': no position 0, the first one is 1");
+    expect_refused("a.obj", corners + "vt 0 0\nf 1/0 2/1 3/1\n",
+                   ":6: face corner '1/0': no uv 0, the first one is 1");
     expect_refused("a.obj", corners + "f 1 2\n", "at least 3 corners, this one has 2");
     expect_refused("a.obj", corners + "f 1 2 3\nf 1 3", ":6: a face needs");
     expect_refused("a.obj", corners + "f 1 a 3\n", "face corner 'a'");

@@ -74,7 +74,7 @@ TEST(JsonNode, AsksWhetherANearWordWasMeant) {
     const JsonNode root = node(R"({"scnes": [], "version": 1, "bound": "hybird"})");
     const auto error = [&](const auto& read) { return error_of([&] { return read(root), 0; }); };
     EXPECT_EQ(error([](const JsonNode& n) { n.at("scenes"); }),
-              "t.json: /: key \"scenes\" is missing: did you mean it by scnes? (present: bound, "
+              "t.json: /: key \"scenes\" is missing: is \"scnes\" meant to be it? (present: bound, "
               "scnes, version)");
     EXPECT_EQ(error([](const JsonNode& n) { n.at("bound").as_choice({"single", "hybrid"}); }),
               "t.json: /bound: \"hybird\" is none of the choices: did you mean hybrid? (single, "
