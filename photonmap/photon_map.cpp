@@ -219,7 +219,7 @@ std::unique_ptr<const CausticEstimator> build_pass(const Scene& scene,
     check(params);
     RunOptions own = options;
     own.seed = pass_seed(options.seed, pass);
-    SavedPhotons kept = photon_source(scene, params, own);
+    SavedPhotons kept = photon_source(scene, params, own, pass == 0 ? AskYield::yes : AskYield::no);
     TracedPhotons& photons = kept.photons;
     RadianceEstimate::Settings settings;
     settings.estimator = params.estimator;

@@ -5,7 +5,6 @@
 #include "core/base/hash.h"
 #include "core/scene/transport_hash.h"
 #include "photonmap/photons/global_photons.h"
-#include "photonmap/photons/scene_photons.h"
 
 namespace caustics::photonmap {
 
@@ -67,9 +66,9 @@ void require_transport(const PhotonOrigin& origin, const Scene& scene,
 }
 
 SavedPhotons photon_source(const Scene& scene, const PhotonMapParams& params,
-                           const RunOptions& options) {
+                           const RunOptions& options, AskYield ask) {
     return source(scene, params, {.emission = params.emission, .interaction = params.interaction},
-                  options, [&] { return trace_scene(scene, params, options); });
+                  options, [&] { return trace_scene(scene, params, options, ask); });
 }
 
 SavedPhotons photon_source(const Scene& scene, const GlobalMapParams& params,

@@ -5,6 +5,7 @@
 #include "core/caustic_estimator.h"
 #include "photonmap/photons/global_map_params.h"
 #include "photonmap/photons/photon_map_file.h"
+#include "photonmap/photons/scene_photons.h"
 
 namespace caustics::photonmap {
 
@@ -13,7 +14,7 @@ namespace caustics::photonmap {
 /// reported before anything is traced. Throws InputError when the loaded photons are not those of the
 /// scene, or of another kind of map: require_transport.
 SavedPhotons photon_source(const Scene& scene, const PhotonMapParams& params,
-                           const RunOptions& options);
+                           const RunOptions& options, AskYield ask);
 /// The same of a global map.
 SavedPhotons photon_source(const Scene& scene, const GlobalMapParams& params,
                            const RunOptions& options);

@@ -163,10 +163,11 @@ double Pilot::paths_for(double wanted) const {
 class ScenePhotons {
 public:
     ScenePhotons(const Scene& scene, const PhotonMapParams& params, const RunOptions& options,
-                 std::vector<Ray>* traced)
+                 AskYield ask, std::vector<Ray>* traced)
         : scene_(scene),
           params_(params),
           options_(options),
+          ask_(ask),
           emission_(scene, options.isa),
           traced_(traced) {}
 
@@ -177,11 +178,7 @@ public:
             if (stratified()) plan.strata = StratifiedSquare::at_most(plan.emitted);
             return trace_planned(plan);
         }
-        require_yield(yield_paths(), {.count = params_.photons,
-                                      .path_flux = emission_.total_power(),
-                                      .method = "photonmap",
-                                      .otherwise = accept_few,
-                                      .when_hardly_any = accept_few});
+        if (ask_ == AskYield::yes) ask_yield();
         if (stratified() || most_per_path() > 1) return trace_exactly();
         const PhotonTarget target{
             .stored = params_.photons, .capacity = params_.photons, .certain = params_.photons};
@@ -254,6 +251,14 @@ private:
         return {scene_, emission_, alone};
     }
 
+    void ask_yield() const {
+        require_yield(yield_paths(), {.count = params_.photons,
+                                      .path_flux = emission_.total_power(),
+                                      .method = "photonmap",
+                                      .otherwise = accept_few,
+                                      .when_hardly_any = accept_few});
+    }
+
     Pilot run_pilot() const {
         const std::uint64_t part =
             std::clamp<std::uint64_t>(params_.photons / (32 * pilot_parts), 64, 16'384);
@@ -282,6 +287,7 @@ private:
     const Scene& scene_;
     const PhotonMapParams& params_;
     const RunOptions& options_;
+    AskYield ask_;
     AimedEmission emission_;
     std::vector<Ray>* traced_;
 };
@@ -289,8 +295,8 @@ private:
 }  // namespace
 
 TracedPhotons trace_scene(const Scene& scene, const PhotonMapParams& params,
-                          const RunOptions& options, std::vector<Ray>* traced) {
-    return ScenePhotons(scene, params, options, traced).trace();
+                          const RunOptions& options, AskYield ask, std::vector<Ray>* traced) {
+    return ScenePhotons(scene, params, options, ask, traced).trace();
 }
 
 }  // namespace caustics::photonmap

@@ -7,6 +7,9 @@
 
 namespace caustics::photonmap {
 
+/// Whether it is asked first if enough photons arrive (require_yield). What one pass has learnt holds for all.
+enum class AskYield { yes, no };
+
 /// Traces the photons of a scene that `params` ask for. Counts stay exact and flux unbiased:
 ///
 /// - `emitted`: so many paths, each of them counts. Stratified, the first of them are the largest
@@ -23,6 +26,7 @@ namespace caustics::photonmap {
 /// Throws as trace_photons; UnsupportedScene also when no light shines on a caster and photons are
 /// asked for. `traced` gets every ray of the final paths, for measuring with one thread.
 TracedPhotons trace_scene(const Scene& scene, const PhotonMapParams& params,
-                          const RunOptions& options, std::vector<Ray>* traced = nullptr);
+                          const RunOptions& options, AskYield ask = AskYield::yes,
+                          std::vector<Ray>* traced = nullptr);
 
 }  // namespace caustics::photonmap

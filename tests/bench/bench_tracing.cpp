@@ -38,7 +38,7 @@ struct Work {
     std::unique_ptr<RawReplay> replay;
 
     Work(SceneDesc desc, const photonmap::PhotonMapParams& p) : scene(std::move(desc)), params(p) {
-        photonmap::trace_scene(scene, params, {}, &rays);
+        photonmap::trace_scene(scene, params, {}, photonmap::AskYield::yes, &rays);
         replay = std::make_unique<RawReplay>(scene, rays);
     }
     void trace(int threads) const {

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/tessellate.h"
+#include "photonmap/photon_map.h"
 #include "tests/support/build_scene.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/statistics.h"
@@ -264,6 +265,17 @@ TEST(ScenePhotons, GiveUpWithoutAGuessWhereHardlyAnyPathArrives) {
         << message;
     EXPECT_EQ(message.find("of 10 photons"), std::string::npos) << message;
     EXPECT_NE(message.find("`emitted`"), std::string::npos) << message;
+}
+
+// A later pass traces at once: of the scene above, two million paths would say that few photons come.
+TEST(ScenePhotons, AreAskedForTheirYieldByTheFirstPassAlone) {
+    const Scene scene(dull_mirror(0.00002F));
+    PhotonMapParams one = params(modes[0], 1);
+    one.radius = 0.1;
+    EXPECT_THROW(trace_scene(scene, one, {}, AskYield::yes), UnsupportedScene);
+    EXPECT_THROW(build_pass(scene, one, {}, 0), UnsupportedScene);
+    EXPECT_EQ(trace_scene(scene, one, {}, AskYield::no).store.size(), 1U);
+    EXPECT_NO_THROW(build_pass(scene, one, {}, 1));
 }
 
 // One in some two million paths arrives, so that a run of one seed meets it and a run of another does not.
