@@ -77,7 +77,7 @@ class Case:
             return [f"exit code {run.code}"]
         speechless = run.call == "fwrite" or run.path.endswith((".err", ".out"))
         if run.code != 0 and run.fired == 1 and not speechless and "error: " not in run.err and "failed: " not in run.err \
-                and f"{self.study.name}: " not in run.err:
+                and ": left: " not in run.err and f"{self.study.name}: " not in run.err:
             return [f"exit code {run.code} without a message"]
         return []
 
