@@ -31,6 +31,7 @@ constexpr int inherited = 3;  // standard streams
 std::filesystem::path beside_this_program(const char* program) {
     std::error_code none;
     const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", none);
+    if (own.empty()) throw PictureError("/proc/self/exe does not tell where this program is");
     return (own.parent_path() / CAUSTICS_PICTURE_PROGRAMS / program).lexically_normal();
 }
 
@@ -138,11 +139,11 @@ void PictureReader::read_rows(
 }
 
 void PictureReader::start(const char* program) {
+    const std::filesystem::path file = beside_this_program(program);
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         throw std::system_error(errno, std::generic_category(), "socketpair");
     socket_ = ends[0];
-    const std::filesystem::path file = beside_this_program(program);
     const int error = spawn(file, ends[1], process_);
     close(ends[1]);
     if (error != 0) {
