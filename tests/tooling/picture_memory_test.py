@@ -168,7 +168,7 @@ def children(process):
 
 
 def measure(folder, verb):
-    """Exit code, what was said, and the most memory of the program and of what it started, added [MB]."""
+    """Exit code, what was said, the most memory of the program and of what it started, added [MB], and how many processes these were."""
     line = {"info": [PROGRAM, "info", "scene.json"],
             "render": [PROGRAM, "render", "scene.json", "--method", "none", "--spp", "1", "--threads", "1", "-o", "out.exr"]}[verb]
     most = {}
@@ -178,7 +178,7 @@ def measure(folder, verb):
             for process in (str(program.pid), *children(program.pid)):
                 most[process] = max(most.get(process, 0.0), most_resident(process))
             time.sleep(0.001)
-    return program.returncode, (folder / "said").read_text(encoding="utf-8"), sum(most.values())
+    return program.returncode, (folder / "said").read_text(encoding="utf-8"), sum(most.values()), len(most)
 
 
 class Memory(unittest.TestCase):
@@ -193,7 +193,7 @@ class Memory(unittest.TestCase):
                 self.assertLessEqual(len(data), 1 << 20, picture)
                 (folder / "picture").write_bytes(data)
                 for verb in ("info", "render"):
-                    code, said, memory = measure(folder, verb)
+                    code, said, memory, processes = measure(folder, verb)
                     own = picture.startswith("png") or picture == "small"
                     if picture.startswith("small"):
                         before[own, verb] = memory
@@ -201,6 +201,8 @@ class Memory(unittest.TestCase):
                     MEASURED[picture, verb] = len(data), code, more, said.strip()
                     with self.subTest(picture=picture, verb=verb):
                         self.assertIn(code, (0, 2), said)
+                        if verb == "render" and not picture.startswith("small"):
+                            self.assertGreater(processes, 1, "the process that decodes was not seen: its memory is not in the sum")
                         if code == 2:
                             self.assertIn("picture: cannot be read (", said)
                         self.assertLess(more, MOST + NOISE if verb == "render" else 110.0 if "progressive" in picture else 30.0)

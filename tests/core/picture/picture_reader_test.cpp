@@ -78,7 +78,9 @@ TEST(PictureReader, ASignalIsAReasonAndTheNextPictureIsRead) {
     PictureReader reader;
     for (const int number : {SIGSEGV, SIGABRT, SIGKILL}) {
         const PictureShape shape = open_texture(reader, two_pixels);
-        kill(child(), number);
+        const pid_t decoder = child();
+        ASSERT_GT(decoder, 0);
+        kill(decoder, number);
         EXPECT_NE(refusal(reader, shape)
                       .find("decoding it ended by signal " + std::to_string(number) + ", "),
                   std::string::npos);
@@ -89,7 +91,9 @@ TEST(PictureReader, ASignalIsAReasonAndTheNextPictureIsRead) {
 TEST(PictureReader, AHangIsAReasonAndTheNextPictureIsRead) {
     PictureReader reader(std::chrono::seconds(1));
     const PictureShape shape = open_texture(reader, two_pixels);
-    kill(child(), SIGSTOP);
+    const pid_t decoder = child();
+    ASSERT_GT(decoder, 0);
+    kill(decoder, SIGSTOP);
     EXPECT_EQ(refusal(reader, shape), "decoding it did not go on for 1 s");
     EXPECT_EQ(refusal(reader, open_texture(reader, two_pixels)), "read");
 }
@@ -97,10 +101,12 @@ TEST(PictureReader, AHangIsAReasonAndTheNextPictureIsRead) {
 TEST(PictureReader, LimitsMemoryAndTimeOfTheProcess) {
     PictureReader reader;
     open_texture(reader, two_pixels);
+    const pid_t decoder = child();
+    ASSERT_GT(decoder, 0);
     rlimit limit{};
-    ASSERT_EQ(prlimit(child(), RLIMIT_DATA, nullptr, &limit), 0);
+    ASSERT_EQ(prlimit(decoder, RLIMIT_DATA, nullptr, &limit), 0);
     EXPECT_NE(limit.rlim_cur, RLIM_INFINITY);
-    ASSERT_EQ(prlimit(child(), RLIMIT_CPU, nullptr, &limit), 0);
+    ASSERT_EQ(prlimit(decoder, RLIMIT_CPU, nullptr, &limit), 0);
     EXPECT_LT(limit.rlim_cur, 100U);
 }
 
