@@ -70,9 +70,9 @@ def settled(chosen):
     """The same with --smoke's section and the folder of the results."""
     usual = papers_text.PUBLISHED if chosen.keep else SMOKED if chosen.smoke else OWN / "papers"
     chosen.output = output_folder(chosen.output, usual)
-    if chosen.smoke and not (chosen.list or chosen.pages or chosen.compare):
+    if chosen.smoke and not chosen.list:
         paper, section = SMOKE
-        chosen.papers, chosen.only = [paper], [section]
+        chosen.papers, chosen.only = [paper], [] if chosen.pages or chosen.compare else [section]
     chosen.papers = chosen.papers or list(papers_text.NAMES)
     return chosen
 

@@ -367,6 +367,10 @@ class CommandLine(unittest.TestCase):
         with unittest.mock.patch.object(sys, "argv", ["reproduce.py", "--smoke"]):
             chosen = reproduce.arguments()
         self.assertEqual((chosen.papers, chosen.only, chosen.output), (["chen2011"], ["prism"], ROOT / "out" / "papers-smoke"))
+        for word in ("--pages", "--compare"):
+            with unittest.mock.patch.object(sys, "argv", ["reproduce.py", "--smoke", word]):
+                chosen = reproduce.arguments()
+            self.assertEqual((chosen.papers, chosen.only), (["chen2011"], []), f"{word} takes what a smoke run made")
         sweep = json.loads((study.SWEEPS / "chen2011_prism.json").read_text(encoding="utf-8"))
         self.assertEqual(len(sweep["scenes"]), 1)
 
