@@ -75,8 +75,12 @@ public:
             render_references();
             take_stale_errors_anew();
             if (!options_.only_references) run_trials();
+        } catch (const Interrupted&) {
+            save_table_of_the_stopped();
+            throw;
         } catch (...) {
             save_table_of_the_stopped();
+            folder_.require_same();  // where it is gone, nothing could be written
             throw;
         }
         progress_.reset();
@@ -117,6 +121,7 @@ private:
         const std::vector<const ReferenceRequest*> missing = status_.references(references_);
         missing_references_ = missing.size();
         for (const ReferenceRequest* request : missing) {
+            folder_.require_same();
             try {
                 render_reference(*request);
                 references_.note_rendered(*request);
@@ -126,6 +131,7 @@ private:
                 tell_failure(*request, error.what());
                 unserved_references_[request->key] = error.what();
             } catch (const std::exception& error) {
+                folder_.require_same();
                 tell_failure(*request, error.what());
                 leave_trials_of(*request);
             }
@@ -156,6 +162,7 @@ private:
             progress_->note(fmt::format("warning: {}: the errors of its trials are kept", why));
         for (const Trial* trial : stale.trials) {
             throw_if_interrupted();
+            folder_.require_same();
             const ErrorsAnew came_of_it =
                 take_errors_anew(*trial, store_, *references.get(*trial->reference));
             ++counts[came_of_it];
@@ -209,7 +216,7 @@ private:
     }
 
     void run_trials() {
-        TrialRunner runner(store_, references_, options_.trials);
+        TrialRunner runner(store_, references_, options_.trials, [&] { folder_.require_same(); });
         runner_ = &runner;
         next_ = 0;
         bool stop = left_ > 0 && options_.fail_fast;

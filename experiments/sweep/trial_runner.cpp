@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/base/error.h"
 #include "experiments/base/environment.h"
@@ -33,8 +34,12 @@ std::string work(const Trial& trial, ReferenceCache& references, const RunOption
 }  // namespace
 
 TrialRunner::TrialRunner(const TrialStore& store, ReferenceCache& references,
-                         const TrialSettings& settings)
-    : store_(store), references_(references), settings_(settings), processors_(own_processors()) {}
+                         const TrialSettings& settings, std::function<void()> before_storing)
+    : store_(store),
+      references_(references),
+      settings_(settings),
+      before_storing_(std::move(before_storing)),
+      processors_(own_processors()) {}
 
 TrialRunner::~TrialRunner() {
     while (!slots_.empty()) {
@@ -83,6 +88,7 @@ void TrialRunner::store(const Trial& trial, json& record, double seconds) const 
     record["limits"]["jobs"] = settings_.jobs;
     if (settings_.timeout > 0) record["limits"]["timeout_s"] = settings_.timeout;
     if (settings_.memory_bytes > 0) record["limits"]["memory_bytes"] = settings_.memory_bytes;
+    before_storing_();
     store_.commit(trial.id, record);
 }
 

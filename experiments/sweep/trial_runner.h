@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -28,7 +29,10 @@ struct TrialSettings {
 /// With room for several, each has processors of its own if there are enough.
 class TrialRunner {
 public:
-    TrialRunner(const TrialStore& store, ReferenceCache& references, const TrialSettings& settings);
+    /// `before_storing` throws where the store is another's by now.
+    TrialRunner(
+        const TrialStore& store, ReferenceCache& references, const TrialSettings& settings,
+        std::function<void()> before_storing = [] {});
     /// Kills the trials at work and forgets them.
     ~TrialRunner();
     TrialRunner(const TrialRunner&) = delete;
@@ -70,6 +74,7 @@ private:
     const TrialStore& store_;
     ReferenceCache& references_;
     const TrialSettings& settings_;
+    std::function<void()> before_storing_;
     std::vector<int> processors_;
     std::list<Slot> slots_;
 };
