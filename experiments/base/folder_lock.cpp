@@ -104,10 +104,18 @@ FolderLock::FolderLock(const std::filesystem::path& folder) : folder_(folder) {
 FolderLock::~FolderLock() { close(file_); }
 
 void FolderLock::require_same_folder() const {
+    std::error_code none;
     struct stat held{}, there{};
     if (fstat(file_, &held) == 0 && stat(lock_file(folder_).c_str(), &there) == 0 &&
         held.st_dev == there.st_dev && held.st_ino == there.st_ino)
         return;
+    const bool is_folder_there = std::filesystem::is_directory(folder_, none);
+    if (held.st_nlink == 0 && is_folder_there)
+        throw InputError(fmt::format(
+            "{}: is not the one that this process holds: it was removed, alone or with its folder, "
+            "while the process worked there; nothing more is written there. The same command goes "
+            "on from what is there",
+            lock_file(folder_).string()));
     throw InputError(fmt::format(
         "{}: was renamed, removed or made anew while this process worked on it; nothing "
         "more is written there. What was finished stays in the renamed folder: name "

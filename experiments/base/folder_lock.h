@@ -16,8 +16,8 @@ public:
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
 
-    /// Throws InputError where the path no longer leads to this folder: it was renamed, removed or made
-    /// anew while the process worked on it.
+    /// Throws InputError where the path no longer leads to this lock: the folder was renamed, removed or made
+    /// anew while the process worked on it, or its .lock was.
     void require_same_folder() const;
 
 private:

@@ -141,6 +141,20 @@ TEST_F(WholeFolders, AreMissedWhereAnotherTookTheirPath) {
     EXPECT_NO_THROW(other.require_same_folder());
 }
 
+TEST_F(WholeFolders, AreMissedWhereTheirLockWasRemovedAndTheErrorSaysSo) {
+    const FolderLock lock(target_);
+    fs::remove(target_ / ".lock");
+    try {
+        lock.require_same_folder();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(
+            std::string(error.what()).find("target/.lock: is not the one that this process holds"),
+            std::string::npos)
+            << error.what();
+    }
+}
+
 TEST_F(WholeFolders, TakeBackWhatCannotBePutInPlace) {
     AtomicFolder whole(target_);
     write_atomic_file(whole.path() / "new", "new");
