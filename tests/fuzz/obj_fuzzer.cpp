@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <sstream>
 
 #include "core/mesh/obj_mesh.h"
@@ -10,15 +11,32 @@ namespace {
 
 using namespace caustics;
 
-/// The numbers among the words, in their order.
+/// A word as a number; C's and Fortran's exponents and a plus sign count.
+std::optional<double> number_of(std::string word) {
+    if (word.size() > 1 && word[0] == '+') word.erase(0, 1);
+    std::ranges::replace_if(word, [](char c) { return c == 'd' || c == 'D'; }, 'e');
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || !std::isfinite(value)) return {};
+    return value;
+}
+
+/// The numbers among the words, sorted, and of each four after another word the first three over the fourth.
 std::vector<float> numbers_of(const std::string& text) {
     std::vector<float> numbers;
+    std::vector<double> of_vertex;
     std::istringstream in(text);
     for (std::string word; in >> word;) {
-        double value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error == std::errc{} && std::isfinite(value))
-            numbers.push_back(static_cast<float>(value));
+        const std::optional<double> value = number_of(word);
+        if (!value) {
+            of_vertex.clear();
+            continue;
+        }
+        numbers.push_back(static_cast<float>(*value));
+        of_vertex.push_back(*value);
+        if (of_vertex.size() != 4) continue;
+        for (std::size_t i = 0; i < 3; ++i)
+            numbers.push_back(static_cast<float>(of_vertex[i] / of_vertex[3]));
     }
     std::ranges::sort(numbers);
     return numbers;
