@@ -49,7 +49,7 @@ int run_and_report(int argc, char** argv) {
     }
 }
 
-/// 128 KiB serve most commands; less ends a process by SIGSEGV, which leaves no word.
+/// Four times what serves most commands; a stack that is too small ends a process by SIGSEGV, which leaves no word.
 constexpr rlim_t least_stack = 512 * 1024;
 
 /// The stack that the system gives each thread, where that is too small; else 0.
