@@ -208,7 +208,8 @@ std::string refusal_of_yield(const OnePath& paths, std::uint64_t wanted) {
         require_yield(GivenPaths(paths), {.count = wanted,
                                           .path_flux = Spectrum::Ones(),
                                           .method = "photonmap",
-                                          .otherwise = "give `emitted`"});
+                                          .otherwise = "give `emitted`",
+                                          .when_hardly_any = "give `emitted`"});
     } catch (const UnsupportedScene& error) {
         return error.what();
     }
