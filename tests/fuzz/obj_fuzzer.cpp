@@ -34,7 +34,7 @@ std::vector<float> numbers_of(const std::string& text) {
         }
         numbers.push_back(static_cast<float>(*value));
         of_vertex.push_back(*value);
-        if (of_vertex.size() != 4) continue;
+        if (of_vertex.size() != 4 || of_vertex[3] == 0) continue;
         for (std::size_t i = 0; i < 3; ++i)
             numbers.push_back(static_cast<float>(of_vertex[i] / of_vertex[3]));
     }
