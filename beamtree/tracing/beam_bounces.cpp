@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "beamtree/beams/ray_spread.h"
+#include "beamtree/light/first_polygon.h"
 #include "beamtree/light/root_beams.h"
 #include "beamtree/tracing/kept_beams.h"
 #include "beamtree/tracing/next_bounce.h"
@@ -190,12 +191,11 @@ void BeamBounces::follow(std::array<TracedSet, 2> first, const ProgressPart& par
         beams += one.set.beams.size();
     }
     const RestPhotons rest(scene_, surface_, with_sample(settings_, flux));
-    const Shape& caster = scene_.shapes()[surface_.caster().shape];
-    std::optional<SpecularSurface> exact;
-    if (settings_.intensity == Intensity::refined && caster.primitive != Primitive::mesh)
-        exact.emplace(caster);
     for (const Event event : events) {
         if (first[event].set.beams.empty()) continue;
+        std::optional<SpecularSurface> exact;
+        if (settings_.intensity == Intensity::refined)
+            exact = first_exact_surface(scene_, first[event].set);
         Level level;
         level.event = event;
         level.traced = std::move(first[event]);

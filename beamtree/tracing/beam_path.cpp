@@ -7,8 +7,8 @@ namespace caustics::beamtree {
 Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std::uint32_t beam)
     : scene_(scene),
       surface_(surface),
-      facing_(surface.facing(level.traced.set.beams[beam].triangle)),
-      exact_offset_(surface.corner_offset(level.traced.set.beams[beam].triangle)) {
+      facing_(surface.facing(level.traced.set.beams[beam].triangle)) {
+    const std::uint32_t triangle = level.traced.set.beams[beam].triangle;
     const Level* at = &level;
     for (; at->parent != nullptr; beam = at->parents[beam], at = at->parent)
         steps_.push_back({&at->places[beam], at->event});
@@ -16,7 +16,8 @@ Path::Path(const Scene& scene, const LitCaster& surface, const Level& level, std
     first_event_ = at->event;
     if (at->exact == nullptr) return;
     exact_ = at->exact;
-    exact_offset_ = std::max(exact_offset_, least_offset(scene.shapes()[surface.caster().shape]));
+    exact_offset_ = std::max(surface.corner_offset(triangle),
+                             least_offset(scene.shapes()[surface.caster().shape]));
 }
 
 PathPoint Path::between(const PathPoint& a, const PathPoint& b, float t) const {

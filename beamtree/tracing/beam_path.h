@@ -29,7 +29,8 @@ struct Level {
     std::vector<RayArrival> places;
     /// One a beam, or none where all are 1: what division for detail (piece_detail.h) has left of the polygon.
     std::vector<float> shares;
-    /// Of the first level: the exact first surface, on which ways between corners begin; null: they begin on the polygons.
+    /// The exact first surface, on which ways between corners begin; null: they begin on the polygons. Given for the
+    /// first level alone.
     const SpecularSurface* exact = nullptr;
     /// Of its beams, were the media clear and they not divided: what they are worth following for [W].
     double worth = 0;
@@ -74,8 +75,8 @@ private:
     const Scene& scene_;
     const LitCaster& surface_;
     Facing facing_;
-    float exact_offset_;  ///< of places on the exact surface [m]
-    const SpecularSurface* exact_ = nullptr;
+    const SpecularSurface* exact_ = nullptr;  ///< as Level::exact
+    float exact_offset_ = 0;                  ///< of places on it [m]
     Event first_event_;
     std::vector<Step> steps_;
 };

@@ -96,7 +96,7 @@ private:
         }
         count_lit(parent);
         if (a.goes_on() && is_receiver(scene_.shapes()[a.shape].bsdf)) stay(beam);
-        const bool wide = level_.exact != nullptr && is_wide(piece_of(rays));
+        const bool wide = is_wide(rays);
         if (alike && goes_plainly(a, b, c) && !is_coarse(rays) && !wide) {
             for (const Event event : events)
                 if (!is_black(a.weight[event])) {
@@ -125,15 +125,18 @@ private:
         return goes_on(a) && goes_on(b) && beamtree::is_coarse(a.origin, a.next, b.origin, b.next);
     }
 
-    // Whether the rays of an exact surface part so widely after the first event that the corners' tell little of those
-    // between.
-    static bool is_wide(const Piece& piece) {
+    // True where the rays of an exact surface part so widely after the first event that the corners' tell little of
+    // those between.
+    bool is_wide(const Piece& piece) const {
         constexpr float most_apart = 0.3F;  // between unit directions
         const auto part = [](const PathPoint& p, const PathPoint& q) {
             return p.alive && q.alive && (p.ray.direction - q.ray.direction).norm() > most_apart;
         };
         const auto& [a, b, c] = piece;
-        return part(a, b) || part(b, c) || part(c, a);
+        return level_.exact != nullptr && (part(a, b) || part(b, c) || part(c, a));
+    }
+    bool is_wide(const std::array<std::uint32_t, 3>& rays) const {
+        return level_.exact != nullptr && is_wide(piece_of(rays));
     }
 
     // Where no corner goes on.
@@ -186,7 +189,7 @@ private:
             count_lit(parent);
         }
         if (land(scene_, ray, from, set_.light.bin.nm).goes_on() ||
-            hides_a_caster(piece_of(rays)) || (level_.exact != nullptr && is_wide(piece_of(rays))))
+            hides_a_caster(piece_of(rays)) || is_wide(rays))
             cut_triangle(beam, rays);
     }
 
@@ -257,7 +260,7 @@ private:
             leave_out(beam, piece);
             return;
         }
-        if (level_.exact != nullptr && is_wide(piece) && may_search(piece, share)) {
+        if (is_wide(piece) && may_search(piece, share)) {
             search(beam, path, piece, share, splits);
             return;
         }
