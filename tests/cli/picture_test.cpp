@@ -16,15 +16,7 @@ using support::shell;
 /// Pictures of strangers, as the program meets them.
 class Pictures : public testing::Test {
 protected:
-    Pictures() {
-        write_atomic_file(folder_ / "scene.json", R"({
-            "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 3},
-                       "to_world": [{"look_at": {"origin": [0, 0, 3], "target": [0, 0, 0],
-                                                 "up": [0, 1, 0]}}]},
-            "light": {"type": "point", "position": [0, 0, 2], "intensity": 1},
-            "floor": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance":
-                                                    {"type": "bitmap", "filename": "floor"}}}})");
-    }
+    Pictures() { write_atomic_file(folder_ / "scene.json", support::scene_of_picture("floor")); }
 
     void put(const std::string& bytes) const { write_atomic_file(folder_ / "floor", bytes); }
 

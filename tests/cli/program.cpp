@@ -89,4 +89,16 @@ ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments
     return program.wait();
 }
 
+std::string scene_of_picture(const std::string& name) {
+    return R"({
+        "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 3},
+                   "to_world": [{"look_at": {"origin": [0, 0, 3], "target": [0, 0, 0],
+                                             "up": [0, 1, 0]}}]},
+        "light": {"type": "point", "position": [0, 0, 2], "intensity": 1},
+        "floor": {"type": "rectangle",
+                  "bsdf": {"type": "diffuse",
+                           "reflectance": {"type": "bitmap", "filename": ")" +
+           name + R"("}}}})";
+}
+
 }  // namespace caustics::support

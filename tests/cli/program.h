@@ -54,4 +54,7 @@ ProgramResult shell(const std::string& line);
 ProgramResult interrupted_causticbench(const std::vector<std::string>& arguments,
                                        const std::filesystem::path& file);
 
+/// A scene file whose floor shows the picture of this name beside it.
+std::string scene_of_picture(const std::string& name);
+
 }  // namespace caustics::support

@@ -36,13 +36,7 @@ protected:
     /// A scene whose floor shows a picture of a format that only OpenImageIO reads.
     std::string foreign_scene() const {
         write_atomic_file(folder_ / "floor.ppm", "P3\n2 1\n255\n255 0 0 0 255 0\n");
-        write_atomic_file(folder_ / "scene.json", R"({
-            "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 3},
-                       "to_world": [{"look_at": {"origin": [0, 0, 3], "target": [0, 0, 0],
-                                                 "up": [0, 1, 0]}}]},
-            "light": {"type": "point", "position": [0, 0, 2], "intensity": 1},
-            "floor": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance":
-                                                    {"type": "bitmap", "filename": "floor.ppm"}}}})");
+        write_atomic_file(folder_ / "scene.json", support::scene_of_picture("floor.ppm"));
         return folder_ / "scene.json";
     }
 
