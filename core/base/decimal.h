@@ -20,10 +20,6 @@ extern template std::optional<std::uint64_t> decimal(const std::string&);
 /// for any other text, also without a letter, and beyond 2^53.
 std::optional<std::int64_t> suffixed_count(const std::string& text);
 
-/// A whole number with a letter for its power of ten: "100k" or "100K" (10^3), "1.5M" (10^6), "2G" (10^9). Empty
-/// for any other text, also without a letter, and beyond 2^53.
-std::optional<std::int64_t> suffixed_count(const std::string& text);
-
 /// A number as other programs write it into files: also with a plus sign before it ("+1"), with Fortran's letter for
 /// its exponent ("1.0D-1"), and "nan" and "inf". Empty for any other text.
 std::optional<double> foreign_number(std::string_view text);

@@ -17,7 +17,7 @@ struct PlacedTriangle {
     auto operator<=>(const PlacedTriangle&) const = default;
 };
 
-/// Of all meshes; those at one place stand side by side, in the order of their meshes.
+/// The triangles of all meshes. Those at one place stand side by side, in the order of their meshes.
 std::vector<PlacedTriangle> sorted_triangles(std::span<const TriangleMesh* const> meshes) {
     std::vector<PlacedTriangle> all;
     for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)

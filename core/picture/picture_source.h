@@ -6,7 +6,7 @@
 
 namespace caustics {
 
-/// What a picture is read for.
+/// The use that a picture is read for.
 enum class PictureUse {
     texture,  ///< colours and alpha: at most 4 channels
     film      ///< every channel of an OpenEXR file, with its attributes of text

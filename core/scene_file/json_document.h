@@ -34,7 +34,7 @@ struct JsonDocument {
     void make_known(const nlohmann::json* object, const std::string& key);
     /// The keys that the object's reader asked for.
     std::vector<std::string> known_keys(const nlohmann::json* object);
-    /// What was asked for in a value that another one is about to replace.
+    /// Forgets the keys that were asked for in a value which another one is about to replace.
     void forget_keys(const nlohmann::json& value);
 
     /// The entry of `included` at or above a pointer, nearest first; end() for the main file.

@@ -12,7 +12,7 @@
 
 namespace caustics::scene_file {
 
-/// What a scene file refers to, and how its pictures are read.
+/// The files that a scene file refers to, and how its pictures are read.
 struct Assets {
     /// Absolute file -> name as written.
     std::vector<std::pair<std::filesystem::path, std::string>> files = {};

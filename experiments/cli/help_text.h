@@ -8,8 +8,8 @@ namespace caustics::experiments {
 /// What `help` describes: each method, and the kinds of files.
 std::vector<std::string> help_topics();
 
-/// What `help TOPIC` prints, in lines of at most 100 columns; the topics for an empty one. Empty for a
-/// topic that is unknown.
+/// The text that `help TOPIC` prints, in lines of at most 100 columns. An empty topic gives the list of topics, and
+/// an unknown one an empty text.
 std::string help_text(const std::string& topic);
 
 }  // namespace caustics::experiments

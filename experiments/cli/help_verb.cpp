@@ -16,7 +16,7 @@ namespace caustics::experiments {
 
 namespace {
 
-/// What `causticbench VERB --help` prints; empty where no verb has that name.
+/// The text that `causticbench VERB --help` prints. It is empty where no verb has that name.
 std::string verb_help(const std::vector<Verb>& verbs, const std::string& name) {
     for (const Verb& verb : verbs)
         if (verb.app->get_name() == name) return verb.app->help("causticbench");

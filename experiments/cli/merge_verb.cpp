@@ -11,7 +11,7 @@ namespace caustics::experiments {
 
 namespace {
 
-/// What was put together: records, the folders they came from, references, the table.
+/// Says what was put together: records, the folders they came from, references, the table.
 std::string merged_text(const Merged& merged, const std::filesystem::path& target) {
     std::size_t records = 0;
     std::vector<std::string> from, statuses;

@@ -23,7 +23,7 @@ std::string dispersion(const Bsdf& bsdf) {
                        (glass->int_ior.at(d_line) - 1) / (n_f - n_c));
 }
 
-/// What is amiss with each shape: the flaws of meshes, and the casters after a caster that share triangles with it.
+/// The faults of each shape: the flaws of meshes, and the casters after a caster that share triangles with it.
 std::vector<std::string> flaws(const Scene& scene, const std::vector<ExaminedMesh>& meshes) {
     const std::vector<Shape>& shapes = scene.shapes();
     std::vector<std::string> texts(shapes.size());

@@ -51,7 +51,7 @@ std::vector<std::string> long_names(const CLI::App& verb) {
     return names;
 }
 
-/// What the user gave the option, or a word that stands for it.
+/// The value that the user gave the option, or a word that stands for it.
 std::string given_value(const std::vector<std::string>& words, std::size_t place) {
     const std::size_t equals = words[place].find('=');
     if (equals != std::string::npos) return words[place].substr(equals + 1);

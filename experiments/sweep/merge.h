@@ -8,7 +8,7 @@
 
 namespace caustics::experiments {
 
-/// What a merge put together.
+/// The records and references that a merge put together.
 struct Merged {
     std::map<std::filesystem::path, std::size_t> trials;  ///< by the folder that they came from
     std::map<std::string, std::size_t> statuses;

@@ -7,7 +7,7 @@
 
 namespace caustics::photonmap {
 
-/// Whether it is asked first if enough photons arrive (require_yield). What one pass has learnt holds for all.
+/// Tells whether tracing first asks if enough photons arrive (require_yield). The answer for one pass holds for all.
 enum class AskYield { yes, no };
 
 /// Traces the photons of a scene that `params` ask for. Counts stay exact and flux unbiased:

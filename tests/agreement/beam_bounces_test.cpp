@@ -122,7 +122,7 @@ Scene below_steep_water() {
     return Scene(std::move(desc));
 }
 
-// What two events send onto the floor, by the middles of beams.
+// The light that two events send onto the floor, by the middles of beams.
 double flux_of_two_events(const Scene& scene, int resolution) {
     const beamtree::TracedBeams traced = beamtree::trace_all_beams(
         scene, beamtree::caster_meshes(scene, resolution), beamtree::sample_lights(scene, 1, 1),

@@ -361,7 +361,7 @@ class Report(unittest.TestCase):
         self.assertTrue(self.keeps_plots())
 
     def keeps_plots(self):
-        """Whether the buttons that keep strip and spectrum give files."""
+        """True where the buttons that keep strip and spectrum give files."""
         self.run_script("window.kept = []; download = (name, text) => kept.push([name, text]); undefined")
         self.run_script("byId('save-strip').click(); document.querySelector('#spectrum-controls button').click()")
         return len(self.run_script("kept")) == 2

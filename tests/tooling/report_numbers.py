@@ -167,7 +167,7 @@ def short(number, digits=4):
 
 
 def number(text):
-    """What a number on the page says."""
+    """The text of a number on the page."""
     text = text.strip().replace("−", "-")
     power = re.fullmatch("(.*?)(?: · )?10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", text)
     if not power:

@@ -543,7 +543,7 @@ class Planted(Numbers):
 
 
 def notices(fault):
-    """What a test says of the page with a fault planted; empty where it is content."""
+    """The complaint of a test about the page with a fault planted, empty where it is content."""
     Numbers.world.show(Numbers.world.made_with(fault))
     result = unittest.TestResult()
     Planted(fault["test"]).run(result)

@@ -1,4 +1,4 @@
-"""What pip installs: every package by version and hashes, from files that name no registry."""
+"""Tests that pip installs every package by version and hashes, from files that name no registry."""
 import pathlib
 import re
 import subprocess

@@ -158,7 +158,7 @@ def tables_of(results):
 
 
 def of_some(results):
-    """What the head of the page says where not all scenes were run."""
+    """The sentence at the head of the page where not all scenes were run."""
     run = [scene.title for scene in results.duel.scenes if scene.name in results.fields]
     if len(run) == len(results.duel.scenes):
         return ""

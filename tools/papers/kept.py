@@ -32,7 +32,7 @@ def read(folder):
 
 
 def is_there(folder):
-    """Whether an earlier run left its rows and tables in the folder."""
+    """True where an earlier run left its rows and tables in the folder."""
     return (folder / "tables.json").is_file()
 
 

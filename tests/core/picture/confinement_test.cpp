@@ -19,7 +19,7 @@
 namespace caustics {
 namespace {
 
-/// Whether work() holds in a process that is confined.
+/// True where work() holds in a process that is confined.
 bool holds_in_confinement(const std::function<bool()>& work) {
     const pid_t child = fork();
     if (child == 0) {
@@ -31,7 +31,7 @@ bool holds_in_confinement(const std::function<bool()>& work) {
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// Whether the system lets a process have a filter of calls: one that is nowhere is a bad address then.
+/// True where the system lets a process have a filter of calls: it names a null filter a bad address then.
 bool has_filters() {
 #if defined(__x86_64__) || defined(__aarch64__)
     return syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, nullptr) < 0 && errno == EFAULT;
