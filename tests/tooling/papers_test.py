@@ -25,7 +25,7 @@ except ImportError as error:
     sys.exit(77)
 
 from papers import entries, kept, latex, page, part, study, verdict
-from report import exr, paper
+from report import exr, intervals, paper
 from report.records import RecordsError
 
 RESULTS = ROOT / "results" / "papers"
@@ -97,6 +97,14 @@ class Numbers(unittest.TestCase):
         with self.assertRaisesRegex(RecordsError, 'no number "nowhere"'):
             paper.check(broken)
 
+    def test_reasons_of_what_cannot_fail_or_is_missing_are_said(self):
+        for more, told in (({"by_construction": " "}, "by_construction needs"), ({"missing": True}, "missing needs"),
+                           ({"by_construction": "a", "missing": "b"}, "exclude each other"), ({"signed": "yes"}, "true or false")):
+            broken = paper.Paper("chuang1995")
+            broken.text["claims"][0] |= more
+            with self.assertRaisesRegex(RecordsError, told):
+                paper.check(broken)
+
     def test_the_dolphin_is_what_its_script_makes(self):
         make = importlib.import_module("make_dolphin")
         target = make.TARGET
@@ -119,9 +127,33 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.judge([0.9, 1.5, 1.0], above), verdict.UNDECIDED)
         self.assertEqual(self.judge([], above), verdict.UNMEASURED)
 
+    def test_95_of_100_intervals_hold_the_mean(self):
+        """Of ratios that scatter evenly as logarithms, and of signed quantities about 0, on which a positive draw tells nothing."""
+        random = np.random.default_rng(95)
+        draws = 5_000
+        for seeds in (3, 5, 10):
+            normal = random.standard_normal((draws, seeds))
+            for what, samples, is_signed, mean in (("ratios", np.exp(0.1 * normal), False, 1.0), ("signed", normal, True, 0.0)):
+                ends = [verdict.interval(list(map(float, each)), False, is_signed) for each in samples]
+                self.assertTrue(0.94 <= sum(low <= mean <= high for low, high in ends) / draws <= 0.96, f"{what}, {seeds} seeds")
+
+    def test_what_only_happens_to_be_positive_decides_no_sign(self):
+        samples = [0.01, 2.0, 0.02]
+        self.assertEqual(verdict.judge(verdict.Measured(samples), (0, math.inf), True)[0], verdict.UNDECIDED)
+
+    def test_one_function_makes_every_interval(self):
+        """Student's quantile, and the normal one of two sides, are nowhere but in report/intervals."""
+        another = re.compile(r"stdtrit|\bt\.(?:ppf|isf|interval)\(|norm\.(?:ppf|interval)\(|NormalDist|\b1\.96\b|\b1\.645\b|CONFIDENCE\b")
+        found = {str(file.relative_to(ROOT)): another.findall(file.read_text(encoding="utf-8")) for file in (ROOT / "tools").rglob("*.py")}
+        self.assertEqual({name for name, words in found.items() if words}, {"tools/report/intervals.py"})
+        self.assertAlmostEqual(intervals.student(2), 4.302653, 5)
+        values = [1.0, 2.0, 4.0, 8.0]
+        low, high = verdict.interval(values, False, True)
+        self.assertAlmostEqual((high - low) / 2, intervals.half_interval(values))
+
     def test_an_interval_is_students(self):
         low, high = verdict.interval([-1.0, 0.0, 1.0], False)
-        self.assertAlmostEqual(high, 2.919986 / math.sqrt(3), 5)
+        self.assertAlmostEqual(high, 4.302653 / math.sqrt(3), 5)
         self.assertAlmostEqual(low, -high)
         low, high = verdict.interval([1.0, 2.0, 4.0], False)
         self.assertAlmostEqual(low * high, 4)
@@ -135,6 +167,14 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.judge([1.0, 1.01, 0.99], region), verdict.HOLDS)
         self.assertEqual(self.judge([1.0, 1.3, 0.8], region), verdict.UNDECIDED)
         self.assertEqual(self.judge([1.5, 1.51, 1.49], region), verdict.FAILS)
+
+    def test_what_cannot_fail_and_what_is_partly_built_have_words_of_their_own(self):
+        of = verdict.of_claim
+        self.assertEqual(of(verdict.HOLDS, {"by_construction": "bytes times photons"}), verdict.BY_CONSTRUCTION)
+        self.assertEqual(of(verdict.HOLDS, {"missing": "the volume map"}), verdict.PARTLY)
+        self.assertEqual(of(verdict.HOLDS, {}), verdict.HOLDS)
+        for other in (verdict.FAILS, verdict.UNDECIDED, verdict.UNMEASURED):
+            self.assertEqual([of(other, {"by_construction": "x"}), of(other, {"missing": "x"})], [other, other])
 
     def test_pairs_have_to_match(self):
         self.assertEqual(verdict.ratio([2, 9], [1, 3], "s").samples, [2, 3])
@@ -228,6 +268,19 @@ class Sections(unittest.TestCase):
         row = entries.of_claim(self.study, claim, None, kept.read(self.study.output)[0][0])
         self.assertEqual((row["verdict"], row["region"]), (verdict.FAILS, "at least 99"))
 
+    def test_an_earlier_row_gets_its_interval_from_its_values(self):
+        claim = self.study.paper.text["claims"][0] | {"region": {"above": 0.1}, "by_construction": "it is put in"}
+        kept_row = kept.read(self.study.output)[0][0] | {"values": [0.5, 1.0, 2.0], "counted": False, "interval": [0.9, 1.1]}
+        row = entries.of_claim(self.study, claim, None, kept_row)
+        self.assertEqual((row["verdict"], row["by_construction"]), (verdict.BY_CONSTRUCTION, "it is put in"))
+        self.assertAlmostEqual(math.log(row["interval"][1]), 4.302653 * math.log(2) / math.sqrt(3), 5)
+
+    def test_what_stands_beside_a_counter_is_shown_and_not_judged(self):
+        claim = self.study.paper.text["claims"][0] | {"region": {"below": 1}}
+        row = entries.of_claim(self.study, claim, verdict.Measured([0.5], counted=True, beside={"CPU time": [2.0, 3.0, 2.5]}), None)
+        self.assertEqual(row["verdict"], verdict.HOLDS)
+        self.assertEqual(page.notes(row), "Beside it, not judged: CPU time 2.5 (2–3).")
+
 
 class Pages(unittest.TestCase):
     """What is committed in results/papers: pages follow from verdicts.json and tables.json, and both from the papers' claims."""
@@ -254,6 +307,8 @@ class Pages(unittest.TestCase):
                 self.assertEqual(entry["region"], entries.shown(each.region(claim)), place)
                 for key in ("group", "claim", "where", "unit", "tolerance_from"):
                     self.assertEqual(entry[key], claim[key], place)
+                for key in ("by_construction", "missing"):
+                    self.assertEqual(entry[key], claim.get(key, ""), place)
 
     def test_verdicts_follow_from_their_intervals(self):
         for each, folder, found, _ in self.committed():
@@ -268,7 +323,8 @@ class Pages(unittest.TestCase):
                     continue
                 left, right = entry["interval"]
                 inside, outside = low <= left and right <= high, right < low or left > high
-                self.assertEqual(entry["verdict"], verdict.HOLDS if inside else verdict.FAILS if outside else verdict.UNDECIDED, place)
+                word = verdict.BY_CONSTRUCTION if "by_construction" in claim else verdict.PARTLY if "missing" in claim else verdict.HOLDS
+                self.assertEqual(entry["verdict"], word if inside else verdict.FAILS if outside else verdict.UNDECIDED, place)
                 self.assertTrue(entry["command"] and "causticbench" in entry["command"], place)
 
     def test_intervals_follow_from_their_values(self):
@@ -279,7 +335,7 @@ class Pages(unittest.TestCase):
                 if not values:
                     continue
                 self.assertEqual((entry["ours"], entry["spread"]), (statistics.median(values), [min(values), max(values)]), place)
-                ends = verdict.interval(values, entry["counted"])
+                ends = verdict.interval(values, entry["counted"], claim.get("signed", False))
                 self.assertEqual(entry["interval"] is None, ends is None, place)
                 slack = 1e-8 * max(map(abs, ends or [0]))  # Student's quantile of SciPy 1.10 errs by 2e-9, that of 1.15 does not
                 for kept_end, end in zip(entry["interval"] or [], ends or []):
@@ -299,6 +355,7 @@ class Pages(unittest.TestCase):
         of = lambda *verdicts: page.tally([{"verdict": each} for each in verdicts])
         self.assertEqual(of("holds", "holds", "does not hold"), "2 hold, 1 does not hold")
         self.assertEqual(of("does not hold", "does not hold", "holds", "undecided"), "1 holds, 2 do not hold, 1 undecided")
+        self.assertEqual(of("by construction", "holds", "partly", "by construction"), "1 holds, 1 holds partly, 2 hold by construction")
 
     def test_every_figure_is_there_and_in_the_gallery(self):
         gallery = (RESULTS / "README.md").read_text(encoding="utf-8")

@@ -12,10 +12,9 @@ import zlib
 import numpy as np
 
 from papers.words import short
-from report.intervals import student
+from report.intervals import OUTSIDE, student
 
 RESAMPLES = 2000
-OUTSIDE = 0.05  # an interval leaves out so much
 ROUNDING = 1e-20  # variances of logarithms that are none
 TRUTHS = 10  # a difference has to be so many times what the truth's own error makes of it
 

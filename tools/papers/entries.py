@@ -2,7 +2,8 @@
 import math
 import statistics
 
-from papers.verdict import UNMEASURED, compare, judge, unmeasured
+from papers import verdict
+from papers.verdict import UNMEASURED, judge, unmeasured
 from papers.words import short
 
 
@@ -27,23 +28,29 @@ def of_claim(study, claim, measured, earlier):
 
 
 def entry(study, claim, measured):
-    verdict, ends = judge(measured, study.paper.region(claim))
+    found, ends = judge(measured, study.paper.region(claim), claim.get("signed", False))
     ours = statistics.median(measured.samples) if measured.samples else None
-    cost = study.cost(claim["from"] if verdict != UNMEASURED else [])
+    cost = study.cost(claim["from"] if found != UNMEASURED else [])
     parts = [part for part in (measured.top, measured.bottom) if part] or ([measured.samples] if measured.samples else [])
     return said(study.paper, claim, ours, bool(measured.bottom)) | {
         "ours": ours, "spread": [min(measured.samples), max(measured.samples)] if measured.samples else None,
         "interval": list(ends) if ends else None, "samples": len(measured.samples), "values": measured.samples, "counted": measured.counted,
-        "made_of": [{"median": statistics.median(part), "least": min(part), "greatest": max(part), "values": part} for part in parts],
-        "made_of_unit": measured.unit, "verdict": verdict, "section": measured.section,
+        "made_of": [summary(part) for part in parts], "beside": {what: summary(part) for what, part in measured.beside.items()},
+        "made_of_unit": measured.unit, "verdict": verdict.of_claim(found, claim), "section": measured.section,
         "command": cost.command, "again": f"tools/reproduce.sh {study.paper.name} --only {measured.section}" if measured.samples else "",
         "minutes": round(cost.seconds / 60, 2), "megabytes": round(cost.bytes / 1e6, 1), "note": measured.note}
 
 
+def summary(samples):
+    return {"median": statistics.median(samples), "least": min(samples), "greatest": max(samples), "values": samples}
+
+
 def again(paper, claim, earlier):
-    """What was measured in an earlier run beside what the claim says now."""
-    entry = earlier | said(paper, claim, earlier["ours"], earlier["is_ratio"])
-    return entry | ({"verdict": compare(earlier["interval"], paper.region(claim))} if earlier["interval"] else {})
+    """What was measured in an earlier run beside what the claim says now, with its interval and verdict from the kept values."""
+    measured = verdict.Measured(earlier["values"], counted=earlier["counted"])
+    found, ends = judge(measured, paper.region(claim), claim.get("signed", False))
+    return earlier | said(paper, claim, earlier["ours"], earlier["is_ratio"]) | {
+        "beside": earlier.get("beside", {}), "interval": list(ends) if ends else None, "verdict": verdict.of_claim(found, claim)}
 
 
 def said(paper, claim, ours, is_quotient):
@@ -54,7 +61,8 @@ def said(paper, claim, ours, is_quotient):
         "paper": stated(paper, claim), "paper_unit": "" if is_ratio else unit_of(paper, claim),
         "paper_ratio": theirs if is_ratio else None, "is_ratio": is_quotient or is_ratio, "unit": claim["unit"],
         "factor_off": ours / theirs if ours is not None and theirs else None,
-        "region": shown(paper.region(claim)), "bounds": [None if math.isinf(end) else end for end in paper.region(claim)], "tolerance_from": claim["tolerance_from"]}
+        "region": shown(paper.region(claim)), "bounds": [None if math.isinf(end) else end for end in paper.region(claim)], "tolerance_from": claim["tolerance_from"],
+        "by_construction": claim.get("by_construction", ""), "missing": claim.get("missing", "")}
 
 
 def stated(paper, claim):

@@ -8,7 +8,7 @@ import os
 from papers.kept import made_on, read
 from papers.latex import latex_tables
 from papers.part import Table
-from papers.verdict import FAILS, HOLDS, UNDECIDED, UNMEASURED
+from papers.verdict import BY_CONSTRUCTION, FAILS, HOLDS, PARTLY, UNDECIDED, UNMEASURED
 from papers.words import short
 from report.paper import PUBLISHED
 from report.report_files import write
@@ -21,7 +21,7 @@ table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border-bottom:1
 vertical-align:top}th{border-bottom:2px solid #999}.grey,.grey td{color:#999}h3{margin-bottom:.2em}figure{margin:1.5em 0}
 img{max-width:100%}figcaption,.note{font-size:13px;color:#444}.group td{background:#f3f3f3;font-weight:bold}
 .verdict{font-weight:bold}code{font-size:12px}"""
-COLOURS = {HOLDS: "#1a7f37", FAILS: "#c0392b", UNDECIDED: "#9a6700", UNMEASURED: "#777"}
+COLOURS = {HOLDS: "#1a7f37", BY_CONSTRUCTION: "#57606a", PARTLY: "#0550ae", FAILS: "#c0392b", UNDECIDED: "#9a6700", UNMEASURED: "#777"}
 
 
 def paper_text(entry):
@@ -32,9 +32,18 @@ def ours_text(entry):
     """Median and range of what was measured, and of what it is divided by."""
     if entry["verdict"] == UNMEASURED:
         return UNMEASURED
-    parts = [f"{short(part['median'])}" + (f" ({short(part['least'])}–{short(part['greatest'])})" if part["least"] != part["greatest"] else "")
-             for part in entry["made_of"]]
-    return f"{' over '.join(parts)} {entry['made_of_unit']}".strip()
+    return f"{' over '.join(map(ranged, entry['made_of']))} {entry['made_of_unit']}".strip()
+
+
+def ranged(summary):
+    return short(summary["median"]) + (f" ({short(summary['least'])}–{short(summary['greatest'])})" if summary["least"] != summary["greatest"] else "")
+
+
+def notes(entry):
+    """Sentences below a claim: how it was measured, why it cannot fail, what of it is missing, what stands beside the judged counter."""
+    texts = [entry["note"], entry["by_construction"] and f"By construction: {entry['by_construction']}", entry["missing"] and f"Missing: {entry['missing']}",
+             *[f"Beside it, not judged: {what} {ranged(part)}" for what, part in entry["beside"].items()]]
+    return " ".join(f"{text.rstrip('.')}." for text in texts if text)
 
 
 def ratio_text(entry):
@@ -89,9 +98,10 @@ def made(kept):
 
 def tally(entries):
     count = lambda verdict: sum(entry["verdict"] == verdict for entry in entries)
-    several = {HOLDS: "hold", FAILS: "do not hold"}
-    return ", ".join(f"{count(verdict)} {several.get(verdict, verdict) if count(verdict) > 1 else verdict}"
-                     for verdict in (HOLDS, FAILS, UNDECIDED, UNMEASURED) if count(verdict))
+    several = {HOLDS: "hold", BY_CONSTRUCTION: "hold by construction", PARTLY: "hold partly", FAILS: "do not hold"}
+    one = {BY_CONSTRUCTION: "holds by construction", PARTLY: "holds partly"}
+    return ", ".join(f"{count(verdict)} {(several if count(verdict) > 1 else one).get(verdict, verdict)}"
+                     for verdict in (HOLDS, PARTLY, BY_CONSTRUCTION, FAILS, UNDECIDED, UNMEASURED) if count(verdict))
 
 
 def by_group(entries):
@@ -114,9 +124,9 @@ def markdown(paper, entries, kept, tables):
         for row, entry in zip(rows, own):
             row[5] = f"**{entry['verdict']}**"
         text.append(f"\n## {group}\n\n" + markdown_table(CLAIMS, rows))
-        notes = [f"* {entry['claim']}: {entry['note'].rstrip('.')}." for entry in own if entry["note"]]
-        if notes:
-            text.append("\n".join(notes) + "\n")
+        below = [f"* {entry['claim']}: {notes(entry)}" for entry in own if notes(entry)]
+        if below:
+            text.append("\n".join(below) + "\n")
     for table in [*stated(kept), *tables]:
         text.append(f"\n## {table.title}\n\n" + markdown_table(table.heading, table.rows) + (f"\n{table.note}\n" if table.note else ""))
     if paper.text["seconds"]:
@@ -128,8 +138,10 @@ def markdown(paper, entries, kept, tables):
 
 
 HOW = ("A claim holds where the interval of ours lies within the region of the last table, does not hold where it lies outside, and is undecided "
-       "between. The interval is Student's t over seeds or repeats, on a scale of ratios, and leaves out 5 % at each end: a trend that holds has its "
-       "order and sign at 95 %. Counted values are the same on every run. "
+       "between. The interval is Student's 95 % interval of the mean over seeds or repeats: it leaves out 2.5 % at each end. Its scale is that of "
+       "ratios; of what may be negative it is linear. Counted values are the same on every run. \"By construction\" is what cannot fail, because it "
+       "follows from numbers that were put in: it is counted apart from what holds. \"Partly\" is what holds while a part of the claim is not built "
+       "or not tested; the row names that part. "
        "Times are CPU times of one thread: median (least–greatest); sweeps on whose times no claim rests run two trials at a time. "
        "Factor off: ours over the paper's.\n")
 
@@ -169,7 +181,7 @@ def page(paper, entries, kept, tables):
     for group, own in by_group(entries):
         body.append(f"<tr class='group'><td colspan='{len(CLAIMS)}'>{e(group)}</td></tr>\n")
         for row, entry in zip(claims_table(own).rows, own):
-            note = f"<br><span class='note'>{e(entry['note'])}</span>" if entry["note"] else ""
+            note = f"<br><span class='note'>{e(notes(entry))}</span>" if notes(entry) else ""
             verdict = f"<td class='verdict' style='color:{COLOURS[entry['verdict']]}'>{entry['verdict']}</td>"
             body.append("<tr>" + f"<td>{e(row[0])} <span class='grey'>{e(entry['where'])}</span>{note}</td>"
                         + "".join(f"<td>{e(field)}</td>" for field in row[1:5]) + verdict + f"<td>{e(row[6])}</td></tr>\n")

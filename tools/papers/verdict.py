@@ -3,9 +3,11 @@ import dataclasses
 import math
 import statistics
 
+from report.intervals import half_interval
+
 HOLDS, FAILS, UNDECIDED, UNMEASURED = "holds", "does not hold", "undecided", "not measured"
+BY_CONSTRUCTION, PARTLY = "by construction", "partly"  # what "holds" is called where it cannot fail, and where a part of the claim is not built
 LEAST_SAMPLES = 3
-CONFIDENCE = 0.95
 
 
 @dataclasses.dataclass
@@ -13,7 +15,8 @@ class Measured:
     """What was measured for a claim: `samples`, one a seed or repeat, of what the claim compares.
 
     `top` and `bottom` are what a ratio is made of, in `unit`. `counted` values are the same on every run, so one is enough.
-    Without samples `note` says why nothing was measured.
+    Without samples `note` says why nothing was measured. `beside` has samples by name that are shown and not judged: times beside
+    the counters that decide.
     """
     samples: list
     top: list = dataclasses.field(default_factory=list)
@@ -22,6 +25,7 @@ class Measured:
     counted: bool = False
     note: str = ""
     section: str = ""
+    beside: dict = dataclasses.field(default_factory=dict)
 
 
 def ratio(top, bottom, unit, **more):
@@ -49,30 +53,38 @@ def unmeasured(why):
     return Measured([], note=why)
 
 
-def interval(samples, is_counted):
-    """Ends of the interval that leaves out 5 % on each side, on a scale of ratios where all samples are above 0; None: too few."""
+def interval(samples, is_counted, is_signed=False):
+    """Ends of the 95 % interval of the mean; None: too few samples. Counted samples have their range.
+
+    The scale is that of ratios, on which what is never negative scatters evenly. A signed quantity may lie on either side of 0: its
+    scale is linear whatever the samples are, for samples that happen to be positive say nothing about the next ones.
+    """
     if is_counted:
         return min(samples), max(samples)
     if len(samples) < LEAST_SAMPLES:
         return None
-    logarithmic = min(samples) > 0
+    logarithmic = not is_signed and min(samples) > 0
     values = [math.log(each) for each in samples] if logarithmic else samples
-    from scipy.stats import t  # here, for it takes a second to load
-
-    middle = statistics.fmean(values)
-    reach = float(t.ppf(CONFIDENCE, len(values) - 1)) * statistics.stdev(values) / math.sqrt(len(values))
+    middle, reach = statistics.fmean(values), half_interval(values)
     ends = (middle - reach, middle + reach)
     return tuple(map(math.exp, ends)) if logarithmic else ends
 
 
-def judge(measured, region):
+def judge(measured, region, is_signed=False):
     """(verdict, interval or None)."""
     if not measured.samples:
         return UNMEASURED, None
-    ends = interval(measured.samples, measured.counted)
+    ends = interval(measured.samples, measured.counted, is_signed)
     if ends is None:
         return UNDECIDED, None
     return compare(ends, region), ends
+
+
+def of_claim(verdict, claim):
+    """The verdict's word: a claim that cannot fail holds by construction, one of which a part is missing holds partly."""
+    if verdict != HOLDS:
+        return verdict
+    return BY_CONSTRUCTION if "by_construction" in claim else PARTLY if "missing" in claim else HOLDS
 
 
 def compare(ends, region):

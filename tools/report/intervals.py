@@ -4,6 +4,7 @@ import math
 import statistics
 
 FEWEST_SEEDS = 5  # below, no method is called the best
+OUTSIDE = 0.05  # a two-sided interval leaves out so much: the one confidence of the project
 
 
 @dataclasses.dataclass(frozen=True)
@@ -13,14 +14,15 @@ class Answer:
     terms: tuple = ()
 
 
-def student(degrees, outside=0.05):
-    """Student's t for a two-sided interval that leaves out so much; 95 % of it are within."""
+def student(degrees, outside=OUTSIDE):
+    """Student's t for a two-sided interval that leaves out a share `outside`, half of it on each side."""
     from scipy.special import stdtrit  # here, so that a broken table is named even without SciPy
 
     return float(stdtrit(degrees, 1 - outside / 2))
 
 
 def half_interval(values):
+    """Half the 95 % interval of the mean; None of one value."""
     if len(values) < 2:
         return None
     return student(len(values) - 1) * statistics.stdev(values) / math.sqrt(len(values))

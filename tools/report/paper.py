@@ -70,5 +70,12 @@ def check(paper):
         for number in numbers_of(claim):
             if number not in paper.text["numbers"]:
                 raise wrong(f'claim "{name}": no number "{number}" (known: {", ".join(paper.text["numbers"])})')
+        for key in ("by_construction", "missing"):
+            if key in claim and not (isinstance(claim[key], str) and claim[key].strip()):
+                raise wrong(f'claim "{name}": {key} needs a sentence that says why or what')
+        if "by_construction" in claim and "missing" in claim:
+            raise wrong(f'claim "{name}": by_construction and missing exclude each other')
+        if not isinstance(claim.get("signed", False), bool):
+            raise wrong(f'claim "{name}": signed has to be true or false')
         if len(claim["region"]) != 1 or next(iter(claim["region"])) not in REGIONS:
             raise wrong(f'claim "{name}": region has to be one of {", ".join(REGIONS)}')
