@@ -32,6 +32,7 @@ public:
         counters["gathers"] += gathers_;
         counters["gathered_photons"] += gathered_photons_;
         counters["empty_gathers"] += empty_gathers_;
+        if (scratch.visited_nodes > 0) counters["nodes_visited"] += scratch.visited_nodes;
         if (adaptive_) counters["used_photons"] += estimate.used_photons;
         if (!estimate.table) return;
         counters["table_lookups"] += estimate.table->lookups();

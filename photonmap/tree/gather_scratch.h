@@ -68,6 +68,7 @@ struct GatherScratch {
 
     std::uint64_t single_queries = 0;
     std::uint64_t grouped_queries = 0;
+    std::uint64_t visited_nodes = 0;  ///< of trees that have a photon at every node
 };
 
 }  // namespace caustics::photonmap

@@ -12,7 +12,7 @@ inline float squared_distance(const Photon& photon, const float point[3]) {
     return x * x + y * y + z * z;
 }
 
-/// The search of a tree that has a photon at every node [J96 sec. 2], nearest side first. Tree
+/// The search of a tree that has a photon at every node [J96 sec. 2], nearest side first, which counts the nodes. Tree
 /// says where nodes and children are: `root()`, `photon(node)`, `index(node)`, `child(node, right)`,
 /// `exists(node)`.
 ///
@@ -29,6 +29,7 @@ void find_nearest(const Tree& tree, const TreeKernels& kernels, const NearestQue
     const std::size_t trigger = nearest + nearest / 2 + 32;
     bool shrunk = false;
     float bound = query.max_squared_distance;
+    std::uint64_t visited = 0;
     const auto shrink = [&](std::size_t most) {
         bound = kernels.shrink(found, nearest, most, bound);
         if (found.count > most) query.drop_ties(query.tie_context, found, nearest);
@@ -36,6 +37,7 @@ void find_nearest(const Tree& tree, const TreeKernels& kernels, const NearestQue
     };
     for (auto node = tree.root();;) {
         while (tree.exists(node)) {
+            ++visited;
             const Photon& photon = tree.photon(node);
             const float distance2 = squared_distance(photon, query.point);
             if (distance2 <= bound &&
@@ -56,6 +58,7 @@ void find_nearest(const Tree& tree, const TreeKernels& kernels, const NearestQue
         for (;;) {
             if (scratch.pending.empty()) {
                 if (found.count > nearest) shrink(nearest);
+                scratch.visited_nodes += visited;
                 return;
             }
             const GatherScratch::Pending next = scratch.pending.back();

@@ -81,6 +81,7 @@ void UnbalancedKdTree::insert(std::uint32_t number) {
     }
     set_axis(photon, axis);
     depth_ = std::max(depth_, level);
+    passed_ += level - 1;
 }
 
 void UnbalancedKdTree::find(const NearestQuery& query, GatherScratch& scratch) const {

@@ -14,8 +14,11 @@ public:
 
     std::size_t size() const override { return size_; }
     std::uint64_t bytes() const override { return size_ * sizeof(Node); }
-    /// `tree_depth`: levels of the tree.
-    void add_to(Counters& counters) const override { counters["tree_depth"] += depth_; }
+    /// `tree_depth`: levels of the tree; `nodes_passed`: nodes above each photon when it was inserted, summed.
+    void add_to(Counters& counters) const override {
+        counters["tree_depth"] += depth_;
+        counters["nodes_passed"] += passed_;
+    }
 
     struct Node {
         Photon photon;
@@ -36,6 +39,7 @@ private:
     std::size_t size_;
     std::unique_ptr<Node[], Unmap> nodes_;
     std::uint64_t depth_ = 0;
+    std::uint64_t passed_ = 0;
 };
 
 }  // namespace caustics::photonmap

@@ -158,7 +158,25 @@ TEST(PhotonMap, CountsQueriesAndTellsItsPhasesAndRadius) {
     EXPECT_EQ(counters.at("gathers"), 2U);
     EXPECT_EQ(counters.at("gathered_photons"), 20U);
     EXPECT_EQ(counters.at("empty_gathers"), 1U);
+    EXPECT_FALSE(counters.contains("nodes_visited"));
     EXPECT_GT(build(scene, {.photons = 10'000}, {})->build_report().resolved.at("max_radius"), 0);
+}
+
+TEST(PhotonMap, CountsTheNodesThatTheTreesOfThePaperVisit) {
+    const Scene scene(flat_mirror(grey));
+    for (const TreeKind tree : {TreeKind::balanced, TreeKind::unbalanced}) {
+        const auto map =
+            build(scene,
+                  {.photons = 1'000, .kernel = KernelKind::point, .tree = tree, .nearest = 20}, {});
+        const auto context = map->make_context();
+        const std::vector<ReceiverPoint> points{ceiling_point(grey, 0, 0)};
+        std::vector<Estimate> out(1);
+        map->irradiance(points, out, *context);
+        Counters counters;
+        context->add_to(counters);
+        EXPECT_GE(counters.at("nodes_visited"), counters.at("gathered_photons"));
+        EXPECT_LE(counters.at("nodes_visited"), 1'000U);
+    }
 }
 
 TEST(PhotonMap, TellsThePhaseOfThePhotonsWidths) {

@@ -361,12 +361,40 @@ TEST(PhotonTree, IsBuiltInThePhotonsOwnMemory) {
     }
 }
 
+/// Photons on a line, in order along it: the unbalanced tree is a list.
+std::vector<Photon> photons_on_a_line(int count) {
+    std::vector<Photon> photons;
+    for (int i = 0; i < count; ++i) photons.push_back(photon_at({static_cast<float>(i), 0, 0}));
+    return photons;
+}
+
+/// Nodes that a search for the nearest photons of a place on the line visits.
+std::uint64_t visited_nodes(TreeKind kind, float x, std::size_t nearest) {
+    const auto tree = build_tree(kind, store_of(photons_on_a_line(1'000)), widest_isa());
+    GatherScratch scratch;
+    const std::vector<ReceiverPoint> points{point_at({x, 0, 0}, {0, 0, 1})};
+    tree->gather(points, {.nearest = nearest, .max_radius = 1e4F}, scratch,
+                 [](std::size_t, const GatheredPhotons&) {});
+    return scratch.visited_nodes;
+}
+
+TEST(PhotonTree, SearchesCountTheNodesThatTheyVisit) {
+    // Each node, where all photons are asked for.
+    for (const TreeKind kind : {TreeKind::balanced, TreeKind::unbalanced})
+        EXPECT_EQ(visited_nodes(kind, 500, 1'000), 1'000U) << name(kind);
+    // The end of a list is reached past all of it, the end of a balanced tree past its levels.
+    EXPECT_EQ(visited_nodes(TreeKind::unbalanced, 999, 1), 1'000U);
+    EXPECT_GE(visited_nodes(TreeKind::balanced, 999, 1), 9U);
+    EXPECT_LE(visited_nodes(TreeKind::balanced, 999, 1), 20U);
+}
+
 TEST(PhotonTree, UnbalancedTellsItsDepth) {
     std::vector<Photon> photons;
-    for (int i = 0; i < 1'000; ++i) photons.push_back(photon_at({static_cast<float>(i), 0, 0}));
     Counters sorted;
-    build_tree(TreeKind::unbalanced, store_of(photons), widest_isa())->add_to(sorted);
+    build_tree(TreeKind::unbalanced, store_of(photons_on_a_line(1'000)), widest_isa())
+        ->add_to(sorted);
     EXPECT_EQ(sorted.at("tree_depth"), 1'000U);
+    EXPECT_EQ(sorted.at("nodes_passed"), 999U * 1'000U / 2);
     // Photons at one point do not make a list.
     Counters coincident;
     build_tree(TreeKind::unbalanced, store_of(std::vector<Photon>(20'000, photon_at({1, 2, 3}))),

@@ -25,7 +25,7 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "cpu_s", "rmse", "relmse", "bias", "variance", "mean_ratio", "leak_energy", "beauty_rmse",
             "unreached_fraction", "reference_stderr", "reference_mean", "mask_rmse", "mask_relmse", "mask_mean_ratio",
             "mask_fraction", "flip", "parse_cpu_s", "precompute_cpu_s", "balance_cpu_s", "render_cpu_s", "gathers",
-            "gathered_photons", "used_photons", "camera_rays", "trees", "trees_binned", "nodes", "tree_height",
+            "gathered_photons", "nodes_visited", "nodes_passed", "used_photons", "camera_rays", "trees", "trees_binned", "nodes", "tree_height",
             "casters_with_face_normals", "flux_share_captured", "flux_share_pruned", "flux_share_over_budget",
             "flux_share_rest", "rest_photons_stored", "beams_unreceived", "photons_aimed", "photons_reflected",
             "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points", "indirect_rmse",
