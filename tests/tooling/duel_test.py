@@ -182,6 +182,21 @@ class Pages(unittest.TestCase):
         self.assertEqual({entry["id"] for entry in found if "before" in entry}, set(DUEL.judged["anew"]))
         self.assertEqual({entry["id"] for entry in found if "exploratory" in entry}, set(DUEL.judged["exploratory"]))
 
+    def test_hypotheses_that_came_with_their_results_are_exploratory(self):
+        """As git tells: the commit that brings a hypothesis must not bring results, or the page has to say so."""
+        git = lambda *words: subprocess.run(["git", "-C", ROOT, *words], capture_output=True, text=True)
+        if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
+            self.skipTest("no history of commits")
+        file, known, late = "experiments/duel/hypotheses.json", set(), set()
+        for commit in git("log", "--reverse", "--format=%H", "--", file).stdout.split():
+            new = {each["id"] for each in json.loads(git("show", f"{commit}:{file}").stdout)["hypotheses"]} - known
+            if "results/duel/" in git("show", "--format=", "--name-only", commit).stdout:
+                late |= new
+            known |= new
+        self.assertIn("completed", late)
+        self.assertLessEqual(late, set(DUEL.judged["exploratory"]))
+        self.assertIn("committed\nwith its results", self.texts["README.md"])
+
     def test_plots_are_there_and_the_page_shows_only_those(self):
         for name in (*self.results.fields, "variables"):
             self.assertTrue((RESULTS / "plots" / f"{name}.png").is_file(), name)
