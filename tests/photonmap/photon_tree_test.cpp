@@ -382,10 +382,10 @@ TEST(PhotonTree, SearchesCountTheNodesThatTheyVisit) {
     // Each node, where all photons are asked for.
     for (const TreeKind kind : {TreeKind::balanced, TreeKind::unbalanced})
         EXPECT_EQ(visited_nodes(kind, 500, 1'000), 1'000U) << name(kind);
-    // The end of a list is reached past all of it, the end of a balanced tree past its levels.
+    // The end of a list is reached past all of it, the end of a balanced tree past a few of each level.
     EXPECT_EQ(visited_nodes(TreeKind::unbalanced, 999, 1), 1'000U);
     EXPECT_GE(visited_nodes(TreeKind::balanced, 999, 1), 9U);
-    EXPECT_LE(visited_nodes(TreeKind::balanced, 999, 1), 20U);
+    EXPECT_LE(visited_nodes(TreeKind::balanced, 999, 1), 100U);
 }
 
 TEST(PhotonTree, UnbalancedTellsItsDepth) {
