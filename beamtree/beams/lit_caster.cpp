@@ -42,8 +42,7 @@ Facing LitCaster::facing(std::uint32_t triangle) const {
 }
 
 // Twice the rounding, as places between corners are found in float.
-float LitCaster::corner_offset(std::uint32_t triangle) const {
-    const TriangleMesh& mesh = caster_.mesh;
+float corner_offset(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto& [i, j, k] = mesh.triangles[triangle];
     const Vec3& a = mesh.positions[i];
     const Vec3& b = mesh.positions[j];

@@ -23,6 +23,9 @@ bool sends_on(const MeshPoint& point, const Facing& facing, Event event);
 /// Whether a surface is flat from one point to another, by its unit normals there.
 bool is_flat_between(const Vec3& normal, const Vec3& other);
 
+/// How far off a triangle rays to and from its corners end, so that they do not meet it [m].
+float corner_offset(const TriangleMesh& mesh, std::uint32_t triangle);
+
 /// A caster's mesh in the light of one sample.
 class LitCaster {
 public:
@@ -36,8 +39,9 @@ public:
     /// A place of the scene's frame, in the world [m].
     Vec3d world(const Vec3& place) const { return scene_.origin() + place.cast<double>(); }
     Facing facing(std::uint32_t triangle) const;
-    /// How far off a triangle rays to and from its corners end, so that they do not meet it [m].
-    float corner_offset(std::uint32_t triangle) const;
+    float corner_offset(std::uint32_t triangle) const {
+        return beamtree::corner_offset(caster_.mesh, triangle);
+    }
     /// The same for points inside of it, which lie below an exact shape's surface.
     float offset(std::uint32_t triangle) const;
 

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "beamtree/beams/beam.h"
+#include "beamtree/beams/lit_caster.h"
 #include "beamtree/light/light_chain.h"
+#include "core/geometry/surface_offset.h"
 
 namespace caustics::beamtree {
 
@@ -36,11 +38,16 @@ public:
     FirstPolygon(const Scene& scene, const BeamSet& set,
                  const std::optional<SpecularSurface>& exact, const Beam& beam, std::size_t which,
                  const std::array<Vec3, 3>& corners)
-        : offset_(beam.offset), side_(beam.front ? 1 : -1) {
-        if (exact)
+        : side_(beam.front ? 1 : -1) {
+        const Shape& shape = scene.shapes()[set.caster];
+        if (exact) {
             surface_ = &*exact;
-        else
-            surface_ = &facet_.emplace(scene.shapes()[set.caster].mesh, beam.mesh_triangle(which));
+            offset_ = least_offset(shape);
+            for (const Vec3& corner : corners) offset_ = std::max(offset_, rounding_offset(corner));
+        } else {
+            surface_ = &facet_.emplace(shape.mesh, beam.mesh_triangle(which));
+            offset_ = corner_offset(shape.mesh, beam.mesh_triangle(which));
+        }
         const auto local = [&](std::size_t i) {
             return surface_->local(corners[i].cast<double>());
         };
@@ -80,7 +87,8 @@ private:
     Vec3d corner_;
     std::array<Vec3d, 2> sides_;
     double size_;
-    float offset_;
+    float
+        offset_;  ///< of rays that leave the surface, however far the beam's bulges from its own [m]
     double side_;  ///< ChainStart::side
 };
 

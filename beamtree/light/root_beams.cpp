@@ -39,8 +39,9 @@ private:
         const Beam& beam = set_.beams[number];
         const std::size_t count = beam.triangle_count();
         const std::size_t before = out.beams.size();
+        const std::size_t rays_before = out.rays.size();
         for (std::size_t which = 0; which < count; ++which) divide(number, which, out);
-        if (count == 1 || out.beams.size() - before > count) return;
+        if (count == 1 || out.rays.size() > rays_before) return;
         // A cell that need not be divided stays one.
         RootBeam cell{.beam = beam, .from = number};
         for (std::size_t which = 0; which < count; ++which)
@@ -93,7 +94,9 @@ private:
         whole.beam.is_cell = false;
         whole.beam.corners[3] = Beam::none;
         const FirstPolygon polygon(scene_, set_, exact_, beam, which);
-        divider(polygon, out).divide(corners, whole, most_root_quarters);
+        RootDivider dividing = divider(polygon, out);
+        if (meets_mesh_ && dividing.take_own_rays(corners)) whole.is_part = true;
+        dividing.divide(corners, whole, most_root_quarters);
     }
 
     const Scene& scene_;

@@ -31,6 +31,25 @@ void RootDivider::add_cut(const RootBeam& beam, const std::array<Vec3, 3>& origi
         divide_cut(corners, beam, lit, most_cut_quarters);
 }
 
+bool RootDivider::take_own_rays(std::array<RootNode, 3>& corners) {
+    constexpr float most_apart = 0.01F;  // of how far the rays part
+    std::array<RootNode, 3> own = corners;
+    for (RootNode& each : own)
+        if (const RootNode here = node(each.at); here.is_lit) each.ray = here.ray;
+    float spread = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        spread = std::max(spread, (own[i].ray.direction - own[(i + 1) % 3].ray.direction).norm());
+    bool takes = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float apart = (own[i].ray.direction - corners[i].ray.direction).norm();
+        if (!(apart > most_apart * spread)) continue;
+        corners[i].ray = own[i].ray;
+        number(corners[i]);
+        takes = true;
+    }
+    return takes;
+}
+
 void RootDivider::divide(const std::array<RootNode, 3>& corners, const RootBeam& beam,
                          int quarters) {
     const std::array<RootNode, 3> middles = {between(corners[0], corners[1]),

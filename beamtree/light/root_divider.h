@@ -61,6 +61,10 @@ public:
     /// A triangle with a dark part, and a place whose light goes the set's way.
     void add_cut(const RootBeam& beam, const std::array<Vec3, 3>& origins, const Vec2d& lit);
 
+    /// Gives corners whose rays go other ways than rays of the triangle rays of their own: a corner at a tip of the next
+    /// surface has one ray for all triangles round it. True where one has got its own.
+    bool take_own_rays(std::array<RootNode, 3>& corners);
+
     /// A triangle whose corners' rays are known: quartered at most so often.
     void divide(const std::array<RootNode, 3>& corners, const RootBeam& beam, int quarters);
 

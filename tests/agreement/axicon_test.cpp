@@ -41,25 +41,37 @@ Scene axicon(int sectors) {
     return Scene(std::move(desc));
 }
 
+// What beams bring to random points at these distances from the axis, over the truth: each point stands for as wide a ring.
+double light_over_truth(const CausticEstimator& method, const Scene& scene, double from,
+                        double to) {
+    constexpr int count = 4000;
+    Rng chance(3, Stage::test, 0);
+    double found = 0;
+    double truth = 0;
+    for (int i = 0; i < count; ++i) {
+        const double q = from + (to - from) * (i + static_cast<double>(chance.next())) / count;
+        const double angle = 2 * pi_d * static_cast<double>(chance.next());
+        const Vec3d at(q * std::cos(angle), q * std::sin(angle), 0);
+        found += q * static_cast<double>(
+                         support::irradiance(method,
+                                             {support::probe(scene, 0, at, Vec3d::UnitZ(), 0)})[0]
+                             .value.mean());
+        truth += q * irradiance(q);
+    }
+    return found / truth;
+}
+
 // Its straight profile meets the axis aslant, without a crease: a rounded normal at the tip took four fifths of the light.
+// The corner that all triangles of its flat side share lies over the tip, where one ray served for all of them; and
+// towards the rim the glass is thinner than the distance by which rays were kept off their surface: a tenth was lost in each.
 TEST(Axicon, HasItsLightWithoutACreaseAtItsTip) {
     const Scene scene = axicon(128);
     beamtree::BeamTreeParams params;
     params.max_bounces = 2;
     const auto method = beamtree::build(scene, params, RunOptions{});
-    Rng chance(3, Stage::test, 0);
-    double found = 0;
-    double truth = 0;
-    for (int i = 0; i < 4000; ++i) {
-        const double q = 0.05 + 0.7 * static_cast<double>(chance.next());
-        const double angle = 2 * pi_d * static_cast<double>(chance.next());
-        const Vec3d at(q * std::cos(angle), q * std::sin(angle), 0);
-        found += static_cast<double>(
-            support::irradiance(*method, {support::probe(scene, 0, at, Vec3d::UnitZ(), 0)})[0]
-                .value.mean());
-        truth += irradiance(q);
-    }
-    EXPECT_NEAR(found / truth, 1, 0.02);
+    EXPECT_NEAR(light_over_truth(*method, scene, 0, 0.1), 1, 0.02) << "round the axis";
+    EXPECT_NEAR(light_over_truth(*method, scene, 0.1, 0.7), 1, 0.02) << "between";
+    EXPECT_NEAR(light_over_truth(*method, scene, 0.7, 0.84), 1, 0.02) << "from the rim";
 }
 
 }  // namespace
