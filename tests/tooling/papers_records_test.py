@@ -19,9 +19,12 @@ class Records(unittest.TestCase):
     def column(self, paper, name, column, **wanted):
         return [sum(float(row[each]) for each in column.split("+")) for row in self.rows(paper, name, **wanted)]
 
-    def values(self, paper, claim):
+    def entry(self, paper, claim):
         entries = json.loads((RESULTS / paper / "verdicts.json").read_text(encoding="utf-8"))
-        return next(entry["values"] for entry in entries if entry["id"] == claim)
+        return next(entry for entry in entries if entry["id"] == claim)
+
+    def values(self, paper, claim):
+        return self.entry(paper, claim)["values"]
 
     def expect(self, paper, claim, wanted):
         found = self.values(paper, claim)
@@ -54,7 +57,11 @@ class Records(unittest.TestCase):
     def test_chuangs_counts(self):
         pool = {"method": "beamtree", "cells": "[75,101]", "merging": "cones", "reflected": "0"}
         rows = sorted(self.rows("chuang1995", "counts", **pool), key=lambda row: float(row["wave_height"]))
-        self.assertEqual(len(rows), 3)
+        sweep = json.loads((RESULTS.parents[1] / "experiments" / "papers" / "sweeps" / "chuang1995_counts.json").read_text(encoding="utf-8"))
+        heights = sweep["set"]["wave_height"]["values"]
+        self.assertEqual([float(row["wave_height"]) for row in rows], heights)
+        self.assertLess(min(heights), 1.5, "the claims are judged on both sides of the heights at which they hold")
+        self.assertGreater(max(heights), 3)
         for count in ("cone_point_tests", "beam_point_tests", "beam_point_hits"):
             self.expect("chuang1995", f"count_{count}", [float(row[count]) for row in rows])
         self.expect("chuang1995", "cones_a_beam", [float(row["cone_point_tests"]) / float(row["beam_point_tests"]) for row in rows])
@@ -63,7 +70,32 @@ class Records(unittest.TestCase):
         bare = self.column("chen2011", "tree", "render_cpu_s", method="none")
         most = max((row["nearest"] for row in self.rows("chen2011", "tree") if row["nearest"]), key=int)
         less = lambda photons: [a - b for a, b in zip(self.column("chen2011", "tree", "render_cpu_s", photons=photons, nearest=most), bare)]
-        self.expect("chen2011", "logarithmic", [a / b for a, b in zip(less("1000000"), less("10000"))])
+        beside = self.entry("chen2011", "logarithmic")["beside"]["CPU time of the searches, more over fewer photons"]["values"]
+        visited = lambda photons: self.column("chen2011", "tree", "nodes_visited", photons=photons, nearest=most)[0]
+        self.expect("chen2011", "logarithmic", [visited("1000000") / visited("10000")])
+        for found, a, b in zip(beside, less("1000000"), less("10000"), strict=True):
+            self.assertTrue(math.isclose(found, a / b, rel_tol=1e-5))
+
+    def test_chens_filters_are_judged_at_the_studys_n(self):
+        several = sorted({row["nearest"] for row in self.rows("chen2011", "filters") if row["nearest"]}, key=int)
+        for kind in ("cone", "gaussian"):
+            self.expect_ratio("chen2011", f"filter_{kind}", "filters", "mask_rmse", {"filter": kind}, {"filter": "none"}, nearest="100")
+            note = self.entry("chen2011", f"filter_{kind}")["note"]
+            self.assertEqual([n for n in several if f"at N = {n}" not in note], [], "every N is shown")
+
+    def test_chens_light_is_scored_against_light_tracing(self):
+        tables = json.loads((RESULTS / "chen2011" / "tables.json").read_text(encoding="utf-8"))["tables"]
+        headings = {table["name"]: " ".join(table["heading"]) for table in tables}
+        for name in ("events", "peers"):
+            self.assertIn("over light tracing", headings[name])
+
+    def test_watts_powers_are_of_tests(self):
+        usual = {"method": "causticpolygons", "repeat": "1"}
+        heading = self.rows("chuang1995", "watt", **usual)[0]
+        self.assertIn("receiver_resolution", heading)
+        for name in ("watt_n_s", "watt_n_d", "watt_n_l"):
+            entry = self.entry("chuang1995", name)
+            self.assertEqual((entry["verdict"], entry["counted"], list(entry["beside"])), ("by construction", True, ["power of the CPU time"]))
 
     def test_every_sweep_that_is_named_is_kept(self):
         for folder in sorted(RESULTS.glob("*/records")):

@@ -24,7 +24,7 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from papers import entries, kept, latex, page, part, study, verdict
+from papers import chen_photons, chuang_counts, chuang_trees, entries, kept, latex, page, part, study, verdict
 from report import exr, intervals, paper
 from report.records import RecordsError
 
@@ -180,6 +180,53 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(verdict.ratio([2, 9], [1, 3], "s").samples, [2, 3])
         with self.assertRaises(ValueError):
             verdict.ratio([1, 2], [1], "s")
+
+
+class Necks(unittest.TestCase):
+    """Eq. 2 of Chuang and Cheng on beams whose neck is known."""
+
+    def beam(self, neck):
+        """A square beam that is narrowest at a share of its way of 1 m down; beyond 1 it converges all along."""
+        corners = np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)]) * 0.1
+        starts = np.column_stack([corners, np.zeros(4)])[:, None]
+        towards = np.column_stack([0.2 * corners, np.full(4, -neck)])
+        rays = (towards - starts[:, 0]) / np.linalg.norm(towards - starts[:, 0], axis=1, keepdims=True)
+        return chuang_trees.Widths(starts, rays[:, None], np.array([[0.0, 0, -1]]), -1.0)
+
+    def test_a_circle_is_the_smallest(self):
+        points = np.array([[0, 0], [2, 0], [1, 0.1], [1, -0.2]], float)[..., None]
+        self.assertAlmostEqual(chuang_trees.circle(points)[0], 1.0)
+        corners = np.array([[math.cos(a), math.sin(a)] for a in (0, 2, 4, 5)], float)[..., None]
+        self.assertAlmostEqual(chuang_trees.circle(corners)[0], 1.0)
+
+    def test_the_width_of_a_beam_is_known(self):
+        self.assertAlmostEqual(self.beam(0.5)(0.0)[0], 0.1 * math.sqrt(2))
+        self.assertAlmostEqual(self.beam(1.0)(1.0)[0], 0.02 * math.sqrt(2))
+
+    def test_the_bracket_is_there_only_where_the_middle_is_narrowest(self):
+        for neck, has_neck, has_bracket in ((0.5, True, True), (0.15, True, False), (3.0, False, False)):
+            widths = self.beam(neck)
+            self.assertEqual((bool(chuang_trees.has_neck(widths)[0]), bool(chuang_trees.printed(widths)[0][0])), (has_neck, has_bracket), neck)
+
+
+class Words(unittest.TestCase):
+    def test_a_window_of_heights_is_named_with_what_lies_beyond(self):
+        heights = ["1", "1.5", "2", "3", "4"]
+        of = lambda *holds: chuang_counts.window(heights, [bool(each) for each in holds])
+        self.assertEqual(of(0, 1, 1, 1, 0), "holds from waves x 1.5 to x 3, and not at x 1 and x 4")
+        self.assertEqual(of(1, 1, 1, 0, 0), "holds from waves x 1 to x 2, and not at x 3")
+        self.assertEqual(of(1, 1, 1, 1, 1), "holds from waves x 1 to x 4, all that were tried")
+        self.assertEqual(of(0, 0, 1, 0, 0), "holds at waves x 2, and not at x 1.5 and x 3")
+        self.assertEqual(of(1, 0, 1, 0, 0), "holds at waves x 1, 2 of 1, 1.5, 2, 3, 4")
+        self.assertEqual(of(0, 0, 0, 0, 0), "holds at none of the heights from x 1 to x 4")
+
+    def test_an_ambient_term_is_fitted_to_the_truth(self):
+        random = np.random.default_rng(3)
+        ambient, direct = random.random((4, 5, 3)), random.random((4, 5, 3))
+        layers = {"": direct + ambient, "ambient": ambient}
+        seen = np.ones((4, 5), bool)
+        self.assertAlmostEqual(chen_photons.fitted(layers, direct + 2.5 * ambient, seen), 2.5)
+        self.assertEqual(chen_photons.fitted(layers, direct - ambient, seen), 0.0, "never below nothing")
 
 
 class Pictures(unittest.TestCase):

@@ -1,5 +1,6 @@
 """Chen 2011: bowls of glass and of cut crystal by three methods; lights; three views by one map; what is seen through the glass; open meshes."""
 import json
+import statistics
 import subprocess
 import time
 
@@ -22,7 +23,7 @@ VIEWS = ("[0.1,-0.62,0.42]", "[-0.55,-0.3,0.35]", "[0.3,-0.25,0.6]")
 def columns(study):
     """Both bowls under a point and a disc: ray tracing only, with a plain shadow or light that goes straight through, photons, beams."""
     part = Part()
-    rows, table, lighter, peak = [], [], {}, []
+    rows, table, lighter, peak, scatter = [], [], {}, [], []
     for scene, what in BOWLS.items():
         trials = study.sweep(f"bowls{SUFFIX[scene]}")
         lamps = dict(zip(LAMPS, sorted(trials.values("lamp"), key=disc_size)))
@@ -32,11 +33,15 @@ def columns(study):
             tree = study.sweep(f"beams{SUFFIX[scene]}{'' if lamp == LAMPS[0] else '_area'}")
             by_beams = tree.picture()
             level = white(mean_of(layers))
+            truth = trials.pictures(lamp=value, method="lighttrace")
+            seen = reached(truth)
+            light = statistics.fmean(caustic_light(each, seen) for each in truth)
+            over = lambda pictures: spread([caustic_light(each, seen) / light for each in pictures])
             rows.append([(f"{what}, {lamp}", mean_of(bare), level), ("light straight through glass", mean_of(straight), level),
                          ("photons", mean_of(layers), level), ("beams", by_beams[""], level)])
-            caustic = [float(each["caustic"].mean()) for each in layers]
-            table += [photon_row(f"{what}, {lamp}", trials.where(lamp=value, method="photonmap")),
-                      beam_row(f"{what}, {lamp}", tree.rows[0], [float(by_beams["caustic"].mean()) / each for each in caustic])]
+            table += [photon_row(f"{what}, {lamp}", trials.where(lamp=value, method="photonmap"), over(layers)),
+                      beam_row(f"{what}, {lamp}", tree.rows[0], over([by_beams]))]
+            scatter.append(spread_of([caustic_light(each, seen) / light for each in truth]))
             lighter[scene, lamp] = [float(a[""].mean() / b[""].mean()) for a, b in zip(layers, bare)]
             peak += [float(each["caustic"].max() / each["direct"].max()) for each in layers]
     least = [min(each) for each in zip(*lighter.values())]
@@ -47,11 +52,13 @@ def columns(study):
     part.tables.append(Table(
         "bowls", "The bowls by photons and by beams",
         ["bowl and lamp", "by", "photons or beams", "captured [%]", "of it by photons [%]", "preprocess [CPU s]", "rendering [CPU s]",
-         "caustic over photons"], table,
+         "caustic over light tracing"], table,
         f"320 × 240 pixels, {trials.rows[0]['spp']} rays each, of beams under the disc {tree.rows[0]['spp']}; photons of {len(least)} seeds. Beams follow up to "
         f"{parameter(tree, 'max_bounces')} events, photons {parameter(trials, 'max_bounces', method='photonmap')}. Beams that are too weak to be "
         "followed, and those of polygons too coarse for what they meet, are completed by photons (rest: photons). Captured: share of the light on "
-        "glass that beams and these photons carry to its last specular event. The beams' bowls are coarser meshes. Both bowls without dispersion; "
+        "glass that beams and these photons carry to its last specular event. Caustic over light tracing: mean light on pixels that see the table "
+        f"without glass before it, over the mean of {len(truth)} seeds of light tracing by {int(parameter(trials, 'paths', method='lighttrace')):,} "
+        f"paths, which differ by up to {100 * max(scatter):.1f} % from each other. The beams' bowls are coarser meshes. Both bowls without dispersion; "
         f"beams take the disc as {parameter(tree, 'light_samples')} points. Beams are by two threads."))
     part.figures.append(Figure(
         "bowls", "A bowl of glass and one of cut crystal, by ray tracing, photons and beams, under two lamps", "Ray tracing only has a plain shadow, "
@@ -65,41 +72,68 @@ def parameter(trials, name, **which):
     return trials.record(trials.where(**which)[0])["method"]["parameters"][name]
 
 
-def photon_row(what, rows):
+def reached(pictures):
+    """Pixels that every one of light tracing's pictures serves wholly: they see the table without glass before it."""
+    return np.all([is_diffuse(each) & (each["unreached"] == 0) for each in pictures], axis=0)
+
+
+def caustic_light(layers, seen):
+    """Mean of the caustic over the pixels that light tracing serves."""
+    return float(luminance(layers["caustic"])[seen].mean())
+
+
+def spread_of(values):
+    """The largest value's distance from the least, over their mean."""
+    return (max(values) - min(values)) / statistics.fmean(values)
+
+
+def photon_row(what, rows, over):
     column = lambda name: spread([float(row[name]) for row in rows])
-    return [what, "photons", f"{int(rows[0]['photons_stored']):,}", "", "", column("precompute_cpu_s"), column("render_cpu_s"), "1"]
+    return [what, "photons", f"{int(rows[0]['photons_stored']):,}", "", "", column("precompute_cpu_s"), column("render_cpu_s"), over]
 
 
 def beam_row(what, row, over):
     share = lambda name: short(100 * float(row[name] or 0))
     return [what, "beams", f"{int(row['beams']):,}", share("flux_share_captured"), share("flux_share_rest"), short(float(row["precompute_cpu_s"])),
-            short(float(row["render_cpu_s"])), spread(over)]
+            short(float(row["render_cpu_s"])), over]
 
 
 def events(study):
-    """How much of the caustic comes after the fourth event: by photons on the beams' own meshes, which tells a cut from a lack."""
-    rows, facts = [], []
+    """The light of paths of few events by photons and by beams of the same mesh, over light tracing's: which method lacks what of it."""
+    rows, facts, measured = [], [], {}
     for scene, what in BOWLS.items():
         trials = study.sweep(f"events{SUFFIX[scene]}")
-        caustic = lambda **which: [float(layers["caustic"].mean()) for layers in trials.pictures(**which)]
-        most = max(trials.values("max_bounces"), key=int)
-        whole = caustic(method="photonmap", max_bounces=most)
-        over = lambda **which: [a / b for a, b in zip(caustic(**which), whole)]
-        beams = trials.where(method="beamtree")
-        few = beams[0]["max_bounces"]
-        for count in sorted(trials.values("max_bounces"), key=int):
+        few, most = (sorted(trials.values("max_bounces"), key=int)[place] for place in (0, -1))
+        truth = {count: trials.pictures(method="lighttrace", max_bounces=count) for count in (few, most)}
+        seen = reached([*truth[few], *truth[most]])
+        caustic = lambda **which: [caustic_light(layers, seen) for layers in trials.pictures(**which)]
+        traced = {count: caustic(method="lighttrace", max_bounces=count) for count in truth}
+        level = {count: statistics.fmean(own) for count, own in traced.items()}
+        over = lambda count, **which: [each / level[count] for each in caustic(**which)]
+        photons = {count: caustic(method="photonmap", max_bounces=count) for count in sorted(trials.values("max_bounces"), key=int)}
+        for count in truth:
+            same = spread([each / level[count] for each in traced[count]])
+            rows.append([what, "light tracing", count, "", spread(over(most, method="lighttrace", max_bounces=count)), same])
+        for count, own in photons.items():
             share = spread([100 * within(trials.record(row)["counters"]) for row in trials.where(method="photonmap", max_bounces=count)])
-            rows.append([what, "photons", count, share, spread(over(method="photonmap", max_bounces=count))])
-        captured = f"{short(100 * float(beams[0]['flux_share_captured']))} captured"
-        rows.append([what, "beams", few, captured, spread(over(method="beamtree"))])
-        same = [a / b for a, b in zip(caustic(method="beamtree"), caustic(method="photonmap", max_bounces=few))]
-        facts.append(f"{what}: photons of {few} events have {spread(over(method='photonmap', max_bounces=few))} of the light of those of {most}, "
-                     f"beams of {few} events {spread(same)} of that of photons of {few}")
-    return Part(tables=[Table(
-        "events", "Where beams of few events are darker", ["bowl", "by", "most events", "still within glass, of paths that meet it [%]",
-                                                           f"caustic over photons of {most} events"], rows,
-        f"The beams' own meshes under the point lamp, 160 × 120 pixels, {len(beams)} seeds. {'; '.join(facts)}. So the number of events makes beams "
-        "dark, not the share of light that they capture, which counts up to the last event that is asked for.")],
+            rows.append([what, "photons", count, share, spread([each / level[most] for each in own]),
+                         spread([each / level[count] for each in own]) if count in level else ""])
+        beams = over(few, method="beamtree")
+        captured = f"{short(100 * float(trials.where(method='beamtree')[0]['flux_share_captured']))} captured"
+        rows.append([what, "beams", few, captured, spread(over(most, method="beamtree")), spread(beams)])
+        of_photons = [each / level[few] for each in photons[few]]
+        measured[f"events_beams{SUFFIX[scene]}"] = Measured([each / other for each, other in zip(caustic(method="beamtree"), traced[few])], note=(
+            f"over the light of paths of at most {few} events; photons of {few} events, N = {parameter(trials, 'nearest', method='photonmap')}: "
+            f"{spread(of_photons)} of it"))
+        facts.append(f"{what}: paths of {few} events carry {spread(over(most, method='lighttrace', max_bounces=few))} of the light of those of {most}; of the "
+                     f"light of {few} events beams have {spread(beams)}, photons {spread(of_photons)}")
+    return Part(measured, [Table(
+        "events", "What paths of few events carry", [
+            "bowl", "by", "most events", "still within glass, of paths that meet it [%]", f"caustic over light tracing of {most} events",
+            "over light tracing of as many events"], rows,
+        f"The beams' own meshes under the point lamp, 160 × 120 pixels, {len(beams)} seeds; light tracing by "
+        f"{int(parameter(trials, 'paths', method='lighttrace')):,} paths a seed. Means over pixels that see the table without glass before it. "
+        f"{'; '.join(facts)}.")],
         facts={"events_cut": "; ".join(facts)})
 
 

@@ -1,8 +1,11 @@
-"""Chen 2011: n² samples regular and jittered, where rays are needed, roulette against split, searching the tree, filters, maps, shadow photons."""
+"""Chen 2011: n² samples regular and jittered, where rays are needed, roulette against split, searching the tree, filters, maps, shadow photons,
+photons shared by power, an ambient term."""
+import json
 import statistics
 
 import numpy as np
 
+from papers.chen_bowls import reached
 from papers.figures import luminance, mean_of, strip
 from papers.part import Figure, Part, Table
 from papers.verdict import Measured, counted, in_common, interval, ratio
@@ -13,7 +16,12 @@ from report.records import natural
 BLOCK = 8  # pixels
 NEAR = 144  # the first row of pixels in which checks are larger than pixels
 SEEDS = (1, 2, 3, 4, 5, 6)
+STUDY_N = 100  # nearest photons of the study's pictures
 FINE = 12  # n of the picture that edges are compared with
+POWER_SEEDS = (1, 2, 3)
+PHOTONS = 100_000  # for two lamps
+BRIGHT, DIM = ({"type": "point", "position": position, "intensity": intensity} for position, intensity in (([0.75, 0.35, 0.75], 3), ([-0.6, 0.5, 0.7], 0.3)))
+NO_LAMP = {"type": "ambient", "radiance": 0}
 
 
 def errors(layers, level):
@@ -81,25 +89,33 @@ def interaction(study):
 
 
 def search(study):
-    """The time of the searches: rendering less that without photons."""
+    """Nodes that searches visit; beside them their time: rendering less that without photons."""
     trials = study.sweep("tree")
     bare = trials.column("render_cpu_s", method="none")
     counts = sorted(trials.values("photons"), key=natural)
     several = sorted(trials.values("nearest"), key=natural)
     seconds = {(count, n): [a - b for a, b in zip(trials.column("render_cpu_s", photons=count, nearest=n), bare)] for count in counts for n in several}
-    over = lambda count, n: ratio(seconds[count, n], seconds[counts[0], n], "CPU s for searches")
-    rows = [[n, f"{int(count):,}", spread(seconds[count, n]), spread(over(count, n).samples)] for n in several for count in counts]
+    def visited(count, n):
+        own = trials.record(trials.where(photons=count, nearest=n)[0])["counters"]
+        return own["nodes_visited"] / own["gathers"]
+
+    times = lambda count, n: [a / b for a, b in zip(seconds[count, n], seconds[counts[0], n])]
+    over = lambda count, n: ratio([visited(count, n)], [visited(counts[0], n)], "nodes visited a search", counted=True,
+                                  beside={"CPU time of the searches, more over fewer photons": times(count, n)})
+    rows = [[n, f"{int(count):,}", f"{visited(count, n):.1f}", short(over(count, n).samples[0]), spread(seconds[count, n]), spread(times(count, n))]
+            for n in several for count in counts]
     return Part({"logarithmic": over(counts[-1], several[-1]), "logarithmic_few": over(counts[-1], several[0])}, [Table(
-        "tree", "Searching among more photons", ["N", "photons", "searches [CPU s]", "over the first"], rows,
-        f"160 × 120 pixels, {trials.rows[0]['spp']} rays each, {len(bare)} repeats. Searches: rendering less {spread(bare, 'CPU s')} without photons. "
-        f"With N = {several[0]} the way down the tree is most of the work, with N = {several[-1]} the gathering.")])
+        "tree", "Searching among more photons", ["N", "photons", "nodes visited a search", "over the first", "searches [CPU s]", "over the first"], rows,
+        f"160 × 120 pixels, {trials.rows[0]['spp']} rays each, {len(bare)} repeats. Nodes of the balanced tree are counted, and the same on every run. Times: "
+        f"rendering less {spread(bare, 'CPU s')} without photons; memory beyond the caches costs time that the count does not have. With N = {several[0]} the "
+        f"way down the tree is most of the work, with N = {several[-1]} the gathering.")])
 
 
 def filters(study):
     trials = study.sweep("filters")
     kinds = ("none", "cone", "gaussian")
     several = sorted(trials.values("nearest"), key=natural)
-    main = "200"
+    main = f"{STUDY_N}"
     error = {(name, n): trials.column("mask_rmse", filter=name, nearest=n) for name in kinds for n in several}
     bare, mapped = (trials.column("rmse", **which) for which in ({"method": "none"}, {"filter": "none", "nearest": main}))
     rows = [[n, name, spread(error[name, n]), spread(trials.column("rmse", filter=name, nearest=n))] for n in several for name in kinds]
@@ -112,7 +128,7 @@ def filters(study):
     part.facts["filters_over_n"] = f"rmse of filtered over unfiltered estimates: cone {by_n['cone']}; Gaussian {by_n['gaussian']}"
     part.tables.append(Table(
         "filters", "Filtered estimates", ["N", "filter", "rmse where the caustic is bright [W/(m² sr)]", "rmse everywhere"], rows,
-        "The bowl, 100,000 photons, against light tracing; the claims are judged at N = 200. The text names no filter: cone and Gaussian are Jensen's "
+        f"The bowl, 100,000 photons, against light tracing; the claims are judged at N = {STUDY_N}, that of all pictures here. The text names no filter: cone and Gaussian are Jensen's "
         "of 2001."))
     return part
 
@@ -171,5 +187,58 @@ def oversampling(study):
         "The bowl by one map of 100,000 photons, N = 100, 120 × 90 pixels, three seeds; error against 225 rays a pixel of the same map.")])
 
 
+def under_two_lamps(study, name, lamps, method, *parameters, seed=1):
+    words = ["experiments/scenes/bowl.json", "--set", f"/sun={json.dumps(lamps[0])}", "--set", f"/room={json.dumps(lamps[1])}", "--set",
+             "/sensor/film/width=120", "--set", "/sensor/film/height=90", "--spp", "4", "--method", method,
+             *[word for each in parameters for word in ("--param", each)], "--seed", str(seed)]
+    file, = study.single("power", "render", words, f"{name}-s{seed}.exr")
+    return exr.read_layers(file)
+
+
+def by_photons(study, name, lamps, photons, seed):
+    layers = under_two_lamps(study, name, lamps, "photonmap", "kernel=point", "emission=random", f"photons={photons}", f"nearest={STUDY_N}", seed=seed)
+    return luminance(layers["caustic"])
+
+
+def power(study):
+    """Two lamps, one ten times as strong: light of one map of both, and of maps of equal numbers of photons, one a lamp, added up."""
+    truth = under_two_lamps(study, "lighttrace", (BRIGHT, DIM), "lighttrace", "paths=3000000")
+    seen = reached([truth])
+    error = lambda light: float(np.sqrt(((light - luminance(truth["caustic"]))[seen] ** 2).mean()))
+    shared = [error(by_photons(study, "both", (BRIGHT, DIM), PHOTONS, seed)) for seed in POWER_SEEDS]
+    equal = [error(by_photons(study, "bright", (BRIGHT, NO_LAMP), PHOTONS // 2, seed) + by_photons(study, "dim", (NO_LAMP, DIM), PHOTONS // 2, seed))
+             for seed in POWER_SEEDS]
+    mean = float(luminance(truth["caustic"])[seen].mean())
+    per_cent = lambda values: spread([100 * each / mean for each in values])
+    return Part({"equal_power": ratio(shared, equal, "rmse of the caustic", note=f"{PHOTONS:,} photons in both, N = {STUDY_N}")}, [Table(
+        "power", "Photons for two lamps", ["photons", "rms error of the caustic over its mean [%]"],
+        [["of equal power: in proportion to the lamps' power", per_cent(shared)], ["in equal numbers for each lamp", per_cent(equal)]],
+        f"The bowl under two point lamps, one {BRIGHT['intensity'] / DIM['intensity']:g} times as strong as the other, 120 × 90 pixels, {PHOTONS:,} stored photons, "
+        f"{len(POWER_SEEDS)} seeds, against light tracing. The program always shares photons by power; those in equal numbers are two maps, one of each lamp, whose "
+        "light is added.")])
+
+
+def ambient(study):
+    """Photons against ray tracing with an ambient term in the caustic's place, at the strength that comes nearest to light tracing."""
+    trials = study.sweep("filters")
+    truth = trials.reference(method="none")
+    seen = truth["unreached"] == 0
+    error = lambda light: float(np.sqrt(((light - truth[""])[seen] ** 2).mean()))
+    mapped = [error(layers[""]) for layers in trials.pictures(method="photonmap", filter="none", nearest=STUDY_N)]
+    bare = trials.pictures(method="none")
+    best = [fitted(layers, truth[""], seen) for layers in bare]
+    phong = [error(layers[""] + (factor - 1) * layers["ambient"]) for layers, factor in zip(bare, best)]
+    return Part({"realistic_ambient": ratio(mapped, phong, "rmse against light tracing", note=(
+        f"the bowl's scene has an ambient light; the term that comes nearest is {spread(best)} times that light; as the scene has it, without the caustic, the "
+        f"error is {spread([error(layers['']) for layers in bare])}"))})
+
+
+def fitted(layers, truth, seen):
+    """How many times the ambient layer the picture without caustics needs to come nearest to the truth."""
+    of_ambient = layers["ambient"][seen]
+    lacking = (truth - layers[""])[seen] + of_ambient
+    return float(max(0, (of_ambient * lacking).sum() / (of_ambient**2).sum()))
+
+
 SECTIONS = {"sampling": sampling, "interaction": interaction, "search": search, "filters": filters, "maps": maps, "shadows": shadows,
-            "oversampling": oversampling}
+            "oversampling": oversampling, "power": power, "ambient": ambient}

@@ -117,15 +117,22 @@ def leaf_rays(study):
         "Refracted rays at the corners of 75 x 101 quads of the smooth waves, about the axis of eq. 1 and figure 4.")])
 
 
-def spread_of_cells(pool, across, along):
+def rays_of_cells(pool, across, along):
+    """(corners, unit rays, unit axes of eq. 1) of all quads of the water: four a quad, then one."""
     x, y = np.meshgrid(np.linspace(-pool.half_size[0], pool.half_size[0], across + 1), np.linspace(-pool.half_size[1], pool.half_size[1], along + 1))
     _, (column, row), _ = pool.rays(x, y)
-    rays = np.stack([pool.corner[0] + column * pool.pixel - x, pool.corner[1] - row * pool.pixel - y, pool.floor - pool.surface(x, y)[0]])
+    water = np.stack([x, y, pool.surface(x, y)[0]])
+    rays = np.stack([pool.corner[0] + column * pool.pixel, pool.corner[1] - row * pool.pixel, np.full_like(x, pool.floor)]) - water
     rays /= np.linalg.norm(rays, axis=0)
-    corners = np.stack([rays[:, j:along + j, i:across + i] for j in (0, 1) for i in (0, 1)])
-    axis = (corners.min(axis=0) + corners.max(axis=0)) / 2
-    axis /= np.linalg.norm(axis, axis=0)
-    return np.degrees(np.arccos(np.clip((corners * axis).sum(axis=1).min(axis=0), -1, 1)))
+    corners = lambda field: np.stack([field[:, j:along + j, i:across + i].reshape(3, -1).T for j in (0, 1) for i in (0, 1)])
+    starts, rays = corners(water), corners(rays)
+    axes = (rays.min(axis=0) + rays.max(axis=0)) / 2
+    return starts, rays, axes / np.linalg.norm(axes, axis=1, keepdims=True)
+
+
+def spread_of_cells(pool, across, along):
+    _, rays, axes = rays_of_cells(pool, across, along)
+    return np.degrees(np.arccos(np.clip((rays * axes).sum(axis=2).min(axis=0), -1, 1)))
 
 
 def receivers(study):

@@ -70,18 +70,39 @@ def counts(study):
             f"tests of every beam over a receiver, over those of the tree: {ends(over(COUNTS[1:2]))}; with its cone-point tests "
             f"{ends(over(COUNTS[:2]))}"))}
     part.tables += [counts_table(study.paper, pictures), readings_table(study.paper, claims, pool)]
-    part.facts |= matters(pictures, main)
+    part.facts |= matters(pictures, main) | {"all_hold": all_hold(study.paper, claims, main)}
     return part
 
 
 def judged(paper, claim, main, pool):
-    """Ours at all three heights of the waves; the note has the verdict on each, and how other readings of the paper fare."""
+    """Ours at all heights of the waves; the note has the window of heights in which the claim holds, and how other readings fare."""
     values = [FIGURES[claim["id"]](each.own) for each in main]
     verdict = lambda value: compare((value, value), paper.region(claim))
     others = [verdict(FIGURES[claim["id"]](each.own)) for each in pool if each not in main]
-    each = ", ".join(f"{height.waves}: {short(value)} ({verdict(value)})" for height, value in zip(main, values))
+    theirs = paper.value(claim)
+    each = ", ".join(f"{height.waves}: {short(value)} ({short(value / theirs)} of the paper's)" for height, value in zip(main, values))
     return Measured(values, unit=UNITS.get(claim["id"], "tests"), counted=True, note=(
-        f"waves x {each}; of {len(others)} pictures by other readings (polygons, reflection, merging) {others.count(HOLDS)} would hold"))
+        f"{window([height.waves for height in main], [verdict(value) == HOLDS for value in values])}; waves x {each}; of {len(others)} pictures by "
+        f"other readings (polygons, reflection, merging) {others.count(HOLDS)} would hold"))
+
+
+def all_hold(paper, claims, main):
+    """The window of heights in which all claims of FIGURES hold together."""
+    at = lambda own, name: compare((FIGURES[name](own),) * 2, paper.region(claims[name])) == HOLDS
+    return window([each.waves for each in main], [all(at(each.own, name) for name in FIGURES) for each in main])
+
+
+def window(heights, holds):
+    """At which of the heights, in rising order, a claim holds, as words."""
+    inside = [height for height, each in zip(heights, holds) if each]
+    if not inside:
+        return f"holds at none of the heights from x {heights[0]} to x {heights[-1]}"
+    first, last = heights.index(inside[0]), heights.index(inside[-1])
+    if last - first + 1 > len(inside):
+        return f"holds at waves x {', '.join(inside)} of {', '.join(heights)}"
+    beyond = [f"x {heights[place]}" for place in (first - 1, last + 1) if 0 <= place < len(heights)]
+    held = f"holds from waves x {inside[0]} to x {inside[-1]}" if len(inside) > 1 else f"holds at waves x {inside[0]}"
+    return f"{held}, and not at {' and '.join(beyond)}" if beyond else f"{held}, all that were tried"
 
 
 def a_pixel(own, pixels):
@@ -122,7 +143,7 @@ def readings_table(paper, claims, pool):
     return Table("readings", "The three counts by each reading of the paper", [
         "specular polygons", "refraction", "merging", "cone-point tests", "beam-point tests", "successes", "cone / beam", "beam / success",
         "hits a pixel"], rows,
-        "Ours over the paper's, least to greatest over the three heights of the waves; in brackets at how many of them the claim would hold. "
+        "Ours over the paper's, least to greatest over the heights of the waves; in brackets at how many of them the claim would hold. "
         "The first row is the one that is judged.")
 
 
@@ -156,18 +177,21 @@ def watt(study):
         rows.append([f"{own['beams'] // int(row['light_samples']):,}", f"{own['receiver_polygons']:,}", row["light_samples"],
                      f"{own['beam_polygon_tests']:,}", f"{own['beam_polygon_tests'] / own['beams'] / own['receiver_polygons']:g}",
                      f"{beams['cone_point_tests'] + beams['beam_point_tests']:,}"])
+    part = Part(watts_powers(trials))
     asked = [counters(trials, method="beamtree", cells=32, light_samples=lights)["cone_point_tests"] for lights in (1, 4)]
     trees = counted(exponent([1, 4], asked), "", f"power of the number of trees: {asked[0]:,} cone-point tests for one light, {asked[1]:,} for four")
-    return Part(watts_powers(trials) | {"tree_sum": trees}, [Table(
+    part.measured["tree_sum"] = trees
+    part.tables.append(Table(
         "watt", "Watt's tests", ["n_s, beams of a light", "n_d, diffuse polygons", "n_l, lights", "tests of beam with polygon", "over n_s n_d n_l",
                                  "tree: tests of one small picture"], rows,
         "experiments/scenes/pool_area.json: points of an area light serve as lights; beams of reflection and refraction. The tests are n_s n_d n_l "
-        "by construction; the claims are judged by the CPU time they take. The tree's tests are of a picture of 32 x 24 points; Watt's have to be "
-        "done once for any picture.")])
+        "by construction, and the claims are judged by them; the power of the CPU time that they take stands beside. The tree's tests are of a "
+        "picture of 32 x 24 points; Watt's have to be done once for any picture."))
+    return part
 
 
 def watts_powers(trials):
-    """How the CPU time of the sweep of beams through all polygons grows with each of the three numbers, one sample a repeat."""
+    """How the tests of beams with all polygons grow with each of the three numbers; beside them their CPU time, one sample a repeat."""
     def of(**wanted):
         usual = {"cells": 32, "receiver_resolution": 8, "light_samples": 4}
         found = [trials.record(row) for row in trials.where(method="causticpolygons", **(usual | wanted))]
@@ -177,9 +201,11 @@ def watts_powers(trials):
     for name, less, more in (("n_s", of(), of(cells=64)), ("n_d", of(), of(receiver_resolution=16)), ("n_l", of(light_samples=1), of())):
         key = "receiver_polygons" if name == "n_d" else "beams"
         grown = more[1][key] / less[1][key]
-        measured[f"watt_{name}"] = Measured([exponent([1, grown], [a, b]) for a, b in zip(less[0], more[0])], note=(
-            f"{short(min(less[0]))} to {short(max(less[0]))} CPU s, and {short(min(more[0]))} to {short(max(more[0]))} with {short(grown)} times "
-            "as many"))
+        tests = [side[1]["beam_polygon_tests"] for side in (less, more)]
+        measured[f"watt_{name}"] = counted(exponent([1, grown], tests), "", (
+            f"{tests[0]:,} tests, and {tests[1]:,} with {short(grown)} times as many; {short(min(less[0]))} to {short(max(less[0]))} CPU s, and "
+            f"{short(min(more[0]))} to {short(max(more[0]))}"))
+        measured[f"watt_{name}"].beside = {"power of the CPU time": [exponent([1, grown], [a, b]) for a, b in zip(less[0], more[0])]}
     return measured
 
 

@@ -1,6 +1,10 @@
-"""Chuang & Cheng 1995: single and double cones, the trees' heights, convergent and divergent beams."""
+"""Chuang & Cheng 1995: single and double cones, their necks by eq. 2, the trees' heights, convergent and divergent beams."""
+import itertools
 import json
 
+import numpy as np
+
+from papers.chuang_accuracy import Overhead, rays_of_cells
 from papers.chuang_counts import COUNTS, counters
 from papers.figures import plot
 from papers.part import Figure, Part, Table
@@ -8,6 +12,10 @@ from papers.verdict import Measured, counted
 from papers.words import short
 from report.beam_trials import exponent
 from report.records import natural
+
+STEPS = 60  # of the iteration, at most
+NEAR = 1e-4  # a bracket that is so short, over the beam's length, ends the iteration
+PLACES = 33  # along a beam, where its narrowest is looked for
 
 
 def bounds(study):
@@ -101,4 +109,82 @@ def lens(study):
         "Light through a dome of water and through the same dome turned over; the spreads of their beams are alike.")])
 
 
-SECTIONS = {"bounds": bounds, "heights": heights, "figure5": lens}
+def circle(points):
+    """Radius of the smallest circle round each set of points; (points, 2, sets)."""
+    candidates = [(points[a] + points[b]) / 2 for a, b in itertools.combinations(range(len(points)), 2)]
+    candidates += [circumcentre(*points[list(three)]) for three in itertools.combinations(range(len(points)), 3)]
+    reach = [np.linalg.norm(points - centre, axis=1).max(axis=0) for centre in candidates]
+    return np.nanmin(reach, axis=0)
+
+
+def circumcentre(a, b, c):
+    """Of triangles of (2, sets); NaN where the points lie on a line."""
+    b, c = b - a, c - a
+    with np.errstate(divide="ignore", invalid="ignore"):
+        twice = 2 * (b[0] * c[1] - b[1] * c[0])
+        bb, cc = (b**2).sum(axis=0), (c**2).sum(axis=0)
+        return a + np.where(twice == 0, np.nan, np.stack([c[1] * bb - b[1] * cc, b[0] * cc - c[0] * bb]) / twice)
+
+
+class Widths:
+    """Radius of the circle round a beam's corner rays across its axis, at shares of the way to the floor."""
+
+    def __init__(self, starts, rays, axes, floor):
+        across = np.cross(axes, np.where(np.abs(axes[:, :1]) < 0.9, [[1.0, 0, 0]], [[0, 1.0, 0]]))
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        self.frame = np.stack([across, np.cross(axes, across)])
+        self.starts, self.rays, self.axes = starts - starts[0], rays, axes
+        self.length = ((floor - starts[..., 2]) / rays[..., 2] * (rays * axes).sum(axis=2)).max(axis=0)
+
+    def __call__(self, share):
+        depth = share * self.length
+        along = (depth - (self.starts * self.axes).sum(axis=2)) / (self.rays * self.axes).sum(axis=2)
+        places = self.starts + along[..., None] * self.rays
+        return circle((places[:, None] * self.frame[None]).sum(axis=3))
+
+
+def printed(widths):
+    """(beams on which eq. 2 has a bracket, beams on which it ends by the two next brackets that are printed), each as a mask."""
+    t1, t2, t3 = (np.full_like(widths.length, share) for share in (0, 0.5, 1))
+    wide1, wide2, wide3 = (widths(share) for share in (t1, t2, t3))
+    has_bracket = (wide1 > wide2) & (wide3 > wide2)
+    going, ended = has_bracket.copy(), np.zeros_like(has_bracket)
+    for _ in range(STEPS):
+        ended |= going & (t3 - t1 <= NEAR)
+        new = (wide1 * t3 + wide3 * t1) / (wide1 + wide3)
+        wide = widths(new)
+        beyond, before = (new > t2) & (wide < wide2), (new < t2) & (wide > wide2)
+        going &= ~ended & (beyond | before)
+        beyond, before = beyond & going, before & going
+        t1, wide1 = np.where(beyond, (t2, wide2), (t1, wide1))
+        t2, wide2 = np.where(beyond, (new, wide), (t2, wide2))
+        t3, wide3 = np.where(before, (new, wide), (t3, wide3))
+    return has_bracket, ended
+
+
+def has_neck(widths):
+    """Beams that are narrower somewhere between water and floor than at either end."""
+    narrowest = np.argmin([widths(share) for share in np.linspace(0, 1, PLACES)], axis=0)
+    return (narrowest > 0) & (narrowest < PLACES - 1)
+
+
+def necks(study):
+    """Every quad of the pool's water, at each height of the waves that the counts have."""
+    across, along = (int(each) for each in study.sweep("accuracy").values("cells")[0].strip("[]").split(","))
+    rows, found = [], []
+    for waves in sorted(study.sweep("counts").values("wave_height"), key=natural):
+        pool = Overhead(float(waves), 1)
+        widths = Widths(*rays_of_cells(pool, across, along), pool.floor)
+        neck, (bracket, ended) = has_neck(widths), printed(widths)
+        found.append(float((neck & bracket).sum() / neck.sum()))
+        rows.append([waves, *[f"{100 * share:.3g}" for share in (neck.mean(), found[-1], (neck & ended).sum() / neck.sum())]])
+    notes = "; ".join(f"{waves}: {bracket} % have the bracket, {ended} % end by the cases that are printed" for waves, _, bracket, ended in rows)
+    return Part({"neck_search": Measured(found, unit="of the beams with a neck", counted=True, note=f"waves x {notes}")}, [Table(
+        "necks", "The search for a beam's neck (eq. 2)", [
+            "waves", "beams with a neck between water and floor [%]", "of these: bracket of eq. 2 [%]", "of these: ends by the printed cases [%]"], rows,
+        f"{across} x {along} quads of water, refracted rays at their corners. The bracket as printed: the beam is narrower in the middle than at the water and at "
+        "the floor. The paper prints two of the four cases for the next bracket; the claim is judged by the bracket alone, as if the other two were there. "
+        "The program finds necks by another search (beamtree/README.md).")])
+
+
+SECTIONS = {"bounds": bounds, "heights": heights, "figure5": lens, "necks": necks}

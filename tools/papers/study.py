@@ -188,5 +188,9 @@ class Trials:
         """Layers of the first trial's picture."""
         return self.pictures(**wanted)[0]
 
+    def reference(self, **wanted):
+        """Layers of the picture that the first trial is held against."""
+        return exr.read_layers(self.folder / "references" / f"{self.where(**wanted)[0]['reference'].split(':')[1]}.exr")
+
     def pictures(self, **wanted):
         return [exr.read_layers(self.folder / "trials" / row["trial"] / "image.exr") for row in self.where(**wanted)]
