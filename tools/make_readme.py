@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Makes README's table and strip of the methods from records: results/quickstart-2026-11/records.csv and strip/records.csv.
+"""Makes README's table, sentences and strip of the methods from records: results/quickstart-2026-11/records.csv and strip/records.csv.
 
-Without options it writes the table between README.md's two marks. --check only says whether the table there is what the
-records say. --strip sweeps experiments/sweeps/readme_strip.json into results/quickstart/strip (only what is missing; a
-quarter of an hour in all), keeps its records as strip/records.csv and draws results/pictures/duel.png: needs build/release or
---bench, and Debian's python3-matplotlib. Exit codes: 0 done, 1 the table differs or the sweep failed, 2 bad input or usage.
+Without options it writes the table and the sentences between README.md's two marks. --check only says whether they are what the
+records say. --strip sweeps experiments/sweeps/readme_strip*.json into results/quickstart/strip (only what
+is missing; a quarter of an hour in all), keeps their records as strip/records.csv and draws results/pictures/duel.png: needs
+build/release or --bench, and Debian's python3-matplotlib. Exit codes: 0 done, 1 the table differs or the sweep failed, 2 bad input or usage.
 """
 import argparse
 import json
@@ -19,6 +19,7 @@ from report.program import BENCH, ROOT, Program
 from report.records import RecordsError
 from report.report_files import report, write
 from report_page import scenes
+from report_page.sentences import factor, number, picks_within, sentences
 
 RECORDS = ROOT / "results" / "quickstart-2026-11"
 README = ROOT / "README.md"
@@ -27,6 +28,9 @@ PICTURE = ROOT / "results" / "pictures" / "duel.png"
 MARKS = ("<!-- quick start: tools/make_readme.py -->\n", "<!-- end of quick start -->\n")
 NAMES = {"ring": "mirror ring", "ball_area": "glass ball, area light", "pool": "folded pool"}
 SHOWN = ("photonmap", "beamtree")
+BUDGET = 2  # CPU seconds of the table's columns
+STRIP_BUDGET = 5  # CPU seconds of the strip's pictures
+STRIP_SWEEPS = ("readme_strip", "readme_strip_9", "readme_strip_16")
 INSETS = ((0.32, 0.44), (0.08, 0.68))  # left upper corners, as shares of the picture
 SIDE = 0.16  # of an inset, as a share of the picture's width
 
@@ -40,10 +44,6 @@ def arguments():
     return parser.parse_args()
 
 
-def number(value):
-    return f"{value:.3g}"
-
-
 def with_interval(error, half):
     """0.00382 ± 0.00004: the interval to one digit, without a power of ten."""
     return number(error) + (f" ± {half:.{max(0, -math.floor(math.log10(half)))}f}" if half else "")
@@ -55,12 +55,10 @@ def seconds(cell):
     return f"{f'{build:.2g}' if build >= 1e-3 else '<0.001'} + {query:.2g} s"
 
 
-def field(scene, contest, method):
-    """What the table says of a method on a scene: its least error in the time of the contest, or why there is none."""
-    allowed, picks, best = contest
+def field(scene, picks, best, method):
+    """What the table says of a method on a scene: its least error within the budget, or why there is none."""
     if method in picks:
-        error, half = picks[method].error("rmse")
-        text = with_interval(error, half)
+        text = with_interval(*picks[method].error("rmse"))
         return (f"**{text}**" if picks[method] in best else text) + f" ({seconds(picks[method])})"
     own = [cell for cell in scene.scored() if cell.method == method]
     if own:
@@ -68,33 +66,27 @@ def field(scene, contest, method):
     return "does not serve it"
 
 
-def at_its_best(scene, method):
-    """The least error of all that the method was asked for, and what it takes."""
-    cells = [cell for cell in scene.scored() if cell.method == method]
-    if not cells:
-        return "–"
-    cell = min(cells, key=lambda each: each.error("rmse")[0])
-    return f"{with_interval(*cell.error('rmse'))} ({seconds(cell)})"
+def title(scene):
+    return NAMES.get(scene.name, scene.title())
 
 
 def table(folder):
-    """The table in Markdown, and a line on where its times were measured."""
+    """The table in Markdown, a line on where its times were measured, what the strip shows, and the sentences."""
     sweep = scenes.Sweep(str(folder))
-    found = [scene for scene in scenes.scenes_of([sweep]) if scene.usual_contest() is not None]
+    found = [scene for scene in scenes.scenes_of([sweep]) if scene.contests()]
     if not found:
         raise RecordsError(f"{folder}: no scene on which two methods have errors and times")
     found.sort(key=lambda scene: list(NAMES).index(scene.name) if scene.name in NAMES else len(NAMES))
-    contests = [scene.contests()[scene.usual_contest()] for scene in found]
+    picks = [picks_within(scene, BUDGET) for scene in found]
+    best = [scenes.best_of(each.values()) for each in picks]
     methods = sorted({cell.method for scene in found for cell in scene.cells}, key=scenes.rank)
-    heads = [f"{NAMES.get(scene.name, scene.title())}, {number(contest[0])} s" for scene, contest in zip(found, contests)]
-    lines = ["| method | " + " | ".join(heads) + " |", "|---|" + "---|" * len(heads)]
+    lines = ["| method | " + " | ".join(f"{title(scene)}, {number(BUDGET)} s" for scene in found) + " |", "|---|" + "---|" * len(found)]
     for method in methods:
-        lines.append(f"| `{method}` | " + " | ".join(field(*pair, method) for pair in zip(found, contests)) + " |")
-    for method in SHOWN:
-        lines.append(f"| `{method}`, in whatever time | " + " | ".join(at_its_best(scene, method) for scene in found) + " |")
+        lines.append(f"| `{method}` | " + " | ".join(field(*each, method) for each in zip(found, picks, best)) + " |")
     lines.append("| standard error of the reference | " + " | ".join(
         number(reference_error(scene.cells[0].rows[0])) for scene in found) + " |")
-    return "\n".join(lines) + f"\n\n{machine(sweep)}\n{strip_line(folder)}\n"
+    told = [f"- {sentences(scene, title(scene), BUDGET, SHOWN)}" for scene in found]
+    return "\n".join([*lines, "", machine(sweep), strip_line(folder), "", *told]) + "\n"
 
 
 def strip_line(folder):
@@ -102,10 +94,12 @@ def strip_line(folder):
     scene, = scenes.scenes_of([scenes.Sweep(str(folder / "strip"))])
     cells = strip_cells(scene)
     row = cells[0].rows[0]
-    named = lambda cell: f"`{cell.method}`" + (f" ({cell.settings()})" if cell.settings() != "–" else "")
-    told = "; ".join(f"{named(cell)} rmse {with_interval(*cell.error('rmse'))} in {seconds(cell)}" for cell in cells)
-    return (f"The picture: {row['width']} × {row['height']} pixels, {row['spp']} samples each; {told}; {len(cells[0].seeds())} seeds; the "
-            f"reference's standard error is {number(reference_error(row))}; {row['cpu']}, causticbench {row['code_version']}.")
+    told = "; ".join(f"`{cell.method}` ({cell.settings()}) rmse {with_interval(*cell.error('rmse'))} in {seconds(cell)}" for cell in cells)
+    larger, smaller = sorted(cells, key=lambda cell: -cell.error("rmse")[0])
+    ratio = larger.error("rmse")[0] / smaller.error("rmse")[0]
+    return (f"The picture: {row['width']} × {row['height']} pixels, each method's best within {number(STRIP_BUDGET)} CPU s; {told}. The error of "
+            f"`{larger.method}` is at least {factor(ratio)} times that of `{smaller.method}`, since the reference's own error adds to both. {len(cells[0].seeds())} seeds; the reference's standard "
+            f"error is {number(reference_error(row))}; {row['cpu']}, causticbench {row['code_version']}.")
 
 
 def reference_error(row):
@@ -118,7 +112,8 @@ def machine(sweep):
     several = lambda name: ", ".join(sorted({row[name] for row in done}))
     seeds = len({row["seed"] for row in done})
     built = json.loads((RECORDS / "environment.json").read_text(encoding="utf-8"))
-    return (f"{seeds} seeds; {several('cpu')}, {several('isa')}, {several('threads')} threads a trial, load average "
+    minutes = sum(float(row["cpu_s"]) for row in done) / 60
+    return (f"{seeds} seeds, {len(done)} trials, {minutes:.0f} CPU minutes in all; {several('cpu')}, {several('isa')}, {several('threads')} threads a trial, load average "
             f"{loads[0]:.0f} to {loads[-1]:.0f} by other work; causticbench {several('code_version')}, {built['compiler']}, {built['flags']}"
             + ("." if "NDEBUG" in built["flags"] else ", assertions on."))
 
@@ -133,18 +128,20 @@ def with_block(text, block):
 
 
 def make_strip(bench):
-    Program("make_readme", bench).sweep("readme_strip", STRIP, True)
+    files = [ROOT / "experiments" / "sweeps" / f"{name}.json" for name in STRIP_SWEEPS]
+    Program("make_readme", bench).run("sweep", *files, "-o", STRIP, stdout=sys.stderr)
     (RECORDS / "strip").mkdir(parents=True, exist_ok=True)
     shutil.copyfile(STRIP / "records.csv", RECORDS / "strip" / "records.csv")
     draw_strip()
 
 
 def strip_cells(scene):
-    """The photon map's and the beam tree's best cells in the time that the slower of their first cells takes."""
-    for _, picks, _ in scene.contests():
-        if all(method in picks for method in SHOWN):
-            return [picks[method] for method in SHOWN]
-    raise RecordsError(f"readme_strip: no records of {' and '.join(SHOWN)}")
+    """The photon map's and the beam tree's cells of least error within the strip's budget."""
+    picks = picks_within(scene, STRIP_BUDGET)
+    missing = [method for method in SHOWN if method not in picks]
+    if missing:
+        raise RecordsError(f"readme_strip: no records of {' and '.join(missing)} within {number(STRIP_BUDGET)} CPU s")
+    return [picks[method] for method in SHOWN]
 
 
 def draw_strip():
@@ -165,8 +162,8 @@ def draw_strip():
     for cell in strip_cells(scene):
         layers, _ = pictures.read(STRIP / "trials" / cell.rows[0]["trial"] / "image.exr")
         error, half = cell.error("rmse")
-        title = {"photonmap": "photon map", "beamtree": "beam tree"}[cell.method]
-        shown.append((layers, title, f"{cell.cost('work_s'):.2g} CPU s, rmse {with_interval(error, half)}"))
+        name = {"photonmap": "photon map", "beamtree": "beam tree"}[cell.method]
+        shown.append((layers, name, f"{cell.cost('work_s'):.2g} CPU s, rmse {with_interval(error, half)}"))
     rest = shown[0][0]["rest"]
     whole = [numpy.moveaxis(numpy.maximum(layers["caustic"] + rest, 0), 0, 2) for layers, _, _ in shown]
     luminance = whole[0] @ numpy.array([0.2126, 0.7152, 0.0722])
@@ -177,7 +174,7 @@ def draw_strip():
     figure = plt.figure(figsize=(12, 12 / 3 * height / width + 2.45), dpi=100, facecolor="white")
     grid = figure.add_gridspec(2, 6, left=0.004, right=0.996, top=0.995, bottom=0.085, wspace=0.03, hspace=0.03,
                                height_ratios=[2 * height / width, 1])
-    for i, (picture, (_, title, words)) in enumerate(zip(whole, shown)):
+    for i, (picture, (_, name, words)) in enumerate(zip(whole, shown)):
         tone = srgb(picture / white)
         axes = figure.add_subplot(grid[0, 2 * i:2 * i + 2])
         axes.imshow(tone, interpolation="nearest")
@@ -190,7 +187,7 @@ def draw_strip():
             inset.set_xticks([]), inset.set_yticks([])
             for edge in inset.spines.values():
                 edge.set(edgecolor=colours[n], linewidth=2.5, linestyle=("-", "--")[n])
-        figure.text((i + 0.02) / 3 if i else 0.006, 0.045, title, weight="bold", size=13)
+        figure.text((i + 0.02) / 3 if i else 0.006, 0.045, name, weight="bold", size=13)
         figure.text((i + 0.02) / 3 if i else 0.006, 0.012, words, size=11)
     PICTURE.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(PICTURE, metadata={"Software": ""})

@@ -29,12 +29,8 @@ check_words "$@"
 
 bash tools/build.sh release causticbench || exit
 
-sweeps=()
-for scene in ring ball pool; do
-    sweeps+=("experiments/sweeps/quickstart_$scene.json")
-done
 status=0
-"$bench" sweep "${sweeps[@]}" -o "$results" "$@" || status=$?
+"$bench" sweep experiments/sweeps/quickstart_*.json -o "$results" "$@" || status=$?
 if [ "$status" != 0 ]; then
     echo "quickstart: the sweep ended with exit code $status (see above)" >&2
     exit "$status"
