@@ -5,6 +5,7 @@
 #include "beamtree/beams/caster_sample.h"
 #include "beamtree/tracing/beam_lights.h"
 #include "beamtree/tracing/caster_beams.h"
+#include "core/geometry/tessellate.h"
 #include "core/math/rng.h"
 
 namespace caustics::beamtree {
@@ -18,25 +19,8 @@ constexpr std::size_t enough = 2'000;
 // Of a first event's light: less tells little, and costs most.
 constexpr double least_share_kept = 0.03;
 
-/// The casters of a scene, each made ready when it is drawn first.
-class Casters {
-public:
-    Casters(const Scene& scene, int resolution) : scene_(scene), resolution_(resolution) {}
-
-    const CasterMesh& of(std::uint32_t shape) {
-        const auto made = made_.find(shape);
-        if (made != made_.end()) return made->second;
-        return made_.emplace(shape, undivided_caster(scene_, shape, resolution_)).first->second;
-    }
-
-private:
-    const Scene& scene_;
-    int resolution_;
-    std::map<std::uint32_t, CasterMesh> made_;
-};
-
 // Exact shapes of one kind have equally many.
-std::uint64_t count_polygons(const Scene& scene, Casters& casters) {
+std::uint64_t count_polygons(const Scene& scene, OwnFrameMeshes& meshes) {
     std::map<Primitive, std::size_t> exact;
     std::uint64_t count = 0;
     for (const std::uint32_t index : scene.casters()) {
@@ -46,7 +30,7 @@ std::uint64_t count_polygons(const Scene& scene, Casters& casters) {
         else if (const auto known = exact.find(shape.primitive); known != exact.end())
             count += known->second;
         else
-            count += exact[shape.primitive] = casters.of(index).mesh.triangles.size();
+            count += exact[shape.primitive] = meshes.of(shape).triangles.size();
     }
     return count;
 }
@@ -99,24 +83,29 @@ SceneSample sample_scene(const Scene& scene, const std::string& method, const Be
                          const RunOptions& options) {
     const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
     SceneSample sample;
-    Casters casters(scene, params.mesh_resolution);
-    sample.polygons = count_polygons(scene, casters);
+    OwnFrameMeshes meshes(params.mesh_resolution);
+    sample.polygons = count_polygons(scene, meshes);
     if (lights.empty() || sample.polygons == 0) return sample;
     const SceneBoxes boxes = scene_boxes(scene);
     Rng rng(options.seed, Stage::beams, lights.size());
     TraceProgress progress(options);
     std::size_t made = 0;
     for (int draws = 0; draws < most_draws && made < enough; ++draws) {
-        const CasterMesh& caster = casters.of(scene.casters()[pick(scene.casters().size(), rng)]);
+        const std::uint32_t caster = scene.casters()[pick(scene.casters().size(), rng)];
+        const Shape& shape = scene.shapes()[caster];
+        const TriangleMesh& mesh = meshes.of(shape);
         const LightSample& light = lights[pick(lights.size(), rng)];
-        if (caster.mesh.triangles.empty()) continue;
-        const CasterMesh drawn = draw_polygons(caster, together, rng);
+        if (mesh.triangles.empty()) continue;
+        CasterMesh drawn = draw_polygons(mesh, together, rng);
+        drawn.shape = caster;
+        drawn.tessellated = shape.primitive != Primitive::mesh;
+        if (drawn.tessellated) place_exact(drawn.mesh, shape);
         const TracedBeams traced =
             Draw(scene, boxes, drawn, light, {progress, 0}).run(params.max_bounces);
         for (const BeamSet& set : traced.sets) made += set.beams.size();
         FluxBalance balance = traced.balance;
         balance.lost -= balance.over_budget;
-        sample.balance.add(balance, static_cast<double>(caster.mesh.triangles.size()));
+        sample.balance.add(balance, static_cast<double>(mesh.triangles.size()));
         sample.polygons_sampled += together;
     }
     require_most_light(sample.balance, method,

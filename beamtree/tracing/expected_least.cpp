@@ -50,8 +50,11 @@ public:
                 std::upper_bound(up_to_.begin(), up_to_.end(), at) - up_to_.begin());
             const auto light =
                 static_cast<std::size_t>(rng.next_fine() * static_cast<double>(lights_.size()));
-            drawn_.push_back({draw_polygons(casters[caster], together, rng), light,
-                              casters[caster].mesh.triangles.size()});
+            const CasterMesh& from = casters[caster];
+            CasterMesh drawn = draw_polygons(from.mesh, together, rng);
+            drawn.shape = from.shape;
+            drawn.tessellated = from.tessellated;
+            drawn_.push_back({std::move(drawn), light, from.mesh.triangles.size()});
         }
     }
 

@@ -31,4 +31,11 @@ struct ObjectText {
     std::vector<KeyText> keys;
 };
 
+/// The `type` of a kind that has a text. Made once: a scene may hold a million objects.
+template <class Kind>
+const std::string& name_of() {
+    static const std::string name = Kind::text().name;
+    return name;
+}
+
 }  // namespace caustics

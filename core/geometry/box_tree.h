@@ -11,12 +11,19 @@ namespace caustics {
 /// Boxes that touch meet, as Box::intersects has it.
 class BoxTree {
 public:
+    BoxTree() = default;
     explicit BoxTree(std::vector<Box> boxes);
 
     /// Whether `fits`, called with the index of a box that meets `box`, says so of one of them.
     template <typename Fits>
     bool any_at(const Box& box, const Fits& fits) const {
-        return !nodes_.empty() && any_below(0, box, fits);
+        return any_where([&](const Box& other) { return other.intersects(box); }, fits);
+    }
+    /// Whether `fits`, called with the index of a box of which `meets` is true, says so of one of them. `meets` must be
+    /// true of every box that holds a box of which it is true.
+    template <typename Meets, typename Fits>
+    bool any_where(const Meets& meets, const Fits& fits) const {
+        return !nodes_.empty() && any_below(0, meets, fits);
     }
 
 private:
@@ -33,14 +40,14 @@ private:
 
     std::uint32_t build(std::uint32_t first, std::uint32_t last);
 
-    template <typename Fits>
-    bool any_below(std::uint32_t index, const Box& box, const Fits& fits) const {
+    template <typename Meets, typename Fits>
+    bool any_below(std::uint32_t index, const Meets& meets, const Fits& fits) const {
         const Node& node = nodes_[index];
-        if (!node.box.intersects(box)) return false;
+        if (!meets(node.box)) return false;
         if (node.right != 0)
-            return any_below(index + 1, box, fits) || any_below(node.right, box, fits);
+            return any_below(index + 1, meets, fits) || any_below(node.right, meets, fits);
         for (std::uint32_t i = node.first; i < node.last; ++i)
-            if (boxes_[order_[i]].intersects(box) && fits(order_[i])) return true;
+            if (meets(boxes_[order_[i]]) && fits(order_[i])) return true;
         return false;
     }
 

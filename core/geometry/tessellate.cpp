@@ -29,9 +29,23 @@ TriangleMesh tessellate_cube(int n) {
 TriangleMesh tessellate_shape(const Shape& shape, int n) {
     if (shape.primitive == Primitive::mesh) return shape.mesh;
     TriangleMesh mesh = ask_exact(shape, [&](const auto& kind) { return kind.tessellate(n); });
+    place_exact(mesh, shape);
+    return mesh;
+}
+
+void place_exact(TriangleMesh& mesh, const Shape& shape) {
     transform(mesh, shape.to_world);
     if (shape.flip_normals) flip(mesh);
-    return mesh;
+}
+
+const TriangleMesh& OwnFrameMeshes::of(const Shape& shape) {
+    if (shape.primitive == Primitive::mesh) return shape.mesh;
+    const bool is_like_others = shape.primitive != Primitive::heightfield;
+    const auto [made, is_new] =
+        made_.try_emplace({shape.primitive, is_like_others ? nullptr : &shape});
+    if (is_new)
+        made->second = ask_exact(shape, [&](const auto& kind) { return kind.tessellate(n_); });
+    return made->second;
 }
 
 }  // namespace caustics

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "core/base/interrupt.h"
 
@@ -91,6 +92,24 @@ std::vector<DirectionCone> cones_towards(const BoundingSphere& from, const Shape
 
 BoundingSphere sphere_round(const Box& box) { return {box.center(), 0.5F * box.diagonal().norm()}; }
 
+// The unit vectors of a cone lie in a ball about its axis. Roundings of the box are below 1e-7.
+Box box_of_cone(const DirectionCone& cone) {
+    const Vec3 reach = Vec3::Constant(std::sqrt(2 * cone.one_minus_cos) * (1 + 1e-5F) + 4e-7F);
+    return {cone.axis - reach, cone.axis + reach};
+}
+
+// Whether a line meets a box, or comes so near that a sphere in the box may be met by rounding.
+bool line_meets(const Box& box, const Vec3& point, const Vec3& along) {
+    const Vec3 offset = box.center() - point;
+    const Vec3 half = 0.5F * box.sizes();
+    const Vec3 a = along.cwiseAbs();
+    const Vec3 aside = offset.cross(along).cwiseAbs();
+    const Vec3 reach(half.y() * a.z() + half.z() * a.y(), half.z() * a.x() + half.x() * a.z(),
+                     half.x() * a.y() + half.y() * a.x());
+    const float rounding = 4e-6F * (offset.lpNorm<1>() + half.sum() + point.lpNorm<1>());
+    return ((aside - reach).array() <= rounding).all();
+}
+
 void normalise(std::vector<double>& measures) {
     double sum = 0;
     for (double& measure : measures) measure = sum += measure;
@@ -119,10 +138,13 @@ double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSou
             cones = {DirectionCone{}};
             break;
         }
+    std::vector<Box> boxes;
     for (const DirectionCone& cone : cones) {
         source.cones.push_back({cone, Frame(cone.axis)});
         source.cumulative.push_back(cone.solid_angle());
+        if (cones.size() > 1) boxes.push_back(box_of_cone(cone));
     }
+    source.boxes = BoxTree(std::move(boxes));
     normalise(source.cumulative);
     return measure_of(cones);
 }
@@ -136,24 +158,57 @@ double aim_discs(const Surroundings& scene, AimedSource& source) {
         for (const std::uint32_t caster : scene.casters)
             spheres.push_back(bounding_sphere(scene.shapes[caster]));
     }
+    std::vector<Box> boxes;
     for (const BoundingSphere& sphere : spheres) {
         const float radius = sphere.radius * (1 + 1e-5F);
         source.discs.push_back({sphere.centre, radius});
+        const Vec3 reach = Vec3::Constant(radius);
+        if (spheres.size() > 1) boxes.emplace_back(sphere.centre - reach, sphere.centre + reach);
         source.cumulative.push_back(pi_d * static_cast<double>(radius) *
                                     static_cast<double>(radius));
         total += source.cumulative.back();
     }
+    source.boxes = BoxTree(std::move(boxes));
     normalise(source.cumulative);
     return total;
 }
 
+Overlap cones_that_hold(const AimedSource& source, const AimedSample& sample) {
+    Overlap overlap;
+    source.boxes.any_where(
+        [&](const Box& box) {
+            ++overlap.boxes_tested;
+            return box.contains(sample.direction);
+        },
+        [&](std::uint32_t i) {
+            if (i != sample.region && source.cones[i].cone.contains(sample.direction))
+                ++overlap.holding;
+            return false;
+        });
+    return overlap;
+}
+
+Overlap discs_that_hold(const AimedSource& source, const AimedSample& sample, const Vec3& point,
+                        const Vec3& along) {
+    Overlap overlap;
+    source.boxes.any_where(
+        [&](const Box& box) {
+            ++overlap.boxes_tested;
+            return line_meets(box, point, along);
+        },
+        [&](std::uint32_t i) {
+            const AimedDisc& other = source.discs[i];
+            const Vec3 offset = point - other.centre;
+            const float aside = Vec3(offset - offset.dot(along) * along).norm();
+            if (i != sample.region && aside <= other.radius) ++overlap.holding;
+            return false;
+        });
+    return overlap;
+}
+
 // Thinning by the number of cones that hold the direction makes their union uniform.
 bool kept_in_union(const AimedSource& source, const AimedSample& sample, Rng& rng) {
-    if (source.cones.size() == 1) return true;
-    const AimedCone& own = source.cones[sample.region];
-    int holding = 0;
-    for (const AimedCone& other : source.cones)
-        holding += &other == &own || other.cone.contains(sample.direction) ? 1 : 0;
+    const int holding = cones_that_hold(source, sample).holding;
     return holding == 1 || rng.next() * static_cast<float>(holding) < 1;
 }
 
@@ -163,15 +218,8 @@ std::optional<Ray> through_disc(const Surroundings& scene, const AimedSource& so
     const Vec3& along = across.n;
     const Vec3 point =
         disc.centre + disc.radius * (across.s * sample.disc.x() + across.t * sample.disc.y());
-    if (source.discs.size() > 1) {
-        int holding = 0;
-        for (const AimedDisc& other : source.discs) {
-            const Vec3 offset = point - other.centre;
-            const float aside = Vec3(offset - offset.dot(along) * along).norm();
-            holding += &other == &disc || aside <= other.radius ? 1 : 0;
-        }
-        if (holding > 1 && rng.next() * static_cast<float>(holding) >= 1) return {};
-    }
+    const int holding = discs_that_hold(source, sample, point, along).holding;
+    if (holding > 1 && rng.next() * static_cast<float>(holding) >= 1) return {};
     return Ray{point + distance_to_entry(scene.bounds, point, along) * along, along};
 }
 

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/geometry/box_tree.h"
 #include "core/geometry/segment.h"
 #include "core/lights/surroundings.h"
 #include "core/math/frame.h"
@@ -32,13 +34,22 @@ struct AimedSource {
     /// Across a directional light, or any direction of a constant one.
     std::vector<AimedDisc> discs;
     std::vector<double> cumulative;  ///< of the regions' measures, normalised
-    Frame across{Vec3::UnitZ()};     ///< round a directional light's direction
-    float max_cosine = 1;            ///< area lights: bound of the cosine over the cones
-    Vec2 low = Vec2::Zero();         ///< area lights: this piece's numbers of AreaSampler::sample
+    /// Boxes of the regions: of a cone's unit vectors, or of the sphere that a disc is of. Empty for one region.
+    BoxTree boxes;
+    Frame across{Vec3::UnitZ()};  ///< round a directional light's direction
+    float max_cosine = 1;         ///< area lights: bound of the cosine over the cones
+    Vec2 low = Vec2::Zero();      ///< area lights: this piece's numbers of AreaSampler::sample
     Vec2 high = Vec2::Ones();
     /// A sphere that shines outwards: seen along a direction it is an even disc, without thinning.
     std::optional<BoundingSphere> facing_sphere;
 };
+
+/// The sources of a light that has one, without a copy of its regions.
+inline std::vector<AimedSource> alone(AimedSource source) {
+    std::vector<AimedSource> sources;
+    sources.push_back(std::move(source));
+    return sources;
+}
 
 /// What a random point of the unit square is mapped to: a region of a source, and a place in it.
 struct AimedSample {
@@ -51,6 +62,17 @@ struct AimedSample {
 double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSource& source);
 /// Fills its discs round all casters; returns their area [m^2].
 double aim_discs(const Surroundings& scene, AimedSource& source);
+
+/// How many regions of a source hold a sample, its own among them, and how many boxes were tested to find them.
+struct Overlap {
+    int holding = 1;
+    int boxes_tested = 0;
+};
+/// Cones that hold a sample's direction.
+Overlap cones_that_hold(const AimedSource& source, const AimedSample& sample);
+/// Discs across a direction that hold a point of the sample's disc.
+Overlap discs_that_hold(const AimedSource& source, const AimedSample& sample, const Vec3& point,
+                        const Vec3& along);
 
 /// Whether a sample of a cone is one of the union of all: thinned by the number of those that hold it.
 bool kept_in_union(const AimedSource& source, const AimedSample& sample, Rng& rng);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/lights/light_text.h"
 #include "core/scene_file/strength.h"
 
@@ -26,7 +28,7 @@ std::string ConstantLight::line(const Surroundings&, const Vec3d&) const {
 std::vector<AimedSource> ConstantLight::aim(const Surroundings& scene) const {
     AimedSource source;
     source.power = radiance * static_cast<float>(4 * pi_d * aim_discs(scene, source));
-    return {source};
+    return alone(std::move(source));
 }
 
 // From any direction.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/lights/light_text.h"
 #include "core/scene_file/strength.h"
 
@@ -48,7 +50,7 @@ std::vector<AimedSource> DirectionalLight::aim(const Surroundings& scene) const 
     AimedSource source;
     source.across = Frame(direction);
     source.power = irradiance * static_cast<float>(aim_discs(scene, source));
-    return {source};
+    return alone(std::move(source));
 }
 
 std::optional<Ray> DirectionalLight::send(const Surroundings& scene, const AimedSource& source,

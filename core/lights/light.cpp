@@ -23,7 +23,7 @@ int family_of(const Light& light) {
 }
 
 std::string type_of(const Light& light) {
-    return std::visit([](const auto& kind) { return kind.text().name; }, light);
+    return std::visit([]<class Kind>(const Kind&) { return name_of<Kind>(); }, light);
 }
 
 std::string line_of(const Light& light, const Surroundings& scene, const Vec3d& origin) {
@@ -123,7 +123,7 @@ const std::vector<std::string>& light_types() {
     static const std::vector<std::string> types = [] {
         std::vector<std::string> all;
         each_kind(std::type_identity<Light>(), [&]<class Kind>(std::type_identity<Kind>) {
-            if constexpr (StandsAlone<Kind>) all.push_back(Kind::text().name);
+            if constexpr (StandsAlone<Kind>) all.push_back(name_of<Kind>());
         });
         return all;
     }();
@@ -134,7 +134,7 @@ Light read_light(const std::string& type, const JsonNode& node, const Vec3d& ori
     std::optional<Light> light;
     each_kind(std::type_identity<Light>(), [&]<class Kind>(std::type_identity<Kind>) {
         if constexpr (StandsAlone<Kind>)
-            if (Kind::text().name == type) light = Kind::read(node, origin);
+            if (name_of<Kind>() == type) light = Kind::read(node, origin);
     });
     if (!light) throw std::logic_error("no light of that type");
     node.finish();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/lights/light_text.h"
 #include "core/scene_file/strength.h"
 
@@ -42,7 +44,7 @@ std::vector<AimedSource> PointLight::aim(const Surroundings& scene) const {
     AimedSource source;
     const double solid_angle = aim_cones(scene, {position, 0}, source);
     source.power = intensity * static_cast<float>(solid_angle);
-    return {source};
+    return alone(std::move(source));
 }
 
 std::optional<Ray> PointLight::send(const Surroundings&, const AimedSource& source,

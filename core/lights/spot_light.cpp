@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/lights/light_text.h"
 #include "core/lights/point_light.h"
 #include "core/scene_file/strength.h"
@@ -26,6 +28,7 @@ double narrowed(const SpotCone& spot, double solid_angle, AimedSource& source) {
     if (own.is_whole_sphere() || own.solid_angle() >= solid_angle) return solid_angle;
     source.cones = {{own, Frame(own.axis)}};
     source.cumulative = {1};
+    source.boxes = {};
     return own.solid_angle();
 }
 
@@ -77,7 +80,7 @@ std::vector<AimedSource> SpotLight::aim(const Surroundings& scene) const {
     AimedSource source;
     const double solid_angle = narrowed(cone, aim_cones(scene, {position, 0}, source), source);
     source.power = intensity * static_cast<float>(solid_angle);
-    return {source};
+    return alone(std::move(source));
 }
 
 // Thinned by the falloff.

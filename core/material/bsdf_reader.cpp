@@ -7,6 +7,8 @@
 namespace caustics::scene_file {
 namespace {
 
+constexpr const char* twosided_type = "twosided";
+constexpr const char* blend_type = "blendbsdf";
 const std::vector<std::string> later_types{
     "roughconductor", "roughdielectric", "plastic", "thindielectric", "mask", "principled", "ref"};
 
@@ -59,7 +61,7 @@ Bsdf read_twosided(const JsonNode& node, Assets& assets) {
 
 ObjectText blend_text() {
     return {
-        "blendbsdf",
+        blend_type,
         "A bsdf, in a shape: one of diffuse, schlick, phong and a conductor, which it holds; the "
         "shape is a receiver and a caster.",
         {type_key(), number("weight",
@@ -70,7 +72,7 @@ ObjectText blend_text() {
 
 ObjectText twosided_text() {
     return {
-        "twosided",
+        twosided_type,
         "A bsdf, in a shape: the diffuse, schlick, phong, conductor or blendbsdf that it holds, "
         "on both sides.",
         {type_key()}};
@@ -96,11 +98,11 @@ bool is_bsdf_type(const std::string& type) {
 
 Bsdf read_bsdf(const JsonNode& node, Assets& assets) {
     const std::string type = read_type(node, "bsdf", bsdf_types(), later_types);
-    if (type == twosided_text().name) return read_twosided(node, assets);
-    if (type == blend_text().name) return read_blend(node, assets);
+    if (type == twosided_type) return read_twosided(node, assets);
+    if (type == blend_type) return read_blend(node, assets);
     Bsdf bsdf;
     each_kind(std::type_identity<Model>(), [&]<class Kind>(std::type_identity<Kind>) {
-        if (type == Kind::text().name) bsdf.model = Kind::read(node, assets);
+        if (type == name_of<Kind>()) bsdf.model = Kind::read(node, assets);
     });
     node.finish();
     return bsdf;

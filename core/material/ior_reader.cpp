@@ -78,8 +78,11 @@ Ior read_ior(const JsonNode& parent, const std::string& key, const Ior& fallback
     if (node->is_number()) return static_cast<float>(node->as_number_in(0.1, 10));
     if (!node->is_string())
         node->fail("expected a number, a name or a law of dispersion (an object with a type)");
-    std::vector<std::string> names;
-    for (const auto& [name, ior] : named_iors) names.emplace_back(name);
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const auto& [name, ior] : named_iors) all.emplace_back(name);
+        return all;
+    }();
     return named_iors[node->as_choice(names)].second;
 }
 

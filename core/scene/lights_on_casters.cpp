@@ -38,8 +38,7 @@ private:
             const std::optional<SurfacePoint> hit = scene_.intersect(ray);
             if (!hit) return {};
             const float height = std::abs(hit->geometric_normal.dot(hit->position - place));
-            if (height <= rounding && hit->shape != own_ &&
-                std::ranges::count(scene_.casters(), hit->shape) > 0)
+            if (height <= rounding && hit->shape != own_ && is_caster(scene_.shape_at(*hit).bsdf))
                 return LightOnCaster{place, hit->shape};
             gone += hit->distance + rounding;
         }

@@ -9,7 +9,7 @@
 #include "core/base/interrupt.h"
 #include "core/geometry/tessellate.h"
 #include "core/mesh/triangle_middles.h"
-#include "core/scene/intersector.h"
+#include "core/scene/placed_surfaces.h"
 
 namespace caustics {
 namespace {
@@ -38,23 +38,44 @@ bool agree(const Dielectric& a, bool a_outside, const Dielectric& b, bool b_outs
     return static_cast<double>(apart.maxCoeff()) <= alike;
 }
 
+/// Triangles of shapes to look from, at most so many of each.
+class Triangles {
+public:
+    explicit Triangles(std::size_t most) : most_(most), meshes_(resolution) {}
+
+    /// In the world frame.
+    std::vector<TriangleMiddle> middles(const Shape& shape) {
+        const TriangleMesh& mesh = meshes_.of(shape);
+        if (shape.primitive == Primitive::mesh) return triangle_middles(mesh, most_);
+        TriangleMesh some;
+        const std::size_t stride = 1 + mesh.triangles.size() / most_;
+        for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
+            const auto first = static_cast<std::uint32_t>(some.positions.size());
+            for (const std::uint32_t corner : mesh.triangles[i])
+                some.positions.push_back(mesh.positions[corner]);
+            some.triangles.push_back({first, first + 1, first + 2});
+        }
+        place_exact(some, shape);
+        return triangle_middles(some, most_ + 1);
+    }
+
+private:
+    std::size_t most_;
+    OwnFrameMeshes meshes_;
+};
+
 /// Off one shape, to both sides.
 class ShapeRays {
 public:
-    ShapeRays(const Scene& scene, std::uint32_t index, std::size_t most)
-        : scene_(scene), index_(index), shape_(scene.shapes()[index]), most_(most) {}
+    ShapeRays(const Scene& scene, std::uint32_t index)
+        : scene_(scene), index_(index), shape_(scene.shapes()[index]) {
+        if (shape_.primitive != Primitive::mesh) alone_.emplace(shape_);
+    }
 
-    void run(std::map<Pair, MediaConflict>& found) {
-        const bool is_mesh = shape_.primitive == Primitive::mesh;
-        const TriangleMesh own = is_mesh ? TriangleMesh() : tessellate_shape(shape_, resolution);
-        if (!is_mesh) {
-            copy_ = {shape_};
-            alone_.emplace(copy_);
-        }
+    void run(const std::vector<TriangleMiddle>& middles, std::map<Pair, MediaConflict>& found) {
         const float reach =
-            (is_mesh ? reach_of_mesh : reach_of_exact) * bounds(shape_).diagonal().norm();
-        for (const TriangleMiddle& middle : triangle_middles(is_mesh ? shape_.mesh : own, most_))
-            look_from(middle, reach);
+            (alone_ ? reach_of_exact : reach_of_mesh) * bounds(shape_).diagonal().norm();
+        for (const TriangleMiddle& middle : middles) look_from(middle, reach);
         for (const auto& [pair, conflict] : conflicts_)
             if (static_cast<double>(counts_[pair]) >= least_share * static_cast<double>(places_))
                 found.emplace(pair, conflict);
@@ -64,7 +85,7 @@ private:
     void look_from(const TriangleMiddle& middle, float reach) {
         Ray ray{middle.place + reach * middle.normal, -middle.normal};
         ray.max_distance = 2 * reach;
-        const auto at = alone_ ? alone_->intersect(ray) : scene_.intersect(ray);
+        const auto at = alone_ ? alone_->meet(ray) : scene_.intersect(ray);
         if (!at || (!alone_ && at->shape != index_)) return;
         ++places_;
         for (const bool outside : {true, false}) look(*at, outside);
@@ -93,9 +114,7 @@ private:
     const Scene& scene_;
     std::uint32_t index_;
     const Shape& shape_;
-    std::size_t most_;
-    std::vector<Shape> copy_;           ///< of an exact shape; `alone_` refers to it
-    std::optional<Intersector> alone_;  ///< of an exact shape
+    std::optional<PlacedExact> alone_;  ///< of an exact shape
     std::size_t places_ = 0;
     std::map<Pair, MediaConflict> conflicts_;
     std::map<Pair, std::size_t> counts_;
@@ -110,10 +129,11 @@ std::vector<MediaConflict> media_conflicts(const Scene& scene) {
     if (dielectrics.size() < 2) return {};
     const std::size_t most =
         std::clamp<std::size_t>(most_in_all / dielectrics.size(), 8, most_rays);
+    Triangles triangles(most);
     std::map<Pair, MediaConflict> found;
     for (const std::uint32_t i : dielectrics) {
         throw_if_interrupted();
-        ShapeRays(scene, i, most).run(found);
+        ShapeRays(scene, i).run(triangles.middles(scene.shapes()[i]), found);
     }
     std::vector<MediaConflict> conflicts;
     for (const auto& [pair, conflict] : found) conflicts.push_back(conflict);

@@ -25,6 +25,15 @@ void PlacedExact::fill(const Vec3d& local, SurfacePoint& point) const {
     point.uv = exact_uv(*shape_, local);
 }
 
+std::optional<SurfacePoint> PlacedExact::meet(const Ray& ray) const {
+    const auto hit = intersect(ray.origin, ray.direction, 0, ray.max_distance);
+    if (!hit) return {};
+    SurfacePoint point;
+    point.distance = static_cast<float>(hit->distance);
+    fill(hit->local, point);
+    return point;
+}
+
 PlacedMesh::PlacedMesh(const Shape& shape)
     : shape_(&shape), smooth_(!shape.mesh.normals.empty()), mapped_(!shape.mesh.uvs.empty()) {
     const TriangleMesh& mesh = shape.mesh;

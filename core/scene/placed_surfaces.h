@@ -24,6 +24,8 @@ public:
                                       float t_max) const;
     /// All of the point but its distance and the number of its shape.
     void fill(const Vec3d& local, SurfacePoint& point) const;
+    /// The point where a ray meets this shape, but for the number of its shape.
+    std::optional<SurfacePoint> meet(const Ray& ray) const;
 
 private:
     const Shape* shape_;

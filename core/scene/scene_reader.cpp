@@ -138,27 +138,46 @@ struct Draft {
     Assets assets;
 };
 
+// Types of a scene's children.
+const std::vector<std::string>& child_types() {
+    static const std::vector<std::string> types = [] {
+        std::vector<std::string> all{"perspective"};
+        std::ranges::copy(light_types(), std::back_inserter(all));
+        all.emplace_back("ambient");
+        std::ranges::copy(scene_file::shape_types(), std::back_inserter(all));
+        return all;
+    }();
+    return types;
+}
+
+const std::vector<std::string>& later_child_types() {
+    static const std::vector<std::string> types = [] {
+        std::vector<std::string> all{"envmap",      "projector", "directionalarea",
+                                     "sunsky",      "thinlens",  "orthographic",
+                                     "homogeneous", "ref",       "heterogeneous"};
+        std::ranges::copy(scene_file::later_shape_types(), std::back_inserter(all));
+        return all;
+    }();
+    return types;
+}
+
+bool is_integrator(const std::string& type) {
+    static const std::vector<std::string> types{"path",   "volpath", "direct", "ptracer",
+                                                "moment", "aov",     "depth",  "photonmapper"};
+    return std::ranges::find(types, type) != types.end();
+}
+
 // The children of the scene differ by their types alone.
 void read_child(const std::string& key, const JsonNode& node, Draft& draft) {
     const std::string type = lower_case(node.at("type").as_string());
-    std::vector<std::string> known{"perspective"};
-    std::vector<std::string> later{"envmap",      "projector", "directionalarea",
-                                   "sunsky",      "thinlens",  "orthographic",
-                                   "homogeneous", "ref",       "heterogeneous"};
-    const std::vector<std::string> integrators{"path",   "volpath", "direct", "ptracer",
-                                               "moment", "aov",     "depth",  "photonmapper"};
-    if (std::ranges::find(integrators, type) != integrators.end())
+    if (is_integrator(type))
         node.fail(
             "integrators are not supported: the method is chosen on the command line or in "
             "the sweep, not in the scene");
-    std::ranges::copy(light_types(), std::back_inserter(known));
-    known.emplace_back("ambient");
-    std::ranges::copy(scene_file::shape_types(), std::back_inserter(known));
-    std::ranges::copy(scene_file::later_shape_types(), std::back_inserter(later));
     if (type == "area") node.fail("an area emitter is nested in the shape that emits");
     if (scene_file::is_bsdf_type(type) && type != "ref")
         node.fail("a bsdf is nested in the shape that has it; share one by $include");
-    read_type(node, "scene object", known, later);
+    read_type(node, "scene object", child_types(), later_child_types());
     if (type == "ambient") {
         draft.desc.ambient += AmbientLight::read(node);
         return node.finish();
@@ -215,6 +234,7 @@ SceneFile load_scene(const std::filesystem::path& file, const Overrides& overrid
     draft.assets.textures = textures;
     const auto children = root.children();
     root.finish();
+    draft.desc.shapes.reserve(children.size());
     for (const auto& [key, child] : children) read_child(key, child, draft);
     if (!draft.has_sensor) root.fail("the scene has no sensor (known: perspective)");
     if (draft.desc.shapes.empty()) root.fail("the scene has no shape");

@@ -11,6 +11,7 @@
 #include "core/geometry/tessellate.h"
 #include "core/mesh/triangle_middles.h"
 #include "core/scene/intersector.h"
+#include "core/scene/placed_surfaces.h"
 
 namespace caustics {
 namespace {
@@ -78,17 +79,25 @@ private:
             return box.contains(middle.place);
         };
         if (std::ranges::none_of(middles, is_near)) return false;
+        const auto touched_by = [&](const auto& meet) {
+            return std::ranges::any_of(middles, [&](const TriangleMiddle& middle) {
+                return is_near(middle) && is_at(meet, middle, reach);
+            });
+        };
+        if (all[other].primitive != Primitive::mesh) {
+            const PlacedExact exact(all[other]);
+            return touched_by([&](const Ray& ray) { return exact.meet(ray); });
+        }
         const std::vector<Shape> alone = {all[other]};
-        const Intersector rays(alone);
-        return std::ranges::any_of(middles, [&](const TriangleMiddle& middle) {
-            return is_near(middle) && is_at(rays, middle, reach);
-        });
+        const Intersector mesh(alone);
+        return touched_by([&](const Ray& ray) { return mesh.intersect(ray); });
     }
 
-    static bool is_at(const Intersector& rays, const TriangleMiddle& middle, float reach) {
+    template <class Meet>
+    static bool is_at(const Meet& meet, const TriangleMiddle& middle, float reach) {
         Ray ray{middle.place + reach * middle.normal, -middle.normal};
         ray.max_distance = 2 * reach;
-        const auto met = rays.intersect(ray);
+        const std::optional<SurfacePoint> met = meet(ray);
         return met && std::abs(met->distance - reach) <= 2 * met->offset &&
                std::abs(met->geometric_normal.dot(middle.normal)) >= least_cosine;
     }

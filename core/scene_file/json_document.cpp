@@ -1,9 +1,12 @@
 #include "core/scene_file/json_document.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
+#include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -24,34 +27,52 @@ std::string untagged(const std::string& message) {
     return end == std::string::npos ? message : message.substr(end + 2);
 }
 
-/// Reads a text without keeping its values. Knows the pointer of each key, and refuses what the grammar does not
-/// allow, a key's second time and control characters: a file's name would end at a NUL, and no name is printed with
-/// them. A callback of json::parse() could do the same, but with one the library looks through all of an object's
-/// children at the end of each child that is an object.
-class DocumentGuard final : public nlohmann::json_sax<json> {
-public:
-    explicit DocumentGuard(const std::string& origin) : origin_(origin) {}
+void append_child(std::string& pointer, std::string_view key) {
+    pointer += '/';
+    for (const char c : key) {
+        if (c == '~')
+            pointer += "~0";
+        else if (c == '/')
+            pointer += "~1";
+        else
+            pointer += c;
+    }
+}
 
-    bool null() override { return begin_value(); }
-    bool boolean(bool) override { return begin_value(); }
-    bool number_integer(number_integer_t) override { return begin_value(); }
-    bool number_unsigned(number_unsigned_t) override { return begin_value(); }
-    bool number_float(number_float_t, const string_t&) override { return begin_value(); }
-    bool binary(binary_t&) override { return begin_value(); }
+/// Makes a document of a text. Knows the pointer of each value, and refuses what the grammar does not allow, a key's
+/// second time and control characters: a file's name would end at a NUL, and no name is printed with them. A callback
+/// of json::parse() could do the same, but with one the library looks through all of an object's children at the end
+/// of each child that is an object.
+class DocumentBuilder final : public nlohmann::json_sax<json> {
+public:
+    explicit DocumentBuilder(const std::string& origin) : origin_(origin) {}
+
+    json take() { return std::move(root_); }
+
+    bool null() override { return put(nullptr); }
+    bool boolean(bool value) override { return put(value); }
+    bool number_integer(number_integer_t value) override { return put(value); }
+    bool number_unsigned(number_unsigned_t value) override { return put(value); }
+    bool number_float(number_float_t value, const string_t&) override { return put(value); }
+    bool binary(binary_t& value) override { return put(json::binary(std::move(value))); }
     bool string(string_t& value) override {
-        begin_value();
-        require_printable(value);
+        put(std::move(value));
+        require_printable(last_->get_ref<const std::string&>());
         return true;
     }
-    bool start_object(std::size_t) override { return begin_level(false); }
-    bool start_array(std::size_t) override { return begin_level(true); }
+    bool start_object(std::size_t) override { return begin_level(json::object()); }
+    bool start_array(std::size_t) override { return begin_level(json::array()); }
     bool end_object() override { return end_level(); }
     bool end_array() override { return end_level(); }
     bool key(string_t& name) override {
-        require_printable(name);
-        levels_.back().key = name;
-        if (!levels_.back().keys.insert(name).second)
-            throw InputError(origin_ + ": " + pointer() + ": key " + shown(name) +
+        Level& level = levels_.back();
+        const auto [member, is_new] =
+            level.value->get_ref<json::object_t&>().try_emplace(std::move(name));
+        level.key = &member->first;
+        level.member = &member->second;
+        require_printable(*level.key);
+        if (!is_new)
+            throw InputError(origin_ + ": " + pointer() + ": key " + shown(*level.key) +
                              " is given twice in one object");
         return true;
     }
@@ -60,25 +81,32 @@ public:
     }
 
 private:
+    /// An object or array that has begun; an object's member that is read.
     struct Level {
-        bool array;
-        std::size_t count;
-        std::string key;
-        std::unordered_set<std::string> keys;
+        json* value;
+        const std::string* key = nullptr;
+        json* member = nullptr;
     };
 
-    bool begin_value() {
-        if (!levels_.empty() && levels_.back().array)
-            levels_.back().key = std::to_string(levels_.back().count++);
+    bool put(json value) {
+        last_ = &root_;
+        if (!levels_.empty()) {
+            const Level& level = levels_.back();
+            if (level.value->is_array())
+                last_ = &level.value->get_ref<json::array_t&>().emplace_back();
+            else
+                last_ = level.member;
+        }
+        *last_ = std::move(value);
         return true;
     }
 
-    bool begin_level(bool array) {
-        begin_value();
+    bool begin_level(json value) {
+        put(std::move(value));
         if (levels_.size() >= max_depth)
             throw InputError(origin_ + ": " + pointer() + ": nested more than " +
                              std::to_string(max_depth) + " levels deep");
-        levels_.push_back({array, 0, {}, {}});
+        levels_.push_back({last_});
         return true;
     }
 
@@ -98,37 +126,85 @@ private:
 
     std::string pointer() const {
         std::string path;
-        for (const Level& level : levels_) path = child_pointer(path, level.key);
+        for (const Level& level : levels_)
+            append_child(path, level.value->is_array() ? std::to_string(level.value->size() - 1)
+                                                       : *level.key);
         return path.empty() ? "/" : path;
     }
 
     std::string origin_;
+    json root_;
+    json* last_ = &root_;  ///< the value that was read last
     std::vector<Level> levels_;
 };
 
-std::string numeral(double value) {
-    std::string text(32, '\0');
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
-    text.resize(static_cast<std::size_t>(end.ptr - text.data()));
-    return text;
+void append_numeral(std::string& text, double value) {
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    text.append(digits.data(), end.ptr);
+}
+
+void append_quoted(std::string& text, const std::string& word) {
+    const auto is_plain = [](char c) { return c >= 0x20 && c < 0x7F && c != '"' && c != '\\'; };
+    if (std::ranges::all_of(word, is_plain))
+        text.append(1, '"').append(word).append(1, '"');
+    else
+        text += json(word).dump();
+}
+
+void append_canonical(std::string& text, const json& value) {
+    char before = '[';
+    switch (value.type()) {
+        case json::value_t::object:
+            before = '{';
+            for (const auto& [key, child] : value.get_ref<const json::object_t&>()) {
+                text += before;
+                append_quoted(text, key);
+                text += ':';
+                append_canonical(text, child);
+                before = ',';
+            }
+            text += before == '{' ? "{}" : "}";
+            return;
+        case json::value_t::array:
+            for (const json& child : value) {
+                text += before;
+                append_canonical(text, child);
+                before = ',';
+            }
+            text += before == '[' ? "[]" : "]";
+            return;
+        case json::value_t::string:
+            append_quoted(text, value.get_ref<const std::string&>());
+            return;
+        case json::value_t::number_float: {
+            const double number = value.get<double>();
+            constexpr double exact_integers = 9007199254740992.0;
+            if (std::abs(number) <= exact_integers && std::trunc(number) == number)
+                text += std::to_string(static_cast<std::int64_t>(number));
+            else
+                append_numeral(text, number);
+            return;
+        }
+        default: text += value.dump();
+    }
 }
 
 class IncludeResolver {
 public:
-    explicit IncludeResolver(JsonDocument& document) : document_(document) {}
+    /// A value stands at `pointer` of the document.
+    IncludeResolver(JsonDocument& document, const std::string& pointer)
+        : document_(document), pointer_(pointer), local_pointer_(pointer) {}
 
-    void resolve(json& value, const std::string& pointer, const std::string& local_pointer,
-                 const std::filesystem::path& file) {
+    void resolve(json& value, const std::filesystem::path& file) {
         if (value.is_object() && value.contains("$include")) {
-            include(value, pointer, local_pointer, file);
+            include(value, file);
         } else if (value.is_object()) {
-            for (auto& [key, child] : value.items())
-                resolve(child, child_pointer(pointer, key), child_pointer(local_pointer, key),
-                        file);
+            for (auto& [key, child] : value.get_ref<json::object_t&>())
+                resolve_child(child, key, file);
         } else if (value.is_array()) {
             for (std::size_t i = 0; i < value.size(); ++i)
-                resolve(value[i], child_pointer(pointer, std::to_string(i)),
-                        child_pointer(local_pointer, std::to_string(i)), file);
+                resolve_child(value[i], std::to_string(i), file);
         }
     }
 
@@ -141,6 +217,17 @@ private:
         return failed ? file : path;
     }
 
+    void resolve_child(json& child, std::string_view key, const std::filesystem::path& file) {
+        if (!child.is_structured()) return;
+        const std::size_t length = pointer_.size();
+        const std::size_t local_length = local_pointer_.size();
+        append_child(pointer_, key);
+        append_child(local_pointer_, key);
+        resolve(child, file);
+        pointer_.resize(length);
+        local_pointer_.resize(local_length);
+    }
+
     std::string take(const std::filesystem::path& file, const std::string& place) {
         std::string text = read_whole_file(file);
         bytes_ += text.size();
@@ -150,10 +237,9 @@ private:
         return text;
     }
 
-    void include(json& value, const std::string& pointer, const std::string& local_pointer,
-                 const std::filesystem::path& file) {
+    void include(json& value, const std::filesystem::path& file) {
         const std::string place =
-            file.string() + ": " + child_pointer(local_pointer, "$include") + ": ";
+            file.string() + ": " + child_pointer(local_pointer_, "$include") + ": ";
         if (value.size() != 1)
             throw InputError(place + "an object with \"$include\" may have no other key (has " +
                              key_list(value) + ")");
@@ -176,14 +262,18 @@ private:
             throw InputError(std::string(e.what()) + " (included by " +
                              place.substr(0, place.size() - 2) + ")");
         }
-        document_.included[pointer] = target;
+        document_.included[pointer_] = target;
         document_.files_included.push_back(target);
         open_.push_back(identity(target));
-        resolve(value, pointer, "", target);
+        const std::string outer = std::exchange(local_pointer_, "");
+        resolve(value, target);
+        local_pointer_ = outer;
         open_.pop_back();
     }
 
     JsonDocument& document_;
+    std::string pointer_;        ///< of the value that is resolved
+    std::string local_pointer_;  ///< the same inside its file
     std::vector<std::filesystem::path> open_;
     std::size_t inclusions_ = 0;
     std::size_t bytes_ = 0;
@@ -191,23 +281,34 @@ private:
 
 }  // namespace
 
+JsonDocument::Keys& JsonDocument::asked_of(const json* object) {
+    if (object != last_object || last_asked == nullptr) {
+        last_asked = &keys[object];
+        last_object = object;
+    }
+    return *last_asked;
+}
+
 bool JsonDocument::is_known(const json* object, const std::string& key) {
     const auto name = names.find(key);
-    const std::vector<const std::string*>& known = keys[object].known;
+    const std::vector<const std::string*>& known = asked_of(object).known;
     return name != names.end() && std::ranges::find(known, &*name) != known.end();
 }
 
 void JsonDocument::make_known(const json* object, const std::string& key) {
-    if (!is_known(object, key)) keys[object].known.push_back(&*names.insert(key).first);
+    std::vector<const std::string*>& known = asked_of(object).known;
+    const std::string* const name = &*names.insert(key).first;
+    if (std::ranges::find(known, name) == known.end()) known.push_back(name);
 }
 
 std::vector<std::string> JsonDocument::known_keys(const json* object) {
     std::vector<std::string> all;
-    for (const std::string* const name : keys[object].known) all.push_back(*name);
+    for (const std::string* const name : asked_of(object).known) all.push_back(*name);
     return all;
 }
 
 void JsonDocument::forget_keys(const json& value) {
+    last_asked = nullptr;
     if (value.is_object()) keys.erase(&value);
     if (value.is_structured())
         for (const json& child : value) forget_keys(child);
@@ -238,15 +339,10 @@ void JsonDocument::fail(const std::string& pointer, const std::string& reason) c
 }
 
 std::string child_pointer(const std::string& pointer, const std::string& key) {
-    std::string path = pointer + "/";
-    for (const char c : key) {
-        if (c == '~')
-            path += "~0";
-        else if (c == '/')
-            path += "~1";
-        else
-            path += c;
-    }
+    std::string path;
+    path.reserve(pointer.size() + 1 + key.size());
+    path += pointer;
+    append_child(path, key);
     return path;
 }
 
@@ -280,44 +376,22 @@ json parse_json(const std::string& text, const std::string& origin) {
     if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
         throw InputError(origin + ": byte " + std::to_string(nul + 1) +
                          " is NUL, which JSON has not (write it as UTF-8 text)");
-    DocumentGuard guard(origin);
-    json::sax_parse(text, &guard);
-    return json::parse(text);
+    DocumentBuilder builder(origin);
+    json::sax_parse(text, &builder);
+    return builder.take();
 }
 
 void resolve_includes(json& value, const std::string& pointer, const std::filesystem::path& file,
                       JsonDocument& document) {
-    IncludeResolver resolver(document);
+    IncludeResolver resolver(document, pointer);
     resolver.enter(file);
-    resolver.resolve(value, pointer, pointer, file);
+    resolver.resolve(value, file);
 }
 
 std::string canonical_json(const json& value) {
     std::string text;
-    switch (value.type()) {
-        case json::value_t::object:
-            for (const auto& [key, child] : value.items()) {
-                text += text.empty() ? "{" : ",";
-                text += json(key).dump();
-                text += ':';
-                text += canonical_json(child);
-            }
-            return text.empty() ? "{}" : text + "}";
-        case json::value_t::array:
-            for (const json& child : value) {
-                text += text.empty() ? "[" : ",";
-                text += canonical_json(child);
-            }
-            return text.empty() ? "[]" : text + "]";
-        case json::value_t::number_float: {
-            const double number = value.get<double>();
-            constexpr double exact_integers = 9007199254740992.0;
-            if (std::abs(number) <= exact_integers && std::trunc(number) == number)
-                return std::to_string(static_cast<std::int64_t>(number));
-            return numeral(number);
-        }
-        default: return value.dump();
-    }
+    append_canonical(text, value);
+    return text;
 }
 
 }  // namespace caustics

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <map>
-#include <set>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -17,8 +16,8 @@ struct JsonDocument {
     /// The keys of one object that its reader asked for.
     struct Keys {
         std::vector<const std::string*> known;  ///< by name, in the order of asking; of `names`
-        std::set<std::string> taken;            ///< as children of any name
-        bool takes_objects = false;             ///< of any name
+        std::unordered_set<const std::string*> taken;  ///< as children of any name; of the object
+        bool takes_objects = false;                    ///< of any name
     };
 
     nlohmann::json root;
@@ -29,6 +28,11 @@ struct JsonDocument {
     std::vector<std::filesystem::path> files_included;  ///< all, also where others took their place
     std::unordered_map<const nlohmann::json*, Keys> keys;  ///< by the object
     std::unordered_set<std::string> names;                 ///< all keys that readers asked for
+
+    /// The entry of `keys` for an object; a reader asks one object many times in a row.
+    Keys& asked_of(const nlohmann::json* object);
+    const nlohmann::json* last_object = nullptr;  ///< that asked_of() was called with
+    Keys* last_asked = nullptr;
 
     bool is_known(const nlohmann::json* object, const std::string& key);
     void make_known(const nlohmann::json* object, const std::string& key);

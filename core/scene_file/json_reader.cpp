@@ -42,6 +42,10 @@ json* element(json& array, const std::string& token) {
     return &array[index];
 }
 
+bool is_finite_number(const json& value) {
+    return value.is_number() && std::isfinite(value.get<double>());
+}
+
 std::string contents(const json& value) {
     if (value.is_object()) return "is an object with the keys: " + key_list(value);
     if (value.is_array()) return fmt::format("is an array of {} elements", value.size());
@@ -184,7 +188,11 @@ std::vector<double> JsonNode::as_numbers(std::size_t count) const {
     if (!value.is_array() || value.size() != count)
         fail(fmt::format("expected an array of {} numbers, got {}", count, shown(value)));
     std::vector<double> numbers;
-    for (const JsonNode& node : as_array()) numbers.push_back(node.as_number());
+    numbers.reserve(count);
+    for (std::size_t i = 0; i < count; ++i)
+        numbers.push_back(is_finite_number(value[i])
+                              ? value[i].get<double>()
+                              : JsonNode(*this, std::to_string(i), value[i]).as_number());
     return numbers;
 }
 
@@ -192,6 +200,7 @@ std::vector<JsonNode> JsonNode::as_array() const {
     const json& value = *value_;
     if (!value.is_array()) fail("expected an array, got " + shown(value));
     std::vector<JsonNode> nodes;
+    nodes.reserve(value.size());
     for (std::size_t i = 0; i < value.size(); ++i)
         nodes.push_back(JsonNode(*this, std::to_string(i), value[i]));
     return nodes;
@@ -231,37 +240,33 @@ void JsonNode::fail_for_missing(const std::string& key) const {
                     join(present)));
 }
 
-std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const {
+std::vector<std::pair<std::string, JsonNode>> JsonNode::take(bool objects_alone) const {
     const json& value = *value_;
     if (!value.is_object()) fail("expected an object, got " + shown(value));
-    JsonDocument::Keys& keys = document_->keys[value_];
+    JsonDocument::Keys& keys = document_->asked_of(value_);
     std::vector<std::pair<std::string, JsonNode>> nodes;
-    for (const auto& [key, child] : value.items()) {
+    for (const auto& [key, child] : value.get_ref<const json::object_t&>()) {
+        if (objects_alone && !child.is_object()) continue;
         if (document_->is_known(value_, key)) continue;
-        if (!keys.taken.insert(key).second) continue;
+        if (!keys.taken.insert(&key).second) continue;
         nodes.emplace_back(key, JsonNode(*this, key, child));
     }
     return nodes;
 }
 
+std::vector<std::pair<std::string, JsonNode>> JsonNode::others() const { return take(false); }
+
 std::vector<std::pair<std::string, JsonNode>> JsonNode::children() const {
-    std::vector<std::pair<std::string, JsonNode>> nodes = others();
-    JsonDocument::Keys& keys = document_->keys[value_];
-    keys.takes_objects = true;
-    std::erase_if(nodes, [&](const auto& entry) {
-        if (entry.second.is_object()) return false;
-        keys.taken.erase(entry.first);
-        return true;
-    });
-    return nodes;
+    document_->asked_of(value_).takes_objects = true;
+    return take(true);
 }
 
 void JsonNode::finish() const {
     const json& value = *value_;
     if (!value.is_object()) fail("expected an object, got " + shown(value));
-    const JsonDocument::Keys& keys = document_->keys[value_];
-    for (const auto& [key, child] : value.items()) {
-        if (document_->is_known(value_, key) || keys.taken.contains(key)) continue;
+    const JsonDocument::Keys& keys = document_->asked_of(value_);
+    for (const auto& [key, child] : value.get_ref<const json::object_t&>()) {
+        if (document_->is_known(value_, key) || keys.taken.contains(&key)) continue;
         const std::vector<std::string> known = document_->known_keys(value_);
         fail(fmt::format(
             "unknown key {}{} (known: {}{})", shown(key), did_you_mean(key, known), join(known),

@@ -77,6 +77,7 @@ public:
 private:
     explicit JsonNode(std::shared_ptr<JsonDocument> document);
     JsonNode(const JsonNode& parent, const std::string& key, const nlohmann::json& value);
+    std::vector<std::pair<std::string, JsonNode>> take(bool objects_alone) const;
     std::filesystem::path file_at(const std::string& pointer) const;
     [[noreturn]] void fail_for_missing(const std::string& key) const;
     std::shared_ptr<JsonDocument> document_;

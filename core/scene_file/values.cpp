@@ -108,7 +108,9 @@ Vec2d read_pair(const JsonNode& node) {
 
 Vec3d read_vector(const JsonNode& node) {
     const std::vector<double> values = node.as_numbers(3);
-    for (const JsonNode& component : node.as_array()) component.as_number_in(-unlimited, unlimited);
+    if (std::ranges::any_of(values, [](double value) { return std::abs(value) > unlimited; }))
+        for (const JsonNode& component : node.as_array())
+            component.as_number_in(-unlimited, unlimited);
     return {values[0], values[1], values[2]};
 }
 
@@ -154,7 +156,7 @@ std::filesystem::path read_file_name(const JsonNode& node, Assets& assets) {
     const std::filesystem::path file = node.file().parent_path() / name;
     load_for(node, [&] { require_regular_file(file); });
     const std::pair<std::filesystem::path, std::string> asset{file, name};
-    if (std::ranges::find(assets.files, asset) == assets.files.end()) assets.files.push_back(asset);
+    if (assets.noted.insert(asset).second) assets.files.push_back(asset);
     return file;
 }
 

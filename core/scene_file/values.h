@@ -1,7 +1,9 @@
 #pragma once
 
 #include <new>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -16,6 +18,7 @@ namespace caustics::scene_file {
 struct Assets {
     /// Absolute file -> name as written.
     std::vector<std::pair<std::filesystem::path, std::string>> files = {};
+    std::set<std::pair<std::filesystem::path, std::string>> noted = {};  ///< `files`, to be found
     PictureDepth textures = PictureDepth::whole;
     PictureReader pictures = PictureReader();
 };

@@ -220,5 +220,38 @@ TEST(MeshFlip, TurnsTrianglesAndNormals) {
         EXPECT_LT(mesh.positions[i].dot(mesh.normals[i]), 0);
 }
 
+Shape exact_at(Primitive primitive, const Vec3d& place) {
+    Shape shape;
+    shape.primitive = primitive;
+    shape.to_world = Eigen::Translation3d(place) * Eigen::Scaling(0.5);
+    shape.flip_normals = true;
+    return shape;
+}
+
+TEST(OwnFrameMeshes, AreMadeOnceForAllShapesOfAKind) {
+    OwnFrameMeshes meshes(8);
+    const Shape first = exact_at(Primitive::sphere, {1, 2, 3});
+    const Shape second = exact_at(Primitive::sphere, {4, 5, 6});
+    const Shape disk = exact_at(Primitive::disk, {1, 2, 3});
+    EXPECT_EQ(&meshes.of(first), &meshes.of(second));
+    EXPECT_NE(&meshes.of(first), &meshes.of(disk));
+}
+
+TEST(OwnFrameMeshes, BecomeTheShapesMeshWherePlaced) {
+    OwnFrameMeshes meshes(8);
+    Shape field = exact_at(Primitive::heightfield, {0, 0, 0});
+    field.field = waves();
+    const Shape flat_field = exact_at(Primitive::heightfield, {0, 0, 0});
+    for (const Shape& shape : {exact_at(Primitive::sphere, {1, 2, 3}),
+                               exact_at(Primitive::sphere, {4, 5, 6}), field, flat_field}) {
+        TriangleMesh mesh = meshes.of(shape);
+        place_exact(mesh, shape);
+        const TriangleMesh expected = tessellate_shape(shape, 8);
+        EXPECT_EQ(mesh.positions, expected.positions);
+        EXPECT_EQ(mesh.normals, expected.normals);
+        EXPECT_EQ(mesh.triangles, expected.triangles);
+    }
+}
+
 }  // namespace
 }  // namespace caustics
