@@ -48,10 +48,10 @@ std::vector<Light> lights_of_each_way() {
             ConstantLight{Spectrum::Ones()}};
 }
 
-/// A random sample of a source that aim() made, as a path draws it.
-class Draw {
+/// A random sample of a source that aim() made, as a path aimed_draws it.
+class AimedDraw {
 public:
-    Draw(const AimedSource& source, Rng& rng) : source_(source) {
+    AimedDraw(const AimedSource& source, Rng& rng) : source_(source) {
         double u = rng.next_fine();
         sample_.region = static_cast<std::uint32_t>(pick_and_stretch(source.cumulative, u));
         if (!source.cones.empty()) {
@@ -94,7 +94,7 @@ private:
     Vec3 along_ = Vec3::UnitZ();
 };
 
-constexpr int draws = 2000;
+constexpr int aimed_draws = 2000;
 
 TEST(AimedSource, CountsTheOverlapsThatALinearScanCounts) {
     for (const float radius : {0.02F, 0.3F}) {
@@ -103,12 +103,12 @@ TEST(AimedSource, CountsTheOverlapsThatALinearScanCounts) {
             const AimedSource source = aim(light, balls.surroundings()).at(0);
             Rng rng(4, Stage::test, 0);
             int overlaps = 0;
-            for (int i = 0; i < draws; ++i) {
-                const Draw draw(source, rng);
+            for (int i = 0; i < aimed_draws; ++i) {
+                const AimedDraw draw(source, rng);
                 ASSERT_EQ(draw.by_tree().holding, draw.by_linear_scan()) << type_of(light);
                 overlaps += draw.by_tree().holding - 1;
             }
-            EXPECT_GT(overlaps, draws / 10) << type_of(light);
+            EXPECT_GT(overlaps, aimed_draws / 10) << type_of(light);
         }
     }
 }
@@ -118,8 +118,8 @@ double boxes_tested_a_path(const Light& light, std::uint32_t side) {
     const AimedSource source = aim(light, balls.surroundings()).at(0);
     Rng rng(5, Stage::test, 0);
     double tested = 0;
-    for (int i = 0; i < draws; ++i) tested += Draw(source, rng).by_tree().boxes_tested;
-    return tested / draws;
+    for (int i = 0; i < aimed_draws; ++i) tested += AimedDraw(source, rng).by_tree().boxes_tested;
+    return tested / aimed_draws;
 }
 
 // 64 times as many casters: the square root would be 8 times as many tests.
@@ -137,7 +137,7 @@ TEST(AimedSource, TestsNoBoxForOneRegion) {
     for (const Light& light : lights_of_each_way()) {
         const AimedSource source = aim(light, grid_of_balls(1).surroundings()).at(0);
         Rng rng(6, Stage::test, 0);
-        const Overlap overlap = Draw(source, rng).by_tree();
+        const Overlap overlap = AimedDraw(source, rng).by_tree();
         EXPECT_EQ(overlap.holding, 1);
         EXPECT_EQ(overlap.boxes_tested, 0);
     }
