@@ -48,7 +48,7 @@ std::vector<Light> lights_of_each_way() {
             ConstantLight{Spectrum::Ones()}};
 }
 
-/// A random sample of a source that aim() made, as a path aimed_draws it.
+/// A random sample of a source that aim() made, as a path draws it.
 class AimedDraw {
 public:
     AimedDraw(const AimedSource& source, Rng& rng) : source_(source) {
