@@ -35,7 +35,7 @@ if [ "$status" != 0 ]; then
     echo "quickstart: the sweep ended with exit code $status (see above)" >&2
     exit "$status"
 fi
-"$bench" report "$results" -o "$results/report.html" --tables "$results/tables" ||
+"$bench" report "$results" -o "$results/report.html" --megabytes 40 --tables "$results/tables" ||
     fail "the page of $results failed (see above)"
 
 echo "quickstart: done"

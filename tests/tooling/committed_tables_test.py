@@ -20,7 +20,7 @@ from report import beam_trials
 
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if __name__ == "__main__" else None
 IDENTITY = ("scene", "method", "seed", "photons", "nearest", "alpha", "mesh_resolution", "adaptive", "intensity", "pixel_footprint", "emitted", "paths",
-            "spp", "emission")
+            "spp")
 # Not map_bytes: what a tree takes is of the version that the records name.
 COUNTED = ("photons_emitted", "photons_stored", "camera_rays", "beams", "nodes")
 
