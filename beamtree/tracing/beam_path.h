@@ -29,8 +29,7 @@ struct Level {
     std::vector<RayArrival> places;
     /// One a beam, or none where all are 1: what division for detail (piece_detail.h) has left of the polygon.
     std::vector<float> shares;
-    /// The exact first surface, on which ways between corners begin; null: they begin on the polygons. Given for the
-    /// first level alone.
+    /// The exact first surface, on which ways between corners begin; null: they begin on the polygons.
     const SpecularSurface* exact = nullptr;
     /// Of its beams, were the media clear and they not divided: what they are worth following for [W].
     double worth = 0;

@@ -63,6 +63,7 @@ std::uint32_t ray_of(SetChunk& chunk, const BeamCorner& corner, Event event) {
 Level level_after(const Scene& scene, const Level& parent, std::uint32_t shape, Event event) {
     Level level;
     level.parent = &parent;
+    level.exact = parent.exact;
     level.event = event;
     const BeamSet& before = parent.traced.set;
     BeamSet& set = level.traced.set;

@@ -125,7 +125,7 @@ private:
         return goes_on(a) && goes_on(b) && beamtree::is_coarse(a.origin, a.next, b.origin, b.next);
     }
 
-    // True where the rays of an exact surface part so widely after the first event that the corners' tell little of
+    // True where the rays of an exact surface part so widely after their last event that the corners' tell little of
     // those between.
     bool is_wide(const Piece& piece) const {
         constexpr float most_apart = 0.3F;  // between unit directions

@@ -105,9 +105,9 @@ TEST(BeamBounces, NeighboursShareTheirRays) {
     }
 }
 
-/// Water seen from a lamp below it whose waves are so steep that they send half of its light on to other waves.
-Scene below_steep_water() {
-    constexpr double half = 0.4, level = 0.25;
+/// Water of waves that are so steep that they send half of the light of a lamp below them on to other waves.
+Scene below_steep_water(double level, const Vec3d& lamp, double half_of_floor) {
+    constexpr double half = 0.4;
     Shape water;
     water.name = "water";
     water.primitive = Primitive::heightfield;
@@ -116,20 +116,21 @@ Scene below_steep_water() {
     water.to_world = Eigen::Translation3d(0, 0, level);
     water.bsdf = support::mirror();
     SceneDesc desc;
-    desc.shapes = {water, floor_of(1)};
+    desc.shapes = {water, floor_of(half_of_floor)};
     desc.shapes[0].bsdf.twosided = true;
-    desc.lights = {support::point_light({-0.35, -0.3, 0.03}, 1)};
+    desc.lights = {support::point_light(lamp, 1)};
     return Scene(std::move(desc));
 }
 
-// The light that two events send onto the floor, by the middles of beams.
-double flux_of_two_events(const Scene& scene, int resolution) {
+// The light that so many events send onto the floor, by the middles of beams.
+double flux_of_events(const Scene& scene, int resolution, std::size_t events,
+                      double half_of_floor) {
     const beamtree::TracedBeams traced = beamtree::trace_all_beams(
         scene, beamtree::caster_meshes(scene, resolution), beamtree::sample_lights(scene, 1, 1),
-        {beamtree::Intensity::refined, 2}, {});
+        {beamtree::Intensity::refined, static_cast<int>(events)}, {});
     double sum = 0;
     for (const beamtree::BeamSet& set : traced.sets) {
-        if (set.path.size() != 2) continue;
+        if (set.path.size() != events) continue;
         for (const beamtree::Beam& beam : set.beams) {
             Vec3 position = Vec3::Zero(), direction = Vec3::Zero();
             for (std::size_t i = 0; i < 3; ++i) {
@@ -137,7 +138,8 @@ double flux_of_two_events(const Scene& scene, int resolution) {
                 direction += set.rays[beam.corners[i]].direction;
             }
             const Vec3 lands = position - position.z() / direction.z() * direction;
-            if (direction.z() < 0 && lands.cwiseAbs().maxCoeff() < 1)
+            if (direction.z() < 0 &&
+                static_cast<double>(lands.cwiseAbs().maxCoeff()) < half_of_floor)
                 sum += static_cast<double>(beam.flux.mean());
         }
     }
@@ -147,10 +149,23 @@ double flux_of_two_events(const Scene& scene, int resolution) {
 // Chords of few polygons to a wave lie far off its surface: light that starts on them meets other waves than light of
 // the surface does. A third of it was lost where there are six.
 TEST(BeamBounces, FollowSteepWavesFromTheirSurface) {
-    const Scene scene = below_steep_water();
-    const double truth = flux_of_two_events(scene, 128);
-    EXPECT_NEAR(flux_of_two_events(scene, 16) / truth, 1, 0.03);
-    EXPECT_NEAR(flux_of_two_events(scene, 32) / truth, 1, 0.015);
+    const Scene scene = below_steep_water(0.25, {-0.35, -0.3, 0.03}, 1);
+    const double truth = flux_of_events(scene, 128, 2, 1);
+    EXPECT_NEAR(flux_of_events(scene, 16, 2, 1) / truth, 1, 0.03);
+    EXPECT_NEAR(flux_of_events(scene, 32, 2, 1) / truth, 1, 0.015);
+}
+
+// Waves that light meets at a low angle, by 3 polygons to a wave. More than half of the light of the third and of the
+// fourth event was lost where only rays after the first event were asked how far they part.
+TEST(BeamBounces, FollowFannedLightThroughThirdAndFourthEvents) {
+    constexpr double half = 1.5;
+    const Scene scene = below_steep_water(1.055, {-1.34, -1.15, 0.15}, half);
+    const AimedEmission emission(scene);
+    const auto truth = support::arrived_flux(
+        scene, support::aimed(emission), 1'000'000, 5,
+        [](const Deposit& d) { return d.bounces < 5 && d.front ? d.bounces : -1; }, 1);
+    for (const std::size_t events : {3U, 4U})
+        EXPECT_GT(flux_of_events(scene, 16, events, half), 0.72 * truth.mean[events]) << events;
 }
 
 constexpr int cells = 11;  // odd: the spots behind balls lie in the middle of one
