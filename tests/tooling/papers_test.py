@@ -220,6 +220,12 @@ class Words(unittest.TestCase):
         self.assertEqual(of(1, 0, 1, 0, 0), "holds at waves x 1, 2 of 1, 1.5, 2, 3, 4")
         self.assertEqual(of(0, 0, 0, 0, 0), "holds at none of the heights from x 1 to x 4")
 
+    def test_chens_pictures_are_made_at_the_studys_n(self):
+        for name in ("bowls", "bowls_crystal", "events", "events_crystal", "interaction", "oversampling_adaptive", "oversampling_uniform"):
+            sweep = json.loads((paper.FOLDER / "sweeps" / f"chen2011_{name}.json").read_text(encoding="utf-8"))
+            own = [method["param"]["nearest"] for method in sweep["methods"] if method["method"] == "photonmap"]
+            self.assertEqual(own, [chen_photons.STUDY_N], name)
+
     def test_an_ambient_term_is_fitted_to_the_truth(self):
         random = np.random.default_rng(3)
         ambient, direct = random.random((4, 5, 3)), random.random((4, 5, 3))
