@@ -37,20 +37,27 @@ class Records(unittest.TestCase):
         self.expect(paper, claim, [a / b for a, b in over])
 
     def test_jensens_figure_1(self):
-        for claim, column, most in (("ring_time", "render_cpu_s", "256"), ("ring_fixed", "render_cpu_s", "4")):
-            self.expect_ratio("jensen1996", claim, "figure1", column, {"alpha": "0.01"}, {"alpha": "1"}, method="photonmap", max_samples=most)
+        ends = {"alpha": "0.01"}, {"alpha": "1"}
+        self.expect_ratio("jensen1996", "ring_time", "figure1", "render_cpu_s", *ends, method="photonmap", max_samples="256")
+        self.expect_ratio("jensen1996", "ring_fixed", "figure1_counts", "nodes_visited", *ends, max_samples="4")
+        a_ray = lambda alpha: [nodes / rays for nodes, rays in zip(*(self.column("jensen1996", "figure1_counts", column, alpha=alpha, max_samples="256")
+                                                                     for column in ("nodes_visited", "camera_rays")))]
+        self.expect("jensen1996", "ring_reason", [a / b for a, b in zip(a_ray("0.01"), a_ray("1"))])
         for alpha, before in (("0.5", "1"), ("0.1", "0.5"), ("0.01", "0.1")):
             for claim, column in (("ring_time", "render_cpu_s"), ("ring_rays", "camera_rays")):
                 self.expect_ratio("jensen1996", f"{claim}_{alpha}", "figure1", column, {"alpha": alpha}, {"alpha": before}, method="photonmap", max_samples="256")
 
     def test_jensens_figure_2(self):
         few, many = "250677", "5036126"
-        both = {"method": "photonmap"}
         tree = lambda photons, kind: {"photons": photons, "tree": kind}
-        for claim, top, bottom in (("ball_unbalanced", tree(few, "unbalanced"), tree(few, "balanced")),
-                                   ("ball_unbalanced_many", tree(many, "unbalanced"), tree(many, "balanced")),
-                                   ("ball_growth", tree(many, "balanced"), tree(few, "balanced"))):
-            self.expect_ratio("jensen1996", claim, "figure2", "render_cpu_s", top, bottom, **both)
+        for end, order in (("", "random"), ("_strata", "stratified")):
+            for claim, top, bottom in (("ball_unbalanced", tree(few, "unbalanced"), tree(few, "balanced")),
+                                       ("ball_unbalanced_many", tree(many, "unbalanced"), tree(many, "balanced")),
+                                       ("ball_growth", tree(many, "balanced"), tree(few, "balanced"))):
+                self.expect_ratio("jensen1996", f"{claim}{end}", "figure2_orders", "nodes_visited", top, bottom, emission=order)
+            nodes = [self.column("jensen1996", "figure2_orders", "nodes_visited", emission=order, **tree(many, kind)) for kind in ("balanced", "unbalanced")]
+            self.expect("jensen1996", f"ball_saved{end}", [1 - a / b for a, b in zip(*nodes)])
+        both = {"method": "photonmap"}
         self.expect_ratio("jensen1996", "ball_preprocess", "figure2", "precompute_cpu_s+balance_cpu_s", tree(many, "balanced"), tree(few, "balanced"), **both)
         self.expect("jensen1996", "ball_megabytes", [self.column("jensen1996", "figure2", "map_bytes", **tree(many, "balanced"), **both)[0] / 1e6])
 

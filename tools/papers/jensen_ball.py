@@ -9,6 +9,7 @@ from matplotlib.colors import PowerNorm
 from scipy.ndimage import gaussian_filter, map_coordinates
 
 from papers.figures import luminance, plot, strip
+from papers.jensen_cardioid import PHOTON_MAP
 from papers.jensen_table import rendering
 from papers.part import Figure, Part
 from papers.verdict import Measured
@@ -158,7 +159,7 @@ def index_at(study, name, base, lamp, eye, spot):
         file, = study.single("figure2_geometries", "render", [
             SCENE, "--set", f"{look}/origin={json.dumps(eye)}", "--set", f"{look}/target={json.dumps([spot, 0, 0])}",
             "--set", f"/light/position={json.dumps(lamp)}", "--set", f"/floor/bsdf/alpha={alpha}", "--set", "/sensor/film/width=320", "--set",
-            "/sensor/film/height=240", "--method", "photonmap", "--param", f"photons={study.paper.number('figure2_photons')}",
+            "/sensor/film/height=240", *PHOTON_MAP, "--param", f"photons={study.paper.number('figure2_photons')}",
             "--param", "nearest=100"], f"{name}-alpha{alpha}.exr")
         found.append(f"{bend(Floor(exr.read_layers(file), scene)).index:.2f} at alpha {alpha}")
     return ", ".join(found)

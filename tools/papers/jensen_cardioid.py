@@ -8,6 +8,8 @@ from papers.part import Figure, Part
 from papers.verdict import Measured, ratio
 from papers.words import spread
 
+# The paper's photon map as words of a command; the program's own default spreads each photon over a disc.
+PHOTON_MAP = ("--method", "photonmap", "--param", "kernel=point", "--param", "emission=random")
 ALPHAS = ("1", "0.5", "0.1", "0.01")
 RADIUS, LAMP_Y, LAMP_Z, WALL_LOW, WALL_HIGH = 0.5, 0.49, 0.4, 0.001, 0.25  # of experiments/papers/scenes/jensen_ring.json [m]
 EYES = {"figure": (0, 1.1, 1.5), "opposite": (0, -1.1, 1.5)}
@@ -57,8 +59,8 @@ def probed(study, points):
     for alpha in ALPHAS:
         for seed in range(1, 6 if study.full else 4):
             out, = study.single("figure1_probes", "probe", [
-                SCENE, "--set", f"/floor/bsdf/alpha={alpha}", "--method", "photonmap", "--param", "photons=2000000", "--param",
-                "nearest=60", "--param", "tree=packed", "--seed", str(seed), "--points", str(file)],
+                SCENE, "--set", f"/floor/bsdf/alpha={alpha}", *PHOTON_MAP, "--param", "photons=2000000", "--param", "nearest=60", "--param",
+                "tree=packed", "--seed", str(seed), "--points", str(file)],
                 f"alpha{alpha}-s{seed}.csv")
             table = np.genfromtxt(out, delimiter=",", names=True)
             found[alpha, seed] = dict(zip(EYES, np.split(table["radiance_g"], len(EYES))))

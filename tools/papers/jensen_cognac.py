@@ -1,19 +1,20 @@
-"""Jensen 1996, figure 3 and what its text says of all figures: cognac on sand, its Lambertian twin, one map for many views."""
+"""Jensen 1996, figure 3 and what its text says of all figures: cognac on sand, its Lambertian twin, its hue, one map for many views."""
 import json
 import statistics
 
 import numpy as np
 
 from papers.figures import is_diffuse, largest_difference, luminance, mean_of, strip
+from papers.jensen_cardioid import PHOTON_MAP
 from papers.jensen_table import rendering
 from papers.jensen_ring import preprocess
 from papers.part import Figure, Part, Table
 from papers.verdict import Measured, counted, ratio
 from papers.words import spread
 from report import exr
-from report.records import natural
 
 SCENE = "experiments/scenes/cognac.json"
+RED, BLUE = 0, 2
 SIDE = 12  # pixels of a window in which contrast is local
 VIEWS = ("of the figure", "from the left", "from the right", "from low down", "from behind", "from behind, left", "from behind, right",
          "from low down, left")
@@ -25,34 +26,18 @@ def times(study):
     seconds = lambda tree: trials.column("render_cpu_s", tree=tree)
     other = lambda tree: ball.column("render_cpu_s", method="photonmap", photons=few, tree=tree)
     prepare = lambda tree: preprocess(trials, tree=tree)
-    trees = trees_over_n(study)
-    unbalanced = ratio(seconds("unbalanced"), seconds("balanced"), "CPU s", note=f"over N: {trees}")
     megabytes = [some.column("map_bytes", method="photonmap", tree="balanced", **wanted)[0] / 1e6
                  for some, wanted in ((study.sweep("figure1"), {}), (ball, {"photons": few}), (trials, {}))]
     rows = [[tree, spread(prepare(tree)), spread(trials.column("balance_cpu_s", tree=tree)), spread(seconds(tree)),
              f"{trials.column('map_bytes', tree=tree)[0] / 1e6:.2f}"] for tree in ("balanced", "unbalanced")]
     return Part({
-        "cognac_unbalanced": unbalanced,
-        "cognac_doubled": unbalanced,
-        "cognac_inserting": ratio(prepare("unbalanced"), prepare("balanced"), "CPU s"),
         "cognac_preprocess": ratio(prepare("balanced"), seconds("balanced"), "CPU s"),
         "cognac_slower": ratio(seconds("balanced"), other("balanced")[:len(seconds("balanced"))], "CPU s"),
         "usual_megabytes": Measured(megabytes, unit="MB", counted=True, note="follows from the paper's photons and the bytes of one: figures 1, 2 "
                                     f"and 3 take {', '.join(f'{each:.2f}' for each in megabytes)} MB")}, [
         Table("figure3", "Figure 3: trees", ["tree", "preprocess [CPU s]", "of which the tree", "rendering [CPU s]", "MB"], rows,
               f"{rendering(trials)}, {study.paper.number('figure3_photons'):,} photons.")], [
-        picture(study, trials)], {"cognac_trees": trees,
-                                  "ball_trees": spread(ratio(other("unbalanced"), other("balanced"), "").samples)})
-
-
-def trees_over_n(study):
-    """Unbalanced over balanced rendering at the table's N and at others, as words."""
-    found = {}
-    for trials in (study.sweep("figure3"), study.sweep("figure3_nearest")):
-        for nearest in trials.values("nearest"):
-            seconds = lambda tree: trials.column("render_cpu_s", nearest=nearest, tree=tree)
-            found[nearest] = spread(ratio(seconds("unbalanced"), seconds("balanced"), "").samples)
-    return ", ".join(f"{found[nearest]} at N = {nearest}" for nearest in sorted(found, key=natural))
+        picture(study, trials)])
 
 
 def picture(study, trials):
@@ -75,21 +60,15 @@ def twins(study):
     ratios = {eye: ratio(contrast["alpha 0.6", eye], contrast["Lambert", eye], "local contrast").samples for eye in eyes}
     middle = [statistics.fmean(ratios[eye]) for eye in eyes]
     rows = [[view, spread(contrast["alpha 0.6", eye]), spread(contrast["Lambert", eye]), spread(ratios[eye])] for view, eye in zip(VIEWS, eyes)]
-    over = lambda some, count, **wanted: [statistics.fmean(each) for each in zip(*(
-        [redness(layers) for layers in some.pictures(eye=eye, **wanted)] for eye in eyes[:count]))]
-    views = len(clear.values("eye"))
     seeds = len(trials.values("seed"))
     extreme = middle.index(min(middle))
-    shades = shades_of(study, over(clear, 1), over(trials, 1, sand=sands["alpha 0.6"]))
     pair = f"{sum(each > 1 for each in middle)} of {len(eyes)} views have more contrast with alpha 0.6, ratios {min(middle):.3g} to {max(middle):.3g}"
     return Part({
-        "cognac_red": ratio(over(trials, views, sand=sands["alpha 0.6"]), over(clear, views), "red over blue",
-                            note=f"one sample a seed, the mean of {views} views"),
         "cognac_flat": ratio(contrast["alpha 0.6", eyes[0]], contrast["Lambert", eyes[0]], "local contrast", note=f"one sample a seed; {pair}"),
         "cognac_flat_views": Measured(middle, note=f"one sample a view, the mean of {seeds} seeds: {pair}")}, [
         Table("figure3_twins", "Figure 3: is the Lambertian sand flat?", ["view", "local contrast, alpha 0.6", "Lambert", "ratio"], rows,
               f"Standard deviation of the logarithm of luminance in windows of {SIDE} x {SIDE} pixels of sand, mean over them; {seeds} seeds.")], [
-        twins_figure(trials, clear, sands, eyes, extreme)], {"cognac_shades": shades, "cognac_contrasts": pair})
+        twins_figure(trials, clear, sands, eyes, extreme)], {"cognac_contrasts": pair})
 
 
 def twins_figure(trials, clear, sands, eyes, other):
@@ -103,7 +82,7 @@ def twins_figure(trials, clear, sands, eyes, other):
                        ("alpha = 0.6 over Lambert", shade(glossy, lambertian), 1.0)]])
     return Figure("figure3_twins", "Figure 3: its twins",
                   f"The same sand with alpha 0.6 and with Lambert's law, in the figure's view and {VIEWS[other]}, where alpha 0.6 loses most "
-                  "contrast; and the glass with clear cognac: without absorption the caustic is white. Last: the ratio of luminances, grey where "
+                  "contrast; and the glass with clear cognac. Last: the ratio of luminances, grey where "
                   f"equal, white where alpha 0.6 is twice as bright or more, black where it is half. Means of {len(trials.values('seed'))} seeds, "
                   f"{rendering(trials)}.", *pictures)
 
@@ -113,26 +92,6 @@ def shade(above, below):
     stops = np.log2(np.maximum(luminance(above), 1e-6) / np.maximum(luminance(below), 1e-6))
     grey = np.clip(0.5 + stops / 2, 0, 1) ** 2.2
     return np.repeat(grey[..., None], 3, axis=2)
-
-
-def shades_of(study, clear, cognac):
-    """Red over blue in the caustic with clear cognac, half and double the absorption, and the scene's own."""
-    scene = study.scene(SCENE)
-    found = []
-    for times in (0.5, 2):
-        absorption = json.dumps([times * each for each in scene["cognac"]["bsdf"]["absorption"]])
-        changes = [word for mesh in ("inside", "cognac") for word in ("--set", f"/{mesh}/bsdf/absorption={absorption}")]
-        file, = study.single("figure3_absorption", "render", [
-            SCENE, *changes, "--set", "/sensor/film/width=320", "--set", "/sensor/film/height=240",
-            "--spp", "4", "--method", "photonmap", "--param", f"photons={study.paper.number('figure3_photons')}", "--param", "nearest=100"],
-            f"times{times}.exr")
-        found.append(redness(exr.read_layers(file)))
-    return (f"{statistics.median(clear):.3g} with clear cognac, {found[0]:.3g} with half of the absorption, {statistics.median(cognac):.3g} with all "
-            f"of it, {found[1]:.3g} with twice as much")
-
-
-def redness(layers):
-    return float(layers["caustic"][..., 0].sum() / layers["caustic"][..., 2].sum())
 
 
 def eyes_of(study):
@@ -168,7 +127,7 @@ def one_map(study):
     scene = "experiments/papers/scenes/jensen_ring.json"
     small = ["--set", "/sensor/film/width=80", "--set", "/sensor/film/height=60"]
     other = ["--set", "/sensor/to_world/0/look_at/origin=[0.3,-1.2,1.4]"]
-    method = ["--method", "photonmap", "--param", "nearest=100"]
+    method = [*PHOTON_MAP, "--param", "nearest=100"]
     photons = ["--param", f"photons={study.paper.number('figure1_photons')}"]
     kept = study.output / "trials" / "views" / "ring.photons"
     kept.parent.mkdir(parents=True, exist_ok=True)
@@ -179,4 +138,75 @@ def one_map(study):
     return Part({"view_independent": counted(largest, "W/(m² sr)", "largest difference in any layer")})
 
 
-SECTIONS = {"figure3": times, "figure3-twins": twins, "tracing": tracing, "one-map": one_map}
+def hue(colour):
+    """The angle of a colour on the circle of hues [degrees]: red 0, orange 30, yellow 60; from -180 to 180."""
+    red, green, blue = colour
+    least, most = min(colour), max(colour)
+    if most == red:
+        return 60 * (green - blue) / (most - least)
+    turned = 120 + 60 * (blue - red) / (most - least) if most == green else 240 + 60 * (red - green) / (most - least)
+    return (turned + 180) % 360 - 180
+
+
+def shown(colour):
+    """The colour as a screen gives it: its brightest channel full, by the curve of sRGB."""
+    share = np.asarray(colour) / max(colour)
+    return np.where(share <= 0.0031308, 12.92 * share, 1.055 * share ** (1 / 2.4) - 0.055)
+
+
+def caustic(layers):
+    """The colour of the caustic on the sand: the sum of its light."""
+    return layers["caustic"][is_diffuse(layers)].sum(axis=0)
+
+
+def without_sand(layers):
+    """The colour of the light that falls on the sand."""
+    sand = is_diffuse(layers)
+    return (layers["caustic"][sand] / layers["albedo"][sand]).sum(axis=0)
+
+
+def colours(study):
+    cognac, clear = study.sweep("figure3_colour"), study.sweep("figure3_clear_colour")
+    views = cognac.values("eye")
+    mean = lambda trials, of: [np.mean(each, axis=0) for each in zip(*([of(layers) for layers in trials.pictures(eye=eye)] for eye in views))]
+    angles = lambda trials, of=caustic: [float(hue(colour)) for colour in mean(trials, of)]
+    own, without = angles(cognac), angles(clear)
+    ratio = lambda trials, channel: [float(colour[RED] / colour[channel]) for colour in mean(trials, caustic)]
+    part = Part({
+        "cognac_red": Measured([abs(each) for each in own], unit="degrees from red",
+                               note=f"orange is at 30 degrees, yellow at 60; one sample a seed, the mean of {len(views)} views",
+                               beside={"degrees as a screen shows the colour": [float(hue(shown(colour))) for colour in mean(cognac, caustic)],
+                                       "degrees of the light that falls on the sand": angles(cognac, without_sand),
+                                       "red over blue": ratio(cognac, BLUE)}),
+        "cognac_redder": Measured([a - b for a, b in zip(without, own)], unit="degrees nearer to red",
+                                  note=f"{spread(own)} degrees with cognac, {spread(without)} with clear cognac",
+                                  beside={"red over blue with clear cognac": ratio(clear, BLUE)})})
+    figure = next(eye for eye in views if json.loads(eye) == study.scene(SCENE)["sensor"]["to_world"][0]["look_at"]["origin"])
+    of_figure = lambda trials: [caustic(layers) for layers in trials.pictures(eye=figure)]
+    part.tables.append(shades_table(study, of_figure(clear), of_figure(cognac)))
+    part.facts["cognac_shades"] = "; ".join(f"{name} {angle}" for name, angle, *_ in part.tables[0].rows)
+    return part
+
+
+def shades_table(study, clear, own):
+    """Hues over the absorption, from clear to twice the scene's."""
+    shades = {"clear cognac": clear, "half of the absorption": [absorbed(study, 0.5)], "all of it": own, "twice as much": [absorbed(study, 2)]}
+    rows = [[name, spread([float(hue(each)) for each in some]), spread([float(hue(shown(each))) for each in some]),
+             spread([float(each[RED] / each[1]) for each in some]), spread([float(each[RED] / each[BLUE]) for each in some])]
+            for name, some in shades.items()]
+    return Table("figure3_colour", "Figure 3: the hue of the caustic", ["absorption", "hue [degrees]", "as a screen shows it", "red over green", "red over blue"],
+                 rows, "Red is at 0 degrees, orange at 30, yellow at 60. The figure's view. The sand is yellowish, the lamp nearly white.")
+
+
+def absorbed(study, times):
+    """The caustic's colour with so many times the scene's absorption, one seed."""
+    scene = study.scene(SCENE)
+    absorption = json.dumps([times * each for each in scene["cognac"]["bsdf"]["absorption"]])
+    changes = [word for mesh in ("inside", "cognac") for word in ("--set", f"/{mesh}/bsdf/absorption={absorption}")]
+    file, = study.single("figure3_absorption", "render", [
+        SCENE, *changes, "--set", "/sensor/film/width=160", "--set", "/sensor/film/height=120", "--spp", "4", *PHOTON_MAP, "--param", f"photons={study.paper.number('figure3_photons')}",
+        "--param", "nearest=100"], f"times{times}.exr")
+    return caustic(exr.read_layers(file))
+
+
+SECTIONS = {"figure3": times, "figure3-twins": twins, "figure3-colour": colours, "tracing": tracing, "one-map": one_map}
