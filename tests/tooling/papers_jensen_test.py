@@ -3,7 +3,10 @@ import json
 import pathlib
 import statistics
 import sys
+import tempfile
+import types
 import unittest
+import unittest.mock
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -35,6 +38,20 @@ class Sweeps(unittest.TestCase):
         for file in (ROOT / "tools" / "papers").glob("jensen_*.py"):
             if file.name != "jensen_cardioid.py":
                 self.assertNotRegex(file.read_text(encoding="utf-8"), r'"--method",\s+"photonmap"', file.name)
+
+
+    def test_a_map_that_is_read_is_not_told_how_to_emit(self):
+        """The program refuses that: the file's photons are there already."""
+        ran = []
+        with tempfile.TemporaryDirectory() as folder:
+            study = types.SimpleNamespace(output=pathlib.Path(folder), paper=JENSEN,
+                                          single=lambda name, verb, words, *outputs: [ran.append(words) for _ in outputs])
+            with unittest.mock.patch.object(jensen_cognac.exr, "read_layers", lambda file: {"": np.zeros((1, 1, 3))}):
+                jensen_cognac.one_map(study)
+        self.assertEqual(len(ran), 3)
+        for words in ran:
+            self.assertIn("kernel=point", words)
+            self.assertNotEqual("emission=random" in words, any(word.startswith("load=") for word in words), words)
 
 
 class Judged(unittest.TestCase):

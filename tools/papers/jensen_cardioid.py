@@ -8,8 +8,9 @@ from papers.part import Figure, Part
 from papers.verdict import Measured, ratio
 from papers.words import spread
 
-# The paper's photon map as words of a command; the program's own default spreads each photon over a disc.
-PHOTON_MAP = ("--method", "photonmap", "--param", "kernel=point", "--param", "emission=random")
+# The paper's estimate as words of a command, for the program's own default spreads each photon over a disc; and with it how photons are emitted.
+ESTIMATE = ("--method", "photonmap", "--param", "kernel=point")
+PHOTON_MAP = (*ESTIMATE, "--param", "emission=random")
 ALPHAS = ("1", "0.5", "0.1", "0.01")
 RADIUS, LAMP_Y, LAMP_Z, WALL_LOW, WALL_HIGH = 0.5, 0.49, 0.4, 0.001, 0.25  # of experiments/papers/scenes/jensen_ring.json [m]
 EYES = {"figure": (0, 1.1, 1.5), "opposite": (0, -1.1, 1.5)}

@@ -5,7 +5,7 @@ import statistics
 import numpy as np
 
 from papers.figures import is_diffuse, largest_difference, luminance, mean_of, strip
-from papers.jensen_cardioid import PHOTON_MAP
+from papers.jensen_cardioid import ESTIMATE, PHOTON_MAP
 from papers.jensen_table import rendering
 from papers.jensen_ring import preprocess
 from papers.part import Figure, Part, Table
@@ -127,13 +127,13 @@ def one_map(study):
     scene = "experiments/papers/scenes/jensen_ring.json"
     small = ["--set", "/sensor/film/width=80", "--set", "/sensor/film/height=60"]
     other = ["--set", "/sensor/to_world/0/look_at/origin=[0.3,-1.2,1.4]"]
-    method = [*PHOTON_MAP, "--param", "nearest=100"]
-    photons = ["--param", f"photons={study.paper.number('figure1_photons')}"]
+    nearest = ["--param", "nearest=100"]
+    traced_anew = [*PHOTON_MAP, *nearest, "--param", f"photons={study.paper.number('figure1_photons')}"]
     kept = study.output / "trials" / "views" / "ring.photons"
     kept.parent.mkdir(parents=True, exist_ok=True)
-    study.single("views", "render", [scene, *small, *method, *photons, "--param", f"save={kept}"], "first.exr")
-    read, = study.single("views", "render", [scene, *small, *other, *method, "--param", f"load={kept}"], "read.exr")
-    traced, = study.single("views", "render", [scene, *small, *other, *method, *photons], "traced.exr")
+    study.single("views", "render", [scene, *small, *traced_anew, "--param", f"save={kept}"], "first.exr")
+    read, = study.single("views", "render", [scene, *small, *other, *ESTIMATE, *nearest, "--param", f"load={kept}"], "read.exr")
+    traced, = study.single("views", "render", [scene, *small, *other, *traced_anew], "traced.exr")
     largest = largest_difference(exr.read_layers(read), exr.read_layers(traced))
     return Part({"view_independent": counted(largest, "W/(m² sr)", "largest difference in any layer")})
 
