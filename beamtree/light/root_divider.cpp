@@ -33,6 +33,7 @@ void RootDivider::add_cut(const RootBeam& beam, const std::array<Vec3, 3>& origi
 
 bool RootDivider::take_own_rays(std::array<RootNode, 3>& corners) {
     constexpr float most_apart = 0.01F;  // of how far the rays part
+    constexpr float least_apart = 1e-4F;
     std::array<RootNode, 3> own = corners;
     for (RootNode& each : own)
         if (const RootNode here = node(each.at); here.is_lit) each.ray = here.ray;
@@ -42,7 +43,8 @@ bool RootDivider::take_own_rays(std::array<RootNode, 3>& corners) {
     bool takes = false;
     for (std::size_t i = 0; i < 3; ++i) {
         const float apart = (own[i].ray.direction - corners[i].ray.direction).norm();
-        if (!(apart > most_apart * spread)) continue;
+        // A node lies a little inside: where rays hardly part, the shared ray is nearer to the corner's own.
+        if (!(apart > std::max(least_apart, most_apart * spread))) continue;
         corners[i].ray = own[i].ray;
         number(corners[i]);
         takes = true;
