@@ -56,7 +56,7 @@ def seconds(cell):
 
 
 def field(scene, picks, best, method):
-    """What the table says of a method on a scene: its least error within the budget, or why there is none."""
+    """The table's words for a method on a scene: its least error within the budget, or why there is none."""
     if method in picks:
         text = with_interval(*picks[method].error("rmse"))
         return (f"**{text}**" if picks[method] in best else text) + f" ({seconds(picks[method])})"

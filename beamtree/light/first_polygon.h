@@ -87,9 +87,8 @@ private:
     Vec3d corner_;
     std::array<Vec3d, 2> sides_;
     double size_;
-    float
-        offset_;  ///< of rays that leave the surface, however far the beam's bulges from its own [m]
-    double side_;  ///< ChainStart::side
+    float offset_;  ///< of rays that leave the surface [m], whatever Beam::offset is
+    double side_;   ///< ChainStart::side
 };
 
 }  // namespace caustics::beamtree

@@ -14,13 +14,13 @@ public:
     BoxTree() = default;
     explicit BoxTree(std::vector<Box> boxes);
 
-    /// Whether `fits`, called with the index of a box that meets `box`, says so of one of them.
+    /// True if `fits`, called with the index of a box that meets `box`, is true of one of them.
     template <typename Fits>
     bool any_at(const Box& box, const Fits& fits) const {
         return any_where([&](const Box& other) { return other.intersects(box); }, fits);
     }
-    /// Whether `fits`, called with the index of a box of which `meets` is true, says so of one of them. `meets` must be
-    /// true of every box that holds a box of which it is true.
+    /// True if `fits`, called with the index of a box of which `meets` is true, is true of one of them. A box that holds
+    /// another must meet what that one meets.
     template <typename Meets, typename Fits>
     bool any_where(const Meets& meets, const Fits& fits) const {
         return !nodes_.empty() && any_below(0, meets, fits);

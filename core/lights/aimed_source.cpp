@@ -98,7 +98,7 @@ Box box_of_cone(const DirectionCone& cone) {
     return {cone.axis - reach, cone.axis + reach};
 }
 
-// Whether a line meets a box, or comes so near that a sphere in the box may be met by rounding.
+// True where a line meets a box, or comes so near that rounding may let it meet a sphere in the box.
 bool line_meets(const Box& box, const Vec3& point, const Vec3& along) {
     const Vec3 offset = box.center() - point;
     const Vec3 half = 0.5F * box.sizes();
@@ -108,6 +108,23 @@ bool line_meets(const Box& box, const Vec3& point, const Vec3& along) {
                      half.x() * a.y() + half.y() * a.x());
     const float rounding = 4e-6F * (offset.lpNorm<1>() + half.sum() + point.lpNorm<1>());
     return ((aside - reach).array() <= rounding).all();
+}
+
+// Counts the regions that hold a sample: only those are asked whose boxes meet it.
+template <typename Meets, typename Holds>
+Overlap overlap_of(const AimedSource& source, const AimedSample& sample, const Meets& meets,
+                   const Holds& holds) {
+    Overlap overlap;
+    source.boxes.any_where(
+        [&](const Box& box) {
+            ++overlap.boxes_tested;
+            return meets(box);
+        },
+        [&](std::uint32_t i) {
+            if (i != sample.region && holds(i)) ++overlap.holding;
+            return false;
+        });
+    return overlap;
 }
 
 void normalise(std::vector<double>& measures) {
@@ -174,36 +191,20 @@ double aim_discs(const Surroundings& scene, AimedSource& source) {
 }
 
 Overlap cones_that_hold(const AimedSource& source, const AimedSample& sample) {
-    Overlap overlap;
-    source.boxes.any_where(
-        [&](const Box& box) {
-            ++overlap.boxes_tested;
-            return box.contains(sample.direction);
-        },
-        [&](std::uint32_t i) {
-            if (i != sample.region && source.cones[i].cone.contains(sample.direction))
-                ++overlap.holding;
-            return false;
-        });
-    return overlap;
+    return overlap_of(
+        source, sample, [&](const Box& box) { return box.contains(sample.direction); },
+        [&](std::uint32_t i) { return source.cones[i].cone.contains(sample.direction); });
 }
 
 Overlap discs_that_hold(const AimedSource& source, const AimedSample& sample, const Vec3& point,
                         const Vec3& along) {
-    Overlap overlap;
-    source.boxes.any_where(
-        [&](const Box& box) {
-            ++overlap.boxes_tested;
-            return line_meets(box, point, along);
-        },
+    return overlap_of(
+        source, sample, [&](const Box& box) { return line_meets(box, point, along); },
         [&](std::uint32_t i) {
             const AimedDisc& other = source.discs[i];
             const Vec3 offset = point - other.centre;
-            const float aside = Vec3(offset - offset.dot(along) * along).norm();
-            if (i != sample.region && aside <= other.radius) ++overlap.holding;
-            return false;
+            return Vec3(offset - offset.dot(along) * along).norm() <= other.radius;
         });
-    return overlap;
 }
 
 // Thinning by the number of cones that hold the direction makes their union uniform.

@@ -41,7 +41,7 @@ Scene axicon(int sectors) {
     return Scene(std::move(desc));
 }
 
-// What beams bring to random points at these distances from the axis, over the truth: each point stands for as wide a ring.
+// Light of beams over the truth, at random points between two distances from the axis. Each point stands for as wide a ring.
 double light_over_truth(const CausticEstimator& method, const Scene& scene, double from,
                         double to) {
     constexpr int count = 4000;

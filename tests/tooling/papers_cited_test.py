@@ -28,7 +28,7 @@ def values(paper):
 
 
 def wrong(text):
-    """What a text cites of results/papers that is not there, or has no link."""
+    """Citations of results/papers in a text that have no link, or whose number is not there."""
     kept = {paper: values(paper) for paper in NAMES}
     found = [f"{number} of {paper} {claim}: it is {kept.get(paper, {}).get(claim, 'no claim')}"
              for number, _, paper, claim in CITED.findall(text) if kept.get(paper, {}).get(claim) != number]

@@ -128,7 +128,7 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.judge([], above), verdict.UNMEASURED)
 
     def test_95_of_100_intervals_hold_the_mean(self):
-        """Of ratios that scatter evenly as logarithms, and of signed quantities about 0, on which a positive draw tells nothing."""
+        """Intervals of ratios, whose logarithms scatter evenly, and of signed quantities about 0 hold the truth 95 times of 100."""
         random = np.random.default_rng(95)
         draws = 5_000
         for seeds in (3, 5, 10):

@@ -118,7 +118,7 @@ def circle(points):
 
 
 def circumcentre(a, b, c):
-    """Of triangles of (2, sets); NaN where the points lie on a line."""
+    """Circumcentres of triangles, whose corners are (2, sets); NaN where the points lie on a line."""
     b, c = b - a, c - a
     with np.errstate(divide="ignore", invalid="ignore"):
         twice = 2 * (b[0] * c[1] - b[1] * c[0])

@@ -46,7 +46,7 @@ def summary(samples):
 
 
 def again(paper, claim, earlier):
-    """What was measured in an earlier run beside what the claim says now, with its interval and verdict from the kept values."""
+    """An earlier run's measurement beside what the claim says now, with its interval and verdict from the kept values."""
     measured = verdict.Measured(earlier["values"], counted=earlier["counted"])
     found, ends = judge(measured, paper.region(claim), claim.get("signed", False))
     return earlier | said(paper, claim, earlier["ours"], earlier["is_ratio"]) | {

@@ -138,7 +138,7 @@ def crossing(profile, level):
 
 
 class Deviations:
-    """Of pictures against those of light tracing, whose noise cancels: each is held against two of them."""
+    """Errors of pictures, each against two pictures of light tracing, so that the noise of these cancels."""
 
     def __init__(self, truths):
         self.seen = is_diffuse(truths[0])

@@ -60,7 +60,7 @@ def lookup(study):
 
 
 class Searches:
-    """What trials of one order of emission count and take: `pick` has a column of a tree and a number of photons."""
+    """Counts and times of the trials of one order of emission: `pick` has a column of a tree and a number of photons."""
 
     def __init__(self, trials, order, **wanted):
         self.pick = lambda column, tree, **more: trials.column(column, emission=order, tree=tree, **wanted, **more)
@@ -156,7 +156,7 @@ def orders_table(trials, name, title, numbers):
 
 
 def tree_levels(trials, order, tree, photons):
-    """Of the balanced tree they follow from its photons."""
+    """Levels of a tree: those of the balanced one follow from its number of photons."""
     rows = trials.where(emission=order, tree=tree, **photons)
     if tree == "balanced":
         return str(int(float(rows[0]["photons_stored"])).bit_length())
