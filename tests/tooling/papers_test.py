@@ -260,6 +260,15 @@ class Latex(unittest.TestCase):
             self.assertTrue((RESULTS / name / "tables.tex").read_text(encoding="utf-8").isascii(), name)
 
 
+def rounded(value):
+    """The value with its numbers to seven digits."""
+    if isinstance(value, float):
+        return float(f"{value:.7g}")
+    if isinstance(value, dict):
+        return {key: rounded(each) for key, each in value.items()}
+    return [rounded(each) for each in value] if isinstance(value, list) else value
+
+
 class Sections(unittest.TestCase):
     """A run of some sections into an earlier one: rows, tables and figures of the others stay."""
 
@@ -285,7 +294,8 @@ class Sections(unittest.TestCase):
             if row["id"] == "view_independent":
                 self.assertEqual((row["verdict"], row["section"], row["megabytes"]), (verdict.FAILS, "one-map", 1.0))
             else:
-                self.assertEqual(row, old)
+                # Quantiles of Student's t differ between releases of SciPy in the tenth digit.
+                self.assertEqual(rounded(row), rounded(old))
         self.assertEqual([pieces["tables"], pieces["figures"]], [old_pieces["tables"], old_pieces["figures"]])
         self.assertIn("one-map on another machine", kept.made_on(pieces))
 
