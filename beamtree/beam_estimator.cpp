@@ -33,22 +33,39 @@ void BeamEstimator::irradiance(std::span<const ReceiverPoint> points, std::span<
     answer(points, out, context, &BeamLight::irradiance, &PhotonDiscs::irradiance);
 }
 
-void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                           QueryContext& context, Query query, RestQuery of_rest) const {
-    auto& search = dynamic_cast<BeamSearch&>(context);
+template <typename Take>
+void BeamEstimator::for_each_point(std::span<const ReceiverPoint> points, BeamSearch& search,
+                                   const Take& take) const {
     constexpr std::size_t together = 64;
     search.hits.resize(together);
     for (std::size_t first = 0; first < points.size(); first += together) {
         const std::size_t count = std::min(together, points.size() - first);
         for (std::vector<BeamHit>& hits : search.hits) hits.clear();
         find(points.subspan(first, count), search);
-        for (std::size_t i = 0; i < count; ++i) {
-            const ReceiverPoint& point = points[first + i];
-            out[first + i] = {(light_.*query)(point, search.hits[i], search.roots), black()};
-            if (!rest_.is_empty())
-                out[first + i].value += (rest_.*of_rest)(point, search.disc_stack);
-        }
+        for (std::size_t i = 0; i < count; ++i) take(first + i, search.hits[i]);
     }
+}
+
+void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
+                           QueryContext& context, Query query, RestQuery of_rest) const {
+    auto& search = dynamic_cast<BeamSearch&>(context);
+    for_each_point(points, search, [&](std::size_t i, std::vector<BeamHit>& hits) {
+        out[i] = {(light_.*query)(points[i], hits, search.roots), black()};
+        if (!rest_.is_empty()) out[i].value += (rest_.*of_rest)(points[i], search.disc_stack);
+    });
+}
+
+std::optional<std::vector<RayCount>> BeamEstimator::count_rays(std::span<const ArrivingLight> rays,
+                                                               QueryContext& context) const {
+    if (!light_.searches_roots()) return {};
+    auto& search = dynamic_cast<BeamSearch&>(context);
+    std::vector<ReceiverPoint> points;
+    for (const ArrivingLight& ray : rays) points.push_back(ray.point);
+    std::vector<RayCount> counted(rays.size());
+    for_each_point(points, search, [&](std::size_t i, std::vector<BeamHit>& hits) {
+        counted[i] = light_.count(points[i], rays[i].direction, hits, search.roots);
+    });
+    return counted;
 }
 
 }  // namespace caustics::beamtree

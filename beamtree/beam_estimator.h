@@ -29,6 +29,8 @@ public:
                   QueryContext& context) const final;
     void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                     QueryContext& context) const final;
+    std::optional<std::vector<RayCount>> count_rays(std::span<const ArrivingLight> rays,
+                                                    QueryContext& context) const final;
     /// Of the beams; methods add their own.
     BuildReport build_report() const override { return report_; }
 
@@ -51,6 +53,11 @@ private:
                                                 std::vector<std::uint32_t>&) const;
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                 QueryContext& context, Query query, RestQuery of_rest) const;
+
+    /// Finds the beams that hold each of these points, and calls take(index, hits).
+    template <typename Take>
+    void for_each_point(std::span<const ReceiverPoint> points, BeamSearch& search,
+                        const Take& take) const;
 
     BuildReport report_;
     std::vector<BeamSet> sets_;

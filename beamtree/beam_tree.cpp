@@ -72,7 +72,7 @@ std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTree
                                               const RunOptions& options) {
     if (params.sampled) return sampled_beams(scene, "beamtree", params, options);
     TracedScene traced = trace_scene(scene, "beamtree", params, options, params.intensity,
-                                     params.footprint, completion(params));
+                                     params.footprint, completion(params), params.root_events);
     options.phase("tree");
     Forest forest(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest), params,

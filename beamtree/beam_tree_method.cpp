@@ -64,6 +64,13 @@ std::vector<Parameter<P>> tree_parameters() {
              .meaning =
                  "Flux over the area of the caustic polygon, or refined at the specular point.",
              .source = "[CC95 (11)]"}),
+        parameter::whole_number<P>(
+            &P::root_events, 1, most_bounces,
+            {.key = "root_events",
+             .meaning = "With refined, at points: rays of up to so many events are searched one by "
+                        "one. Light of more events is spread over the images of its polygons. Each "
+                        "event more takes several times as long."})
+            .only_if([](const P& p) { return p.root_events != P{}.root_events; }),
         parameter::optional_length<P>(&P::footprint, "leave it out to ask at points",
                                       {.key = "footprint",
                                        .meaning = "With two_slice: side of the square round a "
@@ -123,6 +130,12 @@ void settle_bound(const JsonNode& node, P& params) {
     if (const auto threshold = node.find("spread_threshold"))
         if (params.bound != Bound::hybrid)
             threshold->fail("only the bound \"hybrid\" has a spread threshold");
+}
+
+void settle_intensity(const JsonNode& node, const P& params) {
+    const auto given = node.find("root_events");
+    if (given && params.intensity != Intensity::refined)
+        given->fail("only the intensity \"refined\" searches for rays");
 }
 
 void settle_footprint(const JsonNode& node, const P& params) {
@@ -185,6 +198,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
          .settle =
              [](const JsonNode& node, P& params) {
                  settle_bound(node, params);
+                 settle_intensity(node, params);
                  settle_footprint(node, params);
                  settle_tree(node, params);
                  settle_rest(node, params);

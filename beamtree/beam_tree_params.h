@@ -33,6 +33,9 @@ struct BeamTreeParams : BeamParams {
     Tree hierarchy = Tree::binned;
     Leaf leaf = Leaf::fixed;  ///< with two_slice always
     Intensity intensity = Intensity::refined;
+    /// Rays of light of up to so many events are searched one by one at points (`refined`). Light of more events is spread
+    /// over the images of its polygons.
+    int root_events = TraceSettings{}.root_events;
     /// Side of the square round each point, on its tangent plane along PlaneAxes, over which its irradiance is averaged
     /// exactly [m]; 0: at the point alone. Only with the bound two_slice; beams that spread too far for
     /// a fixed plane, and polygons that the plane cuts, are asked at the point.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,6 +17,20 @@ namespace caustics {
 struct Estimate {
     Spectrum value = black();
     Spectrum standard_error = black();
+};
+
+/// Light that arrives at a receiver point along one ray.
+struct ArrivingLight {
+    ReceiverPoint point;
+    Vec3 direction = Vec3::Zero();  ///< unit, the way the light goes
+    double watts = 0;
+};
+
+/// How a method counts the light of one ray at the point where it arrives.
+enum class RayCount : std::uint8_t {
+    missed,  ///< not at all
+    spread,  ///< as a part of light that is spread over places nearby
+    exact    ///< as that ray
 };
 
 /// A thread's scratch and counters. Made by the estimator; never shared between threads.
@@ -51,6 +66,11 @@ public:
     /// Irradiance [W m^-2] at the points, on the side of their geometric normals.
     virtual void irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                             QueryContext& context) const = 0;
+    /// How irradiance() counts each ray of light at its point. Empty for methods that do not search for rays.
+    virtual std::optional<std::vector<RayCount>> count_rays(std::span<const ArrivingLight>,
+                                                            QueryContext&) const {
+        return {};
+    }
     /// The layer of the scene's camera, or empty for a method that answers at points.
     virtual std::optional<CameraLayer> camera_layer(const RunOptions&) const { return {}; }
     /// Whether its values are unbiased samples, so that their scatter gives a standard error.

@@ -80,6 +80,14 @@ bool meets_receiver(const Scene& scene, const ReceiverPoint& point, const BeamHi
            std::abs(met->geometric_normal.dot(point.geometric_normal)) >= same_surface_cosine;
 }
 
+// Such light is even over the image of a polygon, but for that polygon's own perspective.
+bool meets_flat_facets_alone(const Scene& scene, const BeamSet& set) {
+    return std::ranges::all_of(set.path, [&](const SpecularEvent& event) {
+        const Shape& shape = scene.shapes()[event.shape];
+        return shape.primitive == Primitive::mesh && shape.mesh.normals.empty();
+    });
+}
+
 // Both polygons of an edge find what lies on it.
 bool was_found_before(const Root& root, RootScratch& scratch) {
     if (root.edge_room == 0) return false;
@@ -149,21 +157,20 @@ SpectrumSum BeamLight::of_polygon(const ReceiverPoint& point, const BeamHit& hit
     return (factor * beam.flux * left).template cast<double>() * density;
 }
 
-template <typename Weight>
-Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
-                        RootScratch& scratch, const Weight& weight) const {
+template <typename OfRoot, typename OfPolygon>
+void BeamLight::visit(const ReceiverPoint& point, std::vector<BeamHit>& hits, RootScratch& scratch,
+                      const OfRoot& of_root, const OfPolygon& of_polygon) const {
     std::sort(hits.begin(), hits.end(), [](const BeamHit& a, const BeamHit& b) {
         return std::tie(a.set, a.beam, a.triangle, a.from) <
                std::tie(b.set, b.beam, b.triangle, b.from);
     });
-    SpectrumSum sum = SpectrumSum::Zero();
     std::uint32_t set = ~0U;
     for (const BeamHit& hit : hits) {
         const Spectrum share =
             share_of_wavelengths(sets_[hit.set].light, hit.from, hit.to, point.nm);
         if (is_black(share)) continue;
         if (!hit.has_roots) {
-            sum += of_polygon(point, hit, share, weight);
+            of_polygon(hit, share);
             continue;
         }
         if (hit.set != set) scratch.on_edge.clear();
@@ -174,13 +181,53 @@ Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
         for (const Root& root : scratch.roots) {
             if (was_found_before(root, scratch)) continue;
             ++scratch.found;
-            sum += of_root(point, hit, root, share, weight);
+            of_root(hit, root, share);
         }
         if (settled || hit.winding == 0) continue;
         ++scratch.unsettled;
-        sum += of_polygon(point, hit, share, weight);
+        of_polygon(hit, share);
     }
+}
+
+template <typename Weight>
+Spectrum BeamLight::sum(const ReceiverPoint& point, std::vector<BeamHit>& hits,
+                        RootScratch& scratch, const Weight& weight) const {
+    SpectrumSum sum = SpectrumSum::Zero();
+    visit(
+        point, hits, scratch,
+        [&](const BeamHit& hit, const Root& root, const Spectrum& share) {
+            sum += of_root(point, hit, root, share, weight);
+        },
+        [&](const BeamHit& hit, const Spectrum& share) {
+            sum += of_polygon(point, hit, share, weight);
+        });
     return sum.cast<float>();
+}
+
+bool BeamLight::searches_roots() const {
+    return std::ranges::any_of(searches_, [](const auto& search) { return search.has_value(); });
+}
+
+RayCount BeamLight::count(const ReceiverPoint& point, const Vec3& direction,
+                          std::vector<BeamHit>& hits, RootScratch& scratch) const {
+    constexpr float of_same_root = 1e-3F;
+    constexpr float of_same_polygon = 0.1F;
+    const SegmentEnd receiver{point.position, point.geometric_normal, point.offset};
+    RayCount count = RayCount::missed;
+    visit(
+        point, hits, scratch,
+        [&](const BeamHit&, const Root& root, const Spectrum&) {
+            if ((root.direction - direction).norm() <= of_same_root &&
+                !scene_.occluded(receiver, root.start))
+                count = RayCount::exact;
+        },
+        [&](const BeamHit& hit, const Spectrum&) {
+            const BeamSet& set = sets_[hit.set];
+            const Vec3 middle = arriving_ray(set, hit).direction;
+            if (count != RayCount::missed || (middle - direction).norm() > of_same_polygon) return;
+            count = meets_flat_facets_alone(scene_, set) ? RayCount::exact : RayCount::spread;
+        });
+    return count;
 }
 
 Spectrum BeamLight::irradiance(const ReceiverPoint& point, std::vector<BeamHit>& hits,

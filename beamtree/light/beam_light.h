@@ -37,7 +37,17 @@ public:
     Spectrum radiance(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                       RootScratch& scratch) const;
 
+    /// Whether rays of the point's light are searched for one by one, in any set.
+    bool searches_roots() const;
+    /// How a ray that arrives at the point in that unit direction is counted.
+    RayCount count(const ReceiverPoint& point, const Vec3& direction, std::vector<BeamHit>& hits,
+                   RootScratch& scratch) const;
+
 private:
+    /// Calls of_root(hit, root, share of its wavelengths) or of_polygon(hit, share) for all light of the point.
+    template <typename OfRoot, typename OfPolygon>
+    void visit(const ReceiverPoint& point, std::vector<BeamHit>& hits, RootScratch& scratch,
+               const OfRoot& of_root, const OfPolygon& of_polygon) const;
     template <typename Weight>
     SpectrumSum of_polygon(const ReceiverPoint& point, const BeamHit& hit, const Spectrum& share,
                            const Weight& weight) const;

@@ -18,9 +18,6 @@ namespace {
 constexpr double set_over_beam = 0.1;
 // Of the work on a level and all after it, that on the level itself.
 constexpr double work_on_level = 0.3;
-// Light of more events is that of polygons: their images are too far from any quadratic for all roots to be found (three
-// glass balls in a row, 12 polygons across each: 4 % of six events' light was lost).
-constexpr std::size_t most_events_of_roots = 2;
 // What threads take at a time.
 constexpr std::size_t beams_together = 1024;
 
@@ -91,7 +88,7 @@ public:
         }
         keep_only(set, kept);
         if (settings_.intensity == Intensity::refined && !set.drifts() &&
-            set.path.size() <= most_events_of_roots)
+            std::cmp_less_equal(set.path.size(), settings_.root_events))
             prepare_roots(scene_, surface_.caster().mesh, level.traced.origins, settings_.threads,
                           set);
         traced_.sets[place] = std::move(set);

@@ -110,7 +110,7 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
 
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity, float footprint,
-                        Completion rest) {
+                        Completion rest, int root_events) {
     const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
     options.phase("beams");
     TracedScene traced;
@@ -122,6 +122,7 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     if (disperses(scene)) traced.wavelengths = params.wavelengths;
     const TraceSettings settings{.intensity = intensity,
                                  .max_bounces = params.max_bounces,
+                                 .root_events = root_events,
                                  .prune = params.prune,
                                  .least_divided = least_divided,
                                  .divided_share = divided_share,

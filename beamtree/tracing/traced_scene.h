@@ -31,11 +31,12 @@ struct TracedScene {
 };
 
 /// Phase "beams". Beams that pass all receivers, squares of a side `footprint` [m] round their points too, are not
-/// kept. `rest` completes light that beams leave out; without, it is lost.
+/// kept. TraceSettings tells of `root_events`. `rest` completes light that beams leave out; without, it is lost.
 /// Throws UnsupportedScene, in the name of `method`, where beams lose more than half of the light on its way to
 /// further events.
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity = Intensity::area,
-                        float footprint = 0, Completion rest = {});
+                        float footprint = 0, Completion rest = {},
+                        int root_events = TraceSettings{}.root_events);
 
 }  // namespace caustics::beamtree

@@ -18,7 +18,6 @@ namespace {
 constexpr std::uint64_t paths_of_ledger = 20'000;
 constexpr std::uint64_t paths_of_cut = 200'000;
 constexpr double least_cut_looked_at = 0.002;
-constexpr double least_share_of_note = 0.01;
 
 struct Landing {
     double watts;

@@ -14,6 +14,9 @@
 
 namespace caustics::experiments {
 
+/// Of the caustic: what is lost or made from here on is told.
+inline constexpr double least_share_of_note = 0.01;
+
 /// What light paths that are traced to find out bring to the receivers of a scene.
 struct LightSurvey {
     LightLedger light;             ///< of paths with the limit of events that was asked for

@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/coordinate_limit.h"
+#include "experiments/run/counted_rays.h"
 #include "experiments/run/mesh_notes.h"
 #include "experiments/run/notes.h"
 
@@ -207,8 +208,13 @@ ProbeList read_probe_list(const std::filesystem::path& file) {
 namespace {
 
 std::vector<std::string> notes_of_built(const Scene& scene, const Method& method,
-                                        const BuildReport& report) {
-    return notes(scene, method, report, caustic_ledger(scene, method, report));
+                                        const CausticEstimator& built, int threads) {
+    const BuildReport report = built.build_report();
+    const std::optional<CausticLedger> ledger = caustic_ledger(scene, method, report);
+    std::vector<std::string> all = notes(scene, method, report, ledger);
+    const auto rays = counted_rays(scene, built, bounce_limit_of(method, report), threads);
+    if (rays && ledger) std::ranges::copy(notes_on(*rays, *ledger), std::back_inserter(all));
+    return all;
 }
 
 /// Whether means over pixels are asked for by name, and not by the method's default.
@@ -238,7 +244,7 @@ ProbeAnswers probe_by(const Scene& scene, const MethodOf<Estimator>& method, con
         answers.has_standard_errors = built->is_statistical();
         if (pass == 0) {
             if constexpr (std::is_same_v<Estimator, CausticEstimator>)
-                answers.notes = notes_of_built(scene, method, built->build_report());
+                answers.notes = notes_of_built(scene, method, *built, options.threads);
             else
                 answers.notes = notes_on_indirect(scene);
             std::ranges::copy(mesh_notes(scene), std::back_inserter(answers.notes));

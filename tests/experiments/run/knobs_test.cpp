@@ -293,8 +293,10 @@ TEST(Knobs, AreAllTurnedAbove) {
                           "hierarchy",       "leaf",         "intensity",        "footprint",
                           "pixel_footprint", "polygons",     "light_samples",    "mesh_resolution",
                           "max_bounces",     "prune",        "max_beams",        "rest",
-                          "rest_photons",    "rest_nearest", "wavelengths",      "dispersion"}},
-            // pixel_footprint: beamtree/slices/pixel_footprint_test; the last two: agreement/dispersion_test
+                          "rest_photons",    "rest_nearest", "root_events",      "wavelengths",
+                          "dispersion"}},
+            // pixel_footprint: beamtree/slices/pixel_footprint_test; root_events: agreement/root_events_test; the
+            // last two: agreement/dispersion_test
             {"causticpolygons",
              {"polygons", "light_samples", "mesh_resolution", "max_bounces", "prune", "max_beams",
               "wavelengths", "receiver_resolution"}},
