@@ -55,7 +55,7 @@ private:
         std::array<Vec3d, 2> gradient;  ///< of the barycentric coordinates [1/m]
         Vec3d normal;
         std::array<Vec3d, 2> along;
-        bool is_flat;  ///< shaded by one normal
+        bool is_flat = false;  ///< shaded by one normal
 
         Vec3d mean_normal(const Vec3d& at) const;
         Vec3d normal_change(const Vec3d& way) const;
