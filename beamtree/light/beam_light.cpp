@@ -80,7 +80,7 @@ bool meets_receiver(const Scene& scene, const ReceiverPoint& point, const BeamHi
            std::abs(met->geometric_normal.dot(point.geometric_normal)) >= same_surface_cosine;
 }
 
-// Such light is even over the image of a polygon, but for that polygon's own perspective.
+// True where light is even over a polygon's image, but for its perspective: no facet bends neighbouring rays differently.
 bool meets_flat_facets_alone(const Scene& scene, const BeamSet& set) {
     return std::ranges::all_of(set.path, [&](const SpecularEvent& event) {
         const Shape& shape = scene.shapes()[event.shape];

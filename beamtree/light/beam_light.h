@@ -37,7 +37,7 @@ public:
     Spectrum radiance(const ReceiverPoint& point, std::vector<BeamHit>& hits,
                       RootScratch& scratch) const;
 
-    /// Whether rays of the point's light are searched for one by one, in any set.
+    /// True where any set has roots: rays that reach a point are then searched for one by one.
     bool searches_roots() const;
     /// How a ray that arrives at the point in that unit direction is counted.
     RayCount count(const ReceiverPoint& point, const Vec3& direction, std::vector<BeamHit>& hits,

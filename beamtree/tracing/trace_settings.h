@@ -28,7 +28,7 @@ struct Completion {
 struct TraceSettings {
     Intensity intensity = Intensity::area;
     int max_bounces = 1;
-    /// Of `refined`: sets of up to so many events are prepared for the search of their rays. Images of later ones are far
+    /// Sets of up to so many events are prepared for the search of their rays, with `refined`. Images of later sets are far
     /// from any quadratic: their preparation takes long, and a few roots are lost.
     int root_events = 2;
     /// Of the light of the first events' beams on average: beams with less, were media clear, are not followed.

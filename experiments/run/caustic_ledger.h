@@ -14,7 +14,7 @@
 
 namespace caustics::experiments {
 
-/// Of the caustic: what is lost or made from here on is told.
+/// The least share of the caustic that is told where it is lost or made.
 inline constexpr double least_share_of_note = 0.01;
 
 /// What light paths that are traced to find out bring to the receivers of a scene.

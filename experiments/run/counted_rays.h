@@ -13,7 +13,7 @@ namespace caustics::experiments {
 
 /// How a method that searches for rays at points counts the light that arrives on receivers.
 struct CountedRays {
-    /// Of the light of the rays that were asked about, with its standard error.
+    /// A share of the light of the rays that were asked about, with its standard error.
     struct Share {
         double value = 0;
         double error = 0;
@@ -28,8 +28,8 @@ struct CountedRays {
 std::optional<CountedRays> counted_rays(const Scene& scene, const CausticEstimator& built,
                                         int max_bounces, int threads);
 
-/// A line each where 1 % or more of the light is not found, beside what the ledger tells, or is spread; no more than
-/// chance is not told.
+/// One line for light that is not found and that the ledger does not tell of, and one for light that is spread. A share below
+/// 1 %, or below two standard errors, has no line.
 std::vector<std::string> notes_on(const CountedRays& rays, const CausticLedger& ledger);
 
 }  // namespace caustics::experiments

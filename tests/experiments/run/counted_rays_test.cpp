@@ -22,7 +22,7 @@ TEST(CountedRays, AreOneByOneUpToRootEventsAndSpreadBeyond) {
     EXPECT_EQ(exact.asked, 512U);
     EXPECT_LE(exact.missed.value, 0.005);
     EXPECT_LE(exact.spread.value, 0.005);
-    // The mirror ball sees the light that has passed the glass, and a third of it comes to the floor.
+    // Light that has passed the glass comes to the floor after a third event, at the mirror ball.
     const auto coarse = counted_by("beamtree", {"mesh_resolution=24"}).value();
     EXPECT_LE(coarse.missed.value, 0.01);
     EXPECT_GE(coarse.spread.value, 0.02);
@@ -71,7 +71,7 @@ TEST(CountedRays, TellWhatIsMissedAndWhatIsSpread) {
     EXPECT_NE(told[0].find("% of the light that arrives on receivers is not found"),
               std::string::npos);
     EXPECT_NE(told[1].find("is spread over images of polygons"), std::string::npos);
-    // What the ledger tells already is not told again.
+    // Light that the ledger tells of is not told again.
     ledger.light.arrived = 0.75;
     ledger.missed_by_pruning = 0.25;
     EXPECT_EQ(notes_on(rays, ledger).size(), 1U);
