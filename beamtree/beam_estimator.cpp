@@ -11,12 +11,13 @@ void BeamSearch::add_to(Counters& counters) const {
 }
 
 BeamEstimator::BeamEstimator(const Scene& scene, TracedScene traced, std::uint32_t rest_nearest,
-                             int threads)
+                             int threads, PencilMap pencils)
     : report_(traced.report()),
       sets_(std::move(traced.sets)),
       light_(scene, sets_),
-      rest_(std::move(traced.rest), rest_nearest, threads) {
-    report_.bytes += rest_.bytes();
+      rest_(std::move(traced.rest), rest_nearest, threads),
+      pencils_(std::move(pencils)) {
+    report_.bytes += rest_.bytes() + pencils_.bytes();
 }
 
 std::unique_ptr<QueryContext> BeamEstimator::make_context() const {
@@ -25,12 +26,14 @@ std::unique_ptr<QueryContext> BeamEstimator::make_context() const {
 
 void BeamEstimator::radiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                              QueryContext& context) const {
-    answer(points, out, context, &BeamLight::radiance, &PhotonDiscs::radiance);
+    answer(points, out, context, &BeamLight::radiance, &PhotonDiscs::radiance,
+           &PencilMap::radiance);
 }
 
 void BeamEstimator::irradiance(std::span<const ReceiverPoint> points, std::span<Estimate> out,
                                QueryContext& context) const {
-    answer(points, out, context, &BeamLight::irradiance, &PhotonDiscs::irradiance);
+    answer(points, out, context, &BeamLight::irradiance, &PhotonDiscs::irradiance,
+           &PencilMap::irradiance);
 }
 
 template <typename Take>
@@ -47,17 +50,24 @@ void BeamEstimator::for_each_point(std::span<const ReceiverPoint> points, BeamSe
 }
 
 void BeamEstimator::answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                           QueryContext& context, Query query, RestQuery of_rest) const {
+                           QueryContext& context, Query query, RestQuery of_rest,
+                           PencilQuery of_pencils) const {
     auto& search = dynamic_cast<BeamSearch&>(context);
     for_each_point(points, search, [&](std::size_t i, std::vector<BeamHit>& hits) {
         out[i] = {(light_.*query)(points[i], hits, search.roots), black()};
         if (!rest_.is_empty()) out[i].value += (rest_.*of_rest)(points[i], search.disc_stack);
+        if (pencils_.is_empty()) return;
+        ReceiverPoint point = points[i];
+        const std::optional<PixelCell> own = square(point);
+        if (own) point.cell = &*own;
+        out[i].value += (pencils_.*of_pencils)(point, search.disc_stack);
     });
 }
 
 std::optional<std::vector<RayCount>> BeamEstimator::count_rays(std::span<const ArrivingLight> rays,
                                                                QueryContext& context) const {
-    if (!light_.searches_roots()) return {};
+    // Pencils search for no ray.
+    if (!light_.searches_roots() || !pencils_.is_empty()) return {};
     auto& search = dynamic_cast<BeamSearch&>(context);
     std::vector<ReceiverPoint> points;
     for (const ArrivingLight& ray : rays) points.push_back(ray.point);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "beamtree/light/beam_light.h"
+#include "beamtree/pencils/pencil_map.h"
 #include "beamtree/rest/photon_discs.h"
 #include "beamtree/tracing/traced_scene.h"
 
@@ -38,7 +39,7 @@ protected:
     /// Keeps the beams, and the photons that complete their light, each with a disc that reaches to so many others;
     /// the casters' meshes are needed no more.
     BeamEstimator(const Scene& scene, TracedScene traced, std::uint32_t rest_nearest = 0,
-                  int threads = 1);
+                  int threads = 1, PencilMap pencils = {});
 
     const std::vector<BeamSet>& sets() const { return sets_; }
 
@@ -46,13 +47,18 @@ private:
     /// Appends the beams that hold each point to its list of `search.hits`; `search` is of the kind
     /// that the method's make_context() makes.
     virtual void find(std::span<const ReceiverPoint> points, BeamSearch& search) const = 0;
+    /// The square round a point that it stands for, where the method has squares of its own.
+    virtual std::optional<PixelCell> square(const ReceiverPoint&) const { return {}; }
 
     using Query = Spectrum (BeamLight::*)(const ReceiverPoint&, std::vector<BeamHit>&,
                                           RootScratch&) const;
     using RestQuery = Spectrum (PhotonDiscs::*)(const ReceiverPoint&,
                                                 std::vector<std::uint32_t>&) const;
+    using PencilQuery = Spectrum (PencilMap::*)(const ReceiverPoint&,
+                                                std::vector<std::uint32_t>&) const;
     void answer(std::span<const ReceiverPoint> points, std::span<Estimate> out,
-                QueryContext& context, Query query, RestQuery of_rest) const;
+                QueryContext& context, Query query, RestQuery of_rest,
+                PencilQuery of_pencils) const;
 
     /// Finds the beams that hold each of these points, and calls take(index, hits).
     template <typename Take>
@@ -63,6 +69,7 @@ private:
     std::vector<BeamSet> sets_;
     BeamLight light_;
     PhotonDiscs rest_;
+    PencilMap pencils_;
 };
 
 }  // namespace caustics::beamtree

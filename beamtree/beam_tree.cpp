@@ -1,5 +1,8 @@
 #include "beamtree/beam_tree.h"
 
+#include <utility>
+
+#include "beamtree/beam_plan.h"
 #include "beamtree/forest.h"
 #include "beamtree/sampled_beams.h"
 
@@ -23,12 +26,13 @@ public:
 class BeamTree final : public BeamEstimator {
 public:
     BeamTree(const Scene& scene, TracedScene traced, Forest forest, const BeamTreeParams& params,
-             int threads)
+             PencilMap pencils, BuildReport plan, int threads)
         : BeamEstimator(scene, std::move(traced), static_cast<std::uint32_t>(params.rest_nearest),
-                        threads),
+                        threads, std::move(pencils)),
           forest_(std::move(forest)),
           footprint_(static_cast<double>(params.footprint)),
-          pixel_footprint_(params.pixel_footprint) {}
+          pixel_footprint_(params.pixel_footprint),
+          plan_(std::move(plan)) {}
 
     bool asks_for_cells() const override { return pixel_footprint_; }
 
@@ -39,6 +43,8 @@ public:
     BuildReport build_report() const override {
         BuildReport report = BeamEstimator::build_report();
         forest_.add_to(report);
+        report.counters.insert(plan_.counters.begin(), plan_.counters.end());
+        report.resolved.insert(plan_.resolved.begin(), plan_.resolved.end());
         return report;
     }
 
@@ -47,23 +53,58 @@ private:
         if (footprint_ == 0) return forest_.find(sets(), points, search);
         auto& own = dynamic_cast<ConeSearch&>(search);
         own.squares.clear();
-        for (const ReceiverPoint& point : points)
-            own.squares.push_back(
-                PixelCell::square(point.geometric_normal.cast<double>(), footprint_));
+        for (const ReceiverPoint& point : points) own.squares.push_back(*square(point));
         own.points.assign(points.begin(), points.end());
         for (std::size_t i = 0; i < points.size(); ++i) own.points[i].cell = &own.squares[i];
         forest_.find(sets(), own.points, search);
     }
 
+    std::optional<PixelCell> square(const ReceiverPoint& point) const override {
+        if (footprint_ == 0) return {};
+        return PixelCell::square(point.geometric_normal.cast<double>(), footprint_);
+    }
+
     Forest forest_;
     double footprint_;
     bool pixel_footprint_;
+    BuildReport plan_;
 };
 
 Completion completion(const BeamTreeParams& params) {
     using Rest = BeamTreeParams::Rest;
     if (params.rest == Rest::none) return {};
-    return {static_cast<std::uint64_t>(params.rest_photons), params.rest == Rest::max_beams};
+    return {static_cast<std::uint64_t>(params.rest_photons), params.rest != Rest::photons};
+}
+
+/// What `rest: pencils` makes of the parameters, and the pencils.
+struct Planned {
+    BeamTreeParams params;
+    bool has_beams = true;
+    PencilMap pencils;
+    BuildReport report;
+};
+
+Planned planned(const Scene& scene, const BeamTreeParams& params, const RunOptions& options) {
+    Planned planned{params, true, {}, {}};
+    if (params.rest != BeamTreeParams::Rest::pencils) return planned;
+    options.phase("plan");
+    const BeamPlan plan = plan_beams(scene, params, options);
+    planned.has_beams = plan.beam_events > 0;
+    if (planned.has_beams) planned.params.max_bounces = plan.beam_events;
+    planned.report.resolved["beam_events"] = plan.beam_events;
+    planned.report.resolved["beam_share"] = 1;
+    if (!plan.needs_pencils) return planned;
+    options.phase("pencils");
+    ScenePencils pencils = trace_scene_pencils(
+        scene, params, static_cast<std::uint64_t>(params.rest_photons), options);
+    planned.report.counters["pencils"] = pencils.traced.traced;
+    planned.report.resolved["beam_share"] = pencils.share_up_to(plan.beam_events);
+    std::erase_if(pencils.traced.prints, [&](const PencilPrint& print) {
+        return std::cmp_less_equal(print.events, plan.beam_events);
+    });
+    planned.report.counters["pencil_prints"] = pencils.traced.prints.size();
+    planned.pencils = PencilMap(std::move(pencils.traced.prints), pencils.lights, options.threads);
+    return planned;
 }
 
 }  // namespace
@@ -71,11 +112,15 @@ Completion completion(const BeamTreeParams& params) {
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
     if (params.sampled) return sampled_beams(scene, "beamtree", params, options);
-    TracedScene traced = trace_scene(scene, "beamtree", params, options, params.intensity,
-                                     params.footprint, completion(params), params.root_events);
+    Planned plan = planned(scene, params, options);
+    TracedScene traced;
+    if (plan.has_beams)
+        traced = trace_scene(scene, "beamtree", plan.params, options, params.intensity,
+                             params.footprint, completion(params), params.root_events);
     options.phase("tree");
     Forest forest(scene, traced, params, options);
     return std::make_unique<BeamTree>(scene, std::move(traced), std::move(forest), params,
+                                      std::move(plan.pencils), std::move(plan.report),
                                       options.threads);
 }
 

@@ -1,5 +1,8 @@
 #include "beamtree/beam_tree_method.h"
 
+#include <algorithm>
+#include <array>
+
 #include "beamtree/beam_param_table.h"
 
 namespace caustics::beamtree {
@@ -82,21 +85,32 @@ std::vector<Parameter<P>> tree_parameters() {
             {.key = "pixel_footprint",
              .meaning = "With two_slice: averages over each pixel as the camera sees it on the "
                         "receiver; what mirrors and glass show is asked at points."})
-            .only_if([](const P& p) { return p.pixel_footprint; }),
+            .only_if([](const P& p) { return p.bound == Bound::two_slice && p.footprint == 0; }),
         parameter::choice<P>(
             &P::rest,
             {{"none", P::Rest::none},
              {"max_beams", P::Rest::max_beams},
-             {"photons", P::Rest::photons}},
+             {"photons", P::Rest::photons},
+             {"pencils", P::Rest::pencils}},
             {.key = "rest",
              .meaning =
                  "What becomes of light that no beam carries. none: it is lost. max_beams: photons "
                  "carry what max_beams leaves out. photons: they carry what prune leaves out, too, "
-                 "and what polygons are too coarse for."})
+                 "and what polygons are too coarse for. pencils: beams carry the light that they "
+                 "are good at (beam_events), and pencils of light paths all other. Where a "
+                 "parameter of beams alone is given, usually max_beams."})
             .only_if([](const P& p) {
-                return p.rest == P::Rest::photons || (p.rest == P::Rest::none && p.preset.empty() &&
-                                                      p.dispersion == Dispersion::bins);
+                return p.rest == P::Rest::photons || p.rest == P::Rest::pencils ||
+                       (p.rest == P::Rest::none && p.preset.empty() &&
+                        p.dispersion == Dispersion::bins);
             }),
+        parameter::whole_number<P>(
+            &P::beam_events, 0, preset_bounces,
+            {.key = "beam_events",
+             .meaning = "With pencils: beams carry the light of up to so many specular events. By "
+                        "default of as many as cost little; the record has their number."})
+            .only_if([](const P& p) { return p.beam_events != P::planned; })
+            .usually("by a sample of the scene"),
         parameter::whole_number<P>(
             &P::rest_photons, 1, 1'000'000'000,
             {.key = "rest_photons",
@@ -138,6 +152,13 @@ void settle_intensity(const JsonNode& node, const P& params) {
         given->fail("only the intensity \"refined\" searches for rays");
 }
 
+// Averages over pixels are the default where they can be.
+void settle_pixels(const JsonNode& node, P& params) {
+    if (!node.has("pixel_footprint"))
+        params.pixel_footprint = params.pixel_footprint && params.bound == Bound::two_slice &&
+                                 params.footprint == 0 && params.dispersion == Dispersion::bins;
+}
+
 void settle_footprint(const JsonNode& node, const P& params) {
     for (const char* key : {"footprint", "pixel_footprint"})
         if (const auto given = node.find(key); given && params.bound != Bound::two_slice)
@@ -156,12 +177,29 @@ void settle_footprint(const JsonNode& node, const P& params) {
                 "pixel_footprint)");
 }
 
+// Beams themselves are what some parameters ask about.
+bool asks_for_beams(const JsonNode& node, const P& params) {
+    return params.bound != Bound::two_slice ||
+           std::ranges::any_of(
+               std::array{"root_events", "mesh_resolution", "polygons", "prune", "max_beams"},
+               [&](const char* key) { return node.has(key); });
+}
+
 void settle_rest(const JsonNode& node, P& params) {
+    if (params.preset.empty() && !node.has("rest") && !node.has("beam_events") &&
+        asks_for_beams(node, params))
+        params.rest = P::Rest::max_beams;
+    if (const auto given = node.find("beam_events"); given && params.rest != P::Rest::pencils)
+        given->fail("only \"rest\": \"pencils\" shares light with beams");
     if (params.rest == P::Rest::none)
         for (const char* key : {"rest_photons", "rest_nearest"})
             if (const auto given = node.find(key))
                 given->fail(
                     "\"rest\": \"none\" traces no photons (take \"max_beams\" or \"photons\")");
+    // Pencils follow paths to their end; levels of beams cost too much for so many.
+    if (params.rest == P::Rest::pencils && !node.has("max_bounces") &&
+        params.dispersion == Dispersion::bins)
+        params.max_bounces = most_bounces;
     if (params.dispersion != Dispersion::intervals) return;
     if (node.has("rest") && params.rest != P::Rest::none)
         node.at("dispersion").fail("photons complete no intervals (take \"bins\")");
@@ -199,6 +237,7 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
              [](const JsonNode& node, P& params) {
                  settle_bound(node, params);
                  settle_intensity(node, params);
+                 settle_pixels(node, params);
                  settle_footprint(node, params);
                  settle_tree(node, params);
                  settle_rest(node, params);

@@ -24,7 +24,8 @@ struct BeamTreeParams : BeamParams {
     enum class Rest {
         none,       ///< light that `prune` and `max_beams` leave out is lost
         max_beams,  ///< photons carry what `max_beams` leaves out
-        photons     ///< and what `prune` does, or polygons too coarse for what they meet
+        photons,    ///< and what `prune` does, or polygons too coarse for what they meet
+        pencils     ///< as `max_beams`; beams carry light of few events, and pencils all other
     };
     std::string preset = {};  ///< name of the settings that were taken in place of the defaults
     Bound bound = Bound::two_slice;
@@ -41,10 +42,13 @@ struct BeamTreeParams : BeamParams {
     /// a fixed plane, and polygons that the plane cuts, are asked at the point.
     float footprint = 0;
     /// The same over the cell of the pixel or its stratum that a point stands for, where the camera sees it directly.
-    bool pixel_footprint = false;
-    Rest rest = Rest::max_beams;
+    bool pixel_footprint = true;
+    Rest rest = Rest::pencils;
+    static constexpr int planned = -1;
+    /// With `pencils`: beams carry the light of up to so many events, or of as many as are worth it (beam_plan.h).
+    int beam_events = planned;
     std::int64_t rest_photons =
-        300'000;            ///< paths for all light on casters; what is left out has its share
+        200'000;            ///< paths for all light on casters; what is left out has its share
     int rest_nearest = 50;  ///< photons that a photon's disc reaches to
 
     /// The settings of [CC95]: hybrid cones, merged from their children's, over the caster's own
@@ -58,6 +62,7 @@ struct BeamTreeParams : BeamParams {
         params.intensity = Intensity::area;
         params.max_bounces = preset_bounces;
         params.rest = Rest::none;
+        params.pixel_footprint = false;
         return params;
     }
 };

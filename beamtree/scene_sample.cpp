@@ -35,6 +35,15 @@ std::uint64_t count_polygons(const Scene& scene, OwnFrameMeshes& meshes) {
     return count;
 }
 
+}  // namespace
+
+std::uint64_t count_polygons(const Scene& scene, int mesh_resolution) {
+    OwnFrameMeshes meshes(mesh_resolution);
+    return count_polygons(scene, meshes);
+}
+
+namespace {
+
 std::size_t pick(std::size_t count, Rng& rng) {
     return static_cast<std::size_t>(rng.next_fine() * static_cast<double>(count));
 }

@@ -17,6 +17,9 @@ struct SceneSample {
     BuildReport report() const;
 };
 
+/// Of all casters; exact ones are tessellated.
+std::uint64_t count_polygons(const Scene& scene, int mesh_resolution);
+
 /// Traces beams of polygons drawn at random, as far as they have light to speak of, until their number is enough to
 /// judge by. The work is bounded, whatever the scene. Throws what trace_scene throws, as far as the sample tells.
 SceneSample sample_scene(const Scene& scene, const std::string& method, const BeamParams& params,

@@ -18,6 +18,7 @@ void sample_area_light(const Scene& scene, const AreaLight& light, LightSample s
         sample.strength = light.radiance * static_cast<float>(point.area);
         sample.position = point.position;
         sample.normal = point.normal;
+        sample.area = point.area;
         sample.offset = point.offset;
         samples.push_back(sample);
     }

@@ -23,6 +23,7 @@ struct LightSample {
     Vec3 travel = Vec3::Zero();    ///< of a directional light: unit, the way the light goes
     Vec3 normal = Vec3::Zero();    ///< unit, of the area light there; else zero
     float offset = 0;              ///< of rays that leave the area light [m]
+    double area = 0;               ///< of the area light's part that it stands for [m^2]
     Box bounds;                    ///< directional: of the scene, outside of which its rays begin
     Spectrum strength = black();   ///< point [W/sr]; area [W/sr] along the normal;
                                    ///< directional [W/m^2] across the direction

@@ -12,7 +12,7 @@ namespace {
 
 // The angle under which the light may see an edge, and one in flat glass of a mesh as it is: what a
 // plane mirror reflects comes from a point, what a plane refracts does not.
-constexpr double widest = pi_d / 6;
+constexpr double widest_seen = pi_d / 6;
 constexpr double widest_in_flat_glass = pi_d / 24;
 // Normals that turn by less, of the angle under which the light sees the edge, bend it as a plane does.
 constexpr double flat_turn = 0.05;
@@ -55,11 +55,11 @@ Vec3d NearLight::from_light(const MeshPoint& point) const {
 }
 
 NearLight::Edge NearLight::edge(const MeshPoint& a, const MeshPoint& b) const {
-    if (!is_glass_mesh_) return {widest, 0};
+    if (!is_glass_mesh_) return {widest_seen, 0};
     const double turn = static_cast<double>((a.normal - b.normal).norm());
     const bool is_flat = is_flat_between(a.normal, b.normal) ||
                          turn < flat_turn * angle_between(from_light(a), from_light(b));
-    return {is_flat ? widest_in_flat_glass : widest, 0};
+    return {is_flat ? widest_in_flat_glass : widest_seen, 0};
 }
 
 bool NearLight::is_wide(const MeshPoint& a, const MeshPoint& b, const Edge& edge) const {

@@ -5,20 +5,14 @@
 #include <variant>
 
 #include "core/geometry/surface_offset.h"
+#include "core/light_path/ray_change.h"
 #include "core/material/optics.h"
 
 namespace caustics::beamtree {
 
-/// The two directions and the normal at an event, all on the side of arrival.
-struct LightChain::Bend {
-    Vec3d w;
-    Vec3d n;
-    Vec3d direction;
-    double side;    ///< -1 where the light comes to the back: n is the surface's normal times this
-    double cosine;  ///< of w and n
-    bool refracts;
-    double eta = 1;    ///< relative refractive index, of refraction
-    double inner = 1;  ///< cosine of the refracted direction and -n
+struct LightChain::Bend : SpecularBend {
+    Vec3d direction;  ///< in which the light leaves
+    double side;  ///< -1 where the light comes to the back: n is the surface's normal times this
 };
 
 namespace {
@@ -67,21 +61,12 @@ std::optional<LightChain::Bend> LightChain::bend(const Arrival& arrival) const {
     return bend;
 }
 
-// The same laws, differentiated: a light may be much nearer to the surface than any step over which differences of
-// directions would be taken.
+// By derivatives: a light may be much nearer to the surface than any step over which differences of directions would be
+// taken.
 bool LightChain::leave(const Arrival& arrival, const Bend& bend, ChainRay& ray) const {
-    for (std::size_t i = 0; i < 2; ++i) {
-        const Vec3d by_n = bend.side * arrival.by_normal[i];
-        const Vec3d& by_w = arrival.by_w[i];
-        const double by_cosine = by_n.dot(bend.w) + bend.n.dot(by_w);
-        if (!bend.refracts) {
-            ray.by_direction[i] = 2 * (by_cosine * bend.n + bend.cosine * by_n) - by_w;
-            continue;
-        }
-        const double by_inner = bend.cosine * by_cosine / (bend.eta * bend.eta * bend.inner);
-        ray.by_direction[i] = (by_cosine * bend.n + bend.cosine * by_n - by_w) / bend.eta -
-                              by_inner * bend.n - bend.inner * by_n;
-    }
+    for (std::size_t i = 0; i < 2; ++i)
+        ray.by_direction[i] =
+            bend.direction_change(arrival.by_w[i], bend.side * arrival.by_normal[i]);
     ray.position = arrival.place.position;
     ray.across = arrival.place.across;
     ray.offset = arrival.offset;
@@ -142,7 +127,6 @@ std::optional<LightChain::Arrival> LightChain::next_arrival(const Arrival& befor
         ray.offset = std::max(rounding_offset(place->position.cast<float>()),
                               static_cast<float>(least_[number]));
     const double way = ray.direction.dot(place->position - ray.position);
-    const double slant = place->across.dot(ray.direction);
     Arrival arrival{.shape = &scene_.shapes()[shape],
                     .place = *place,
                     .w = -ray.direction,
@@ -153,8 +137,9 @@ std::optional<LightChain::Arrival> LightChain::next_arrival(const Arrival& befor
                     .by_w = {-ray.by_direction[0], -ray.by_direction[1]},
                     .by_normal = {}};
     for (std::size_t i = 0; i < 2; ++i) {
-        const Vec3d moved = ray.by_position[i] + way * ray.by_direction[i];
-        ray.by_position[i] = moved - place->across.dot(moved) / slant * ray.direction;
+        ray.by_position[i] =
+            at_surface({ray.by_position[i], ray.by_direction[i]}, ray.direction, way, place->across)
+                .place;
         arrival.by_normal[i] = surface.normal_change(*place, ray.by_position[i]);
     }
     return arrival;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "beamtree/beams/bin_share.h"
+#include "beamtree/rest/leaf_heap.h"
 #include "core/base/parallel.h"
 #include "core/scene/same_surface.h"
 
@@ -20,12 +21,6 @@ constexpr std::size_t leaves_together = 64;
 
 bool face_alike(const Vec3& normal, const RestPhoton& photon) {
     return photon.normal.dot(normal) > same_surface_cosine && photon.wi.dot(normal) > 0;
-}
-
-// Of the boxes of a heap, the leaves' given.
-void unite(std::vector<Box>& boxes) {
-    for (std::size_t i = boxes.size() / 2; i-- > 1;)
-        boxes[i] = boxes[2 * i].merged(boxes[2 * i + 1]);
 }
 
 /// How far from photons their neighbours lie.
@@ -88,7 +83,7 @@ PhotonDiscs::PhotonDiscs(std::vector<RestPhoton> photons, std::uint32_t nearest,
     : photons_(std::move(photons)) {
     if (photons_.empty()) return;
     leaves_.resize(std::bit_ceil((photons_.size() + leaf_size - 1) / leaf_size));
-    sort_photons(threads);
+    sort_into_leaves(photons_, leaves_.size(), threads);
     find_widths(nearest, threads);
     bound_discs();
 }
@@ -98,33 +93,8 @@ std::uint64_t PhotonDiscs::bytes() const {
            boxes_.size() * sizeof(Box);
 }
 
-// Halves their number across the longest side, level by level.
-void PhotonDiscs::sort_photons(int threads) {
-    const auto at = [this](std::size_t leaf) {
-        return photons_.begin() + static_cast<std::ptrdiff_t>(first_of(leaf));
-    };
-    for (std::size_t width = leaves_.size(); width > 1; width /= 2)
-        parallel_chunks(threads, leaves_.size() / width, 1, [&](const Chunk& chunk) {
-            const std::size_t leaf = chunk.first * width;
-            Box box;
-            for (auto photon = at(leaf); photon != at(leaf + width); ++photon)
-                box.extend(photon->position);
-            if (box.isEmpty()) return;
-            Eigen::Index axis = 0;
-            box.sizes().maxCoeff(&axis);
-            std::nth_element(at(leaf), at(leaf + width / 2), at(leaf + width),
-                             [axis](const RestPhoton& a, const RestPhoton& b) {
-                                 return a.position[axis] < b.position[axis];
-                             });
-        });
-}
-
 void PhotonDiscs::find_widths(std::uint32_t nearest, int threads) {
-    boxes_.resize(2 * leaves_.size());
-    for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
-        for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
-            boxes_[leaves_.size() + leaf].extend(photons_[i].position);
-    unite(boxes_);
+    boxes_ = boxes_of_positions(photons_, leaves_.size());
     parallel_chunks(threads, leaves_.size(), leaves_together, [&](const Chunk& chunk) {
         Neighbours neighbours(photons_, boxes_);
         float guess = infinity;
@@ -188,19 +158,9 @@ Spectrum PhotonDiscs::sum(const ReceiverPoint& point, std::vector<std::uint32_t>
                           const Weight& weight) const {
     SpectrumSum sum = SpectrumSum::Zero();
     if (photons_.empty()) return black();
-    const std::size_t count = leaves_.size();
-    stack.assign(1, 1);
-    while (!stack.empty()) {
-        const std::size_t node = stack.back();
-        stack.pop_back();
-        if (!boxes_[node].contains(point.position)) continue;
-        if (node >= count) {
-            add_leaf(node - count, point, weight, sum);
-            continue;
-        }
-        stack.push_back(static_cast<std::uint32_t>(2 * node + 1));
-        stack.push_back(static_cast<std::uint32_t>(2 * node));
-    }
+    for_each_leaf(
+        boxes_, stack, [&](const Box& box) { return box.contains(point.position); },
+        [&](std::size_t leaf) { add_leaf(leaf, point, weight, sum); });
     return sum.cast<float>();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "beamtree/rest/leaf_heap.h"
 #include "beamtree/rest/rest_photon.h"
 #include "core/receiver_point.h"
 
@@ -36,8 +37,9 @@ private:
         std::array<float, leaf_size> squared_radius{};
     };
 
-    std::size_t first_of(std::size_t leaf) const { return leaf * photons_.size() / leaves_.size(); }
-    void sort_photons(int threads);
+    std::size_t first_of(std::size_t leaf) const {
+        return first_of_leaf(leaf, photons_.size(), leaves_.size());
+    }
     void find_widths(std::uint32_t nearest, int threads);
     void bound_discs();
     template <typename Weight>
@@ -49,8 +51,7 @@ private:
 
     std::vector<RestPhoton> photons_;  ///< leaf by leaf
     std::vector<Leaf> leaves_;         ///< a power of two
-    std::vector<Box>
-        boxes_;  ///< of discs: the children of i are 2 i and 2 i + 1, the root is 1, leaves come last
+    std::vector<Box> boxes_;           ///< of discs (leaf_heap.h)
 };
 
 }  // namespace caustics::beamtree

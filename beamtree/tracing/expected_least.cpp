@@ -132,12 +132,40 @@ double beams_of_polygon(double polygons, std::uint64_t max_beams) {
     return filling * static_cast<double>(max_beams) / polygons;
 }
 
+// Of polygons that are drawn, so many as all have where all are `max_beams`.
+std::uint64_t most_of_draws(double polygons, std::uint64_t max_beams, std::size_t drawn) {
+    return static_cast<std::uint64_t>(beams_of_polygon(polygons, max_beams) *
+                                      static_cast<double>(drawn)) +
+           1;
+}
+
+// What matters for their number.
+TraceSettings alone(const TraceSettings& settings) {
+    return {.max_bounces = settings.max_bounces,
+            .prune = settings.prune,
+            .least_divided = settings.least_divided,
+            .divided_share = settings.divided_share};
+}
+
 }  // namespace
 
 std::size_t draw_count(double polygons, std::uint64_t max_beams) {
     const double most = std::clamp(polygons, fewest_polygons, most_polygons);
     return static_cast<std::size_t>(
         std::clamp(enough / beams_of_polygon(polygons, max_beams), fewest_polygons, most));
+}
+
+bool beams_fit(const Scene& scene, const std::vector<CasterMesh>& casters,
+               const std::vector<LightSample>& lights, const TraceSettings& settings,
+               const RunOptions& options) {
+    const SceneBoxes boxes = scene_boxes(scene);
+    Draws draws(scene, boxes, casters, lights, options);
+    if (draws.polygons() == 0) return true;
+    const std::size_t count = draw_count(draws.polygons(), settings.max_beams);
+    Rng rng(options.seed, Stage::beams, lights.size());
+    draws.draw(casters, count, rng);
+    return draws.have_at_most(most_of_draws(draws.polygons(), settings.max_beams, count),
+                              alone(settings));
 }
 
 double expected_least(const Scene& scene, const SceneBoxes& boxes,
@@ -148,24 +176,20 @@ double expected_least(const Scene& scene, const SceneBoxes& boxes,
     if (settings.max_bounces == 1 || settings.max_beams == BeamBudget::no_limit ||
         draws.polygons() == 0)
         return 0;
-    const double a_polygon = beams_of_polygon(draws.polygons(), settings.max_beams);
     const std::size_t count = draw_count(draws.polygons(), settings.max_beams);
     Rng rng(options.seed, Stage::beams, lights.size());
     draws.draw(casters, count, rng);
-    const TraceSettings alone{.max_bounces = settings.max_bounces,
-                              .prune = settings.prune,
-                              .least_divided = settings.least_divided,
-                              .divided_share = settings.divided_share};
-    const auto most = static_cast<std::uint64_t>(a_polygon * static_cast<double>(count)) + 1;
-    if (draws.have_at_most(most, alone)) return 0;
+    const TraceSettings own = alone(settings);
+    const std::uint64_t most = most_of_draws(draws.polygons(), settings.max_beams, count);
+    if (draws.have_at_most(most, own)) return 0;
     const double mean = draws.mean_light();
     for (double share = first_try; share > last_try; share *= step) {
         BeamBudget budget(most, share * mean);
-        draws.count(alone, budget);
+        draws.count(own, budget);
         if (budget.is_over()) return budget.least();
     }
     BeamBudget budget(most);
-    draws.count(alone, budget);
+    draws.count(own, budget);
     return budget.least();
 }
 

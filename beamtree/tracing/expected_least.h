@@ -15,6 +15,12 @@ double expected_least(const Scene& scene, const SceneBoxes& boxes,
                       const std::vector<LightSample>& lights, const TraceSettings& settings,
                       const RunOptions& options);
 
+/// Whether all beams of several events that are bright enough (`prune`) are at most `max_beams`, as polygons drawn at
+/// random tell.
+bool beams_fit(const Scene& scene, const std::vector<CasterMesh>& casters,
+               const std::vector<LightSample>& lights, const TraceSettings& settings,
+               const RunOptions& options);
+
 /// How many polygons are drawn for that, where there are so many, counted once a light: about as many as make enough
 /// beams of those that are kept, but no more than there are, or than a few. So a small budget costs little.
 std::size_t draw_count(double polygons, std::uint64_t max_beams);

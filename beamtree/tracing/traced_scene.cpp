@@ -108,6 +108,14 @@ const CasterMesh& TracedScene::caster(std::uint32_t shape) const {
     throw std::logic_error("no caster of that shape");
 }
 
+TraceSettings settings_of_beams(const BeamParams& params, int most_events, std::uint64_t most) {
+    return {.max_bounces = most_events,
+            .prune = params.prune,
+            .least_divided = least_divided,
+            .divided_share = divided_share,
+            .max_beams = most};
+}
+
 TracedScene trace_scene(const Scene& scene, const std::string& method, const BeamParams& params,
                         const RunOptions& options, Intensity intensity, float footprint,
                         Completion rest, int root_events) {
@@ -120,16 +128,13 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
         if (walls.share > traced.walls.share) traced.walls = walls;
     }
     if (disperses(scene)) traced.wavelengths = params.wavelengths;
-    const TraceSettings settings{.intensity = intensity,
-                                 .max_bounces = params.max_bounces,
-                                 .root_events = root_events,
-                                 .prune = params.prune,
-                                 .least_divided = least_divided,
-                                 .divided_share = divided_share,
-                                 .max_beams = static_cast<std::uint64_t>(params.max_beams),
-                                 .receiver_margin = near_receiver * scene.diameter() + footprint,
-                                 .rest = rest,
-                                 .sampled_photons = sampled_photons};
+    TraceSettings settings =
+        settings_of_beams(params, params.max_bounces, static_cast<std::uint64_t>(params.max_beams));
+    settings.intensity = intensity;
+    settings.root_events = root_events;
+    settings.receiver_margin = near_receiver * scene.diameter() + footprint;
+    settings.rest = rest;
+    settings.sampled_photons = sampled_photons;
     TracedBeams beams = trace_all_beams(scene, traced.casters, lights, settings, options);
     traced.sets = std::move(beams.sets);
     traced.rest = std::move(beams.rest);

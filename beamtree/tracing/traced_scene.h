@@ -30,6 +30,9 @@ struct TracedScene {
     const CasterMesh& caster(std::uint32_t shape) const;
 };
 
+/// How beams of up to so many events are traced to be counted, `most` of them.
+TraceSettings settings_of_beams(const BeamParams& params, int most_events, std::uint64_t most);
+
 /// Phase "beams". Beams that pass all receivers, squares of a side `footprint` [m] round their points too, are not
 /// kept. TraceSettings tells of `root_events`. `rest` completes light that beams leave out; without, it is lost.
 /// Throws UnsupportedScene, in the name of `method`, where beams lose more than half of the light on its way to

@@ -34,6 +34,7 @@ enum class Stage : std::uint32_t {
     indirect_light_trace = 15,
     indirect_path_trace = 16,
     shadow_photons = 17,
+    pencils = 18,
     test = 100,
 };
 

@@ -85,14 +85,38 @@ TEST(BeamTreeParams, AveragesOverSquaresOfTheSlicesPlanes) {
 }
 
 TEST(BeamTreeParams, AverageOverPixels) {
-    EXPECT_FALSE(params("{}").pixel_footprint);
-    EXPECT_TRUE(params(R"({"pixel_footprint": true})").pixel_footprint);
+    EXPECT_TRUE(params("{}").pixel_footprint);
+    EXPECT_FALSE(params(R"({"pixel_footprint": false})").pixel_footprint);
+    for (const std::string other :
+         {R"("bound": "hybrid")", R"("preset": "chuang1995")", R"("footprint": 0.1)",
+          R"("wavelengths": 4, "dispersion": "intervals")"})
+        EXPECT_FALSE(params("{" + other + "}").pixel_footprint) << other;
     for (const std::string other :
          {R"("bound": "hybrid")", R"("preset": "chuang1995")", R"("footprint": 0.1)",
           R"("wavelengths": 4, "dispersion": "intervals")"}) {
         const std::string line = error(R"({"pixel_footprint": true, )" + other + "}");
         EXPECT_NE(line.find("footprint"), std::string::npos) << line;
     }
+}
+
+// Who gives a parameter of beams asks about beams.
+TEST(BeamTreeParams, LeaveLightToPencilsUnlessBeamsAreAskedFor) {
+    using Rest = BeamTreeParams::Rest;
+    EXPECT_EQ(params("{}").rest, Rest::pencils);
+    EXPECT_EQ(params("{}").max_bounces, most_bounces);
+    EXPECT_EQ(params(R"({"max_bounces": 3})").max_bounces, 3);
+    EXPECT_EQ(params(R"({"light_samples": 4})").rest, Rest::pencils);
+    for (const std::string asked :
+         {R"("max_beams": 1000)", R"("prune": 0)", R"("mesh_resolution": 8)", R"("root_events": 3)",
+          R"("polygons": "triangles")", R"("bound": "hybrid")"}) {
+        EXPECT_EQ(params("{" + asked + "}").rest, Rest::max_beams) << asked;
+        EXPECT_EQ(params("{" + asked + "}").max_bounces, preset_bounces) << asked;
+        EXPECT_EQ(params(R"({"rest": "pencils", )" + asked + "}").rest, Rest::pencils) << asked;
+    }
+    EXPECT_EQ(params(R"({"preset": "chuang1995"})").rest, Rest::none);
+    EXPECT_EQ(params(R"({"beam_events": 2})").beam_events, 2);
+    EXPECT_NE(error(R"({"beam_events": 2, "rest": "none"})").find("pencils"), std::string::npos);
+    EXPECT_NE(error(R"({"beam_events": -1})"), "no error");
 }
 
 TEST(BeamTreeParams, NameTheAlternatives) {

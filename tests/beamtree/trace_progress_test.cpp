@@ -54,6 +54,7 @@ TEST(TraceProgress, GrowsSteadilyWhileBeamsAreTraced) {
         for (const int bounces : {1, 2, 16}) {
             if (bounces == 2 && intensity == Intensity::area) continue;  // it ends before refining
             BeamTreeParams params;
+            params.rest = BeamTreeParams::Rest::max_beams;
             params.intensity = intensity;
             params.max_bounces = bounces;
             const std::vector<Phase> found = phases(params);

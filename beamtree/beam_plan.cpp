@@ -1,0 +1,83 @@
+#include "beamtree/beam_plan.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "beamtree/scene_sample.h"
+#include "beamtree/tracing/beam_lights.h"
+#include "beamtree/tracing/expected_least.h"
+#include "beamtree/tracing/traced_scene.h"
+
+namespace caustics::beamtree {
+namespace {
+
+constexpr std::uint64_t pilot_pencils = 10'000;
+// Beams that take about a CPU second, at 60 microseconds each where several events follow each other.
+constexpr std::uint64_t few_beams = 100'000;
+// Polygons, once a light, that take about as long by one event alone.
+constexpr std::uint64_t few_polygons = 150'000;
+// Light of one event that is worth beams of its own, over all of the caustic.
+constexpr double most_light = 0.5;
+// Light that is too little to be followed.
+constexpr double least_light = 1e-4;
+// Of the points of an area light, each has so many pencils of a caster or more.
+constexpr double pencils_of_point = 256;
+constexpr int most_points = 1024;
+
+int points_of_light(const Scene& scene, const BeamTreeParams& params, std::uint64_t count) {
+    const double bins = disperses(scene) ? params.wavelengths : 1;
+    const double points = static_cast<double>(count) /
+                          (pencils_of_point * bins * static_cast<double>(scene.casters().size()));
+    return std::max(params.light_samples, static_cast<int>(std::min<double>(points, most_points)));
+}
+
+bool all_beams_fit(const Scene& scene, const BeamTreeParams& params,
+                   const std::vector<LightSample>& lights, int most_events,
+                   const RunOptions& options) {
+    if (count_polygons(scene, params.mesh_resolution) * lights.size() > few_beams) return false;
+    return beams_fit(scene,
+                     caster_meshes(scene, params.mesh_resolution, params.polygons, options.threads),
+                     lights, settings_of_beams(params, most_events, few_beams), options);
+}
+
+}  // namespace
+
+double ScenePencils::share_up_to(int most_events) const {
+    double all = 0;
+    double some = 0;
+    for (const PencilPrint& print : traced.prints) {
+        const auto watts = static_cast<double>(print.flux.mean());
+        all += watts;
+        if (std::cmp_less_equal(print.events, most_events)) some += watts;
+    }
+    return all > 0 ? some / all : 1;
+}
+
+ScenePencils trace_scene_pencils(const Scene& scene, const BeamTreeParams& params,
+                                 std::uint64_t count, const RunOptions& options) {
+    BeamTreeParams own = params;
+    own.light_samples = points_of_light(scene, params, count);
+    ScenePencils pencils{beam_lights(scene, "beamtree", own, options), {}};
+    pencils.traced = trace_pencils(scene, pencils.lights, {count, params.max_bounces}, options);
+    return pencils;
+}
+
+BeamPlan plan_beams(const Scene& scene, const BeamTreeParams& params, const RunOptions& options) {
+    if (params.beam_events != BeamTreeParams::planned)
+        return {std::min(params.beam_events, params.max_bounces),
+                params.beam_events < params.max_bounces};
+    const ScenePencils pilot = trace_scene_pencils(scene, params, pilot_pencils, options);
+    const std::vector<LightSample> lights = beam_lights(scene, "beamtree", params, options);
+    const auto with = [&](int most_events) -> BeamPlan {
+        return {most_events, 1 - pilot.share_up_to(most_events) > least_light};
+    };
+    const int most = std::min(params.max_bounces, preset_bounces);
+    const bool first_fits =
+        count_polygons(scene, params.mesh_resolution) * lights.size() <= few_polygons;
+    const double first = pilot.share_up_to(1);
+    if (most > 1 && 1 - first > least_light && all_beams_fit(scene, params, lights, most, options))
+        return with(most);
+    return with(first_fits && first >= most_light ? 1 : 0);
+}
+
+}  // namespace caustics::beamtree

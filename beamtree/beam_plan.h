@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+
+#include "beamtree/beam_tree_params.h"
+#include "beamtree/pencils/pencil_paths.h"
+
+namespace caustics::beamtree {
+
+/// Which of a scene's light beams carry, and which pencils do.
+struct BeamPlan {
+    int beam_events = 0;        ///< beams carry the light of up to so many specular events; 0: none
+    bool needs_pencils = true;  ///< there is other light
+};
+
+/// Beams carry what they carry at a few times the cost of a photon map: all light, where all beams are few; else light of
+/// one event, where that is most of the caustic; else none, for behind glass polygons would be cut again and again. Some
+/// pencils and some polygons, drawn at random, tell which it is, by counts, so that the plan is the same on every machine.
+/// `beam_events` decides where it is given.
+BeamPlan plan_beams(const Scene& scene, const BeamTreeParams& params, const RunOptions& options);
+
+/// Pencils of a scene, their lights, and what they tell of all caustic light.
+struct ScenePencils {
+    std::vector<LightSample> lights;
+    TracedPencils traced;
+
+    /// The light of up to so many events over all of it, as it comes to receivers; 1 where none does.
+    double share_up_to(int most_events) const;
+};
+
+/// About `count` pencils. Area lights have more points than beams take, for pencils cost the same from each.
+ScenePencils trace_scene_pencils(const Scene& scene, const BeamTreeParams& params,
+                                 std::uint64_t count, const RunOptions& options);
+
+}  // namespace caustics::beamtree

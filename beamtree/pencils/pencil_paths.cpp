@@ -1,0 +1,360 @@
+#include "beamtree/pencils/pencil_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <Eigen/Eigenvalues>
+#include <optional>
+
+#include "beamtree/light/specular_surface.h"
+#include "beamtree/pencils/light_patch.h"
+#include "core/base/parallel.h"
+#include "core/geometry/exact_shape.h"
+#include "core/light_path/flight.h"
+#include "core/light_path/ray_change.h"
+#include "core/math/frame.h"
+
+namespace caustics::beamtree {
+namespace {
+
+// What threads take at a time.
+constexpr std::uint64_t strata_together = 2048;
+// A branch with less of its pencil's light goes on by chance.
+constexpr float faint = 0.125F;
+// How far a print reaches at most, over the scene's diameter.
+constexpr double longest_side = 0.1;
+// A low-discrepancy sequence in the plane (Roberts 2018).
+constexpr std::array<double, 2> r2 = {0.7548776662466927, 0.5698402909980532};
+
+double part_of_one(double x) { return x - std::floor(x); }
+
+/// A patch in equal strata, of which those at its edges reach beyond it.
+struct Grid {
+    LightPatch patch;
+    std::array<std::uint64_t, 2> counts = {1, 1};
+    std::array<double, 2> shift = {0, 0};  ///< of the strata, over one of them
+    double chance = 1;                     ///< that its pencils are traced
+    std::uint64_t first = 0;               ///< number of its first stratum
+
+    std::uint64_t size() const { return (counts[0] + 1) * (counts[1] + 1); }
+    Vec3d side(std::size_t i) const { return patch.sides[i] / static_cast<double>(counts[i]); }
+    Vec3d middle(std::uint64_t stratum) const {
+        const std::array<std::uint64_t, 2> at = {stratum % (counts[0] + 1),
+                                                 stratum / (counts[0] + 1)};
+        Vec3d point = patch.corner;
+        for (std::size_t i = 0; i < 2; ++i)
+            point += (static_cast<double>(at[i]) - shift[i] + 0.5) * side(i);
+        return point;
+    }
+};
+
+Grid grid_of(const LightPatch& patch, double strata) {
+    Grid grid{.patch = patch, .chance = std::min(1.0, strata)};
+    const double ratio = patch.sides[0].norm() / patch.sides[1].norm();
+    const double most = std::max(1.0, strata);
+    const double along = std::clamp(std::sqrt(most * ratio), 1.0, most);
+    grid.counts = {static_cast<std::uint64_t>(std::ceil(along - 0.5)),
+                   static_cast<std::uint64_t>(std::ceil(most / along - 0.5))};
+    return grid;
+}
+
+// Strata are shared out by the light that goes through the patches, so that pencils have about as much each.
+std::vector<Grid> grids_of(const std::vector<LightPatch>& patches, std::uint64_t count,
+                           std::uint64_t seed) {
+    double watts = 0;
+    for (const LightPatch& patch : patches) watts += patch.watts;
+    Rng rng(seed, Stage::pencils, ~std::uint64_t{0});
+    const std::array<double, 2> shift = {rng.next_fine(), rng.next_fine()};
+    std::vector<Grid> grids;
+    std::uint64_t strata = 0;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        grids.push_back(grid_of(patches[i], static_cast<double>(count) * patches[i].watts / watts));
+        for (std::size_t k = 0; k < 2; ++k)
+            grids.back().shift[k] = part_of_one(shift[k] + static_cast<double>(i) * r2[k]);
+        grids.back().first = strata;
+        strata += grids.back().size();
+    }
+    return grids;
+}
+
+/// A pencil on its way.
+struct Branch {
+    Flight flight;
+    /// By the sides of its stratum, and by those of the part of the area light that its point stands for.
+    std::array<RayChange, 4> change;
+    std::size_t changes = 2;  ///< how many of them
+    bool first_refracted = false;
+
+    std::span<RayChange> all() { return {change.data(), changes}; }
+    std::span<const RayChange> all() const { return {change.data(), changes}; }
+};
+
+// The sides of a rectangle that lies as widely as light does which is spread along all of several vectors of a plane.
+std::array<Vec3d, 2> spread_along(std::span<const Vec3d> ways, const Vec3d& normal) {
+    const Frame frame(normal.cast<float>());
+    const Vec3d s = frame.s.cast<double>(), t = frame.t.cast<double>();
+    Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+    for (const Vec3d& way : ways) {
+        const Vec2d on_plane(s.dot(way), t.dot(way));
+        scatter += on_plane * on_plane.transpose();
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+    axes.computeDirect(scatter);
+    std::array<Vec3d, 2> sides;
+    for (Eigen::Index i = 0; i < 2; ++i) {
+        const Vec2d axis =
+            std::sqrt(std::max(axes.eigenvalues()[i], 0.0)) * axes.eigenvectors().col(i);
+        sides[static_cast<std::size_t>(i)] = axis.x() * s + axis.y() * t;
+    }
+    return sides;
+}
+
+void scale(Branch& branch, double factor) {
+    for (RayChange& one : branch.all()) {
+        one.place *= factor;
+        one.direction *= factor;
+    }
+}
+
+class PencilTracer {
+public:
+    PencilTracer(const Scene& scene, std::span<const LightSample> lights,
+                 const PencilSettings& settings, std::uint64_t seed)
+        : scene_(scene),
+          lights_(lights),
+          settings_(settings),
+          seed_(seed),
+          longest_(longest_side * static_cast<double>(scene.diameter())) {
+        for (const Shape& shape : scene.shapes()) {
+            exact_.emplace_back();
+            if (is_caster(shape.bsdf) && shape.primitive != Primitive::mesh)
+                exact_.back().emplace(shape);
+        }
+    }
+
+    void trace(const Grid& grid, std::uint64_t stratum, TracedPencils& traced) const {
+        Rng rng(seed_, Stage::pencils, grid.first + stratum);
+        if (grid.chance < 1 && rng.next_fine() >= grid.chance) return;
+        const LightSample& light = lights_[grid.patch.light];
+        const Vec3d point = grid.middle(stratum);
+        const PatchRay through = ray_through(light, grid.patch, point);
+        const Spectrum strength = strength_along(light, -through.direction.cast<float>());
+        if (is_black(strength)) return;
+        const double area = grid.side(0).cross(grid.side(1)).norm();
+        Branch start = start_of(light, point, through, grid);
+        start.flight.flux = strength * static_cast<float>(through.measure * area / grid.chance);
+        start.flight.start_flux = start.flight.flux.sum();
+        start.flight.start_medium = light.medium;
+        start.flight.wavelength.nm = light.bin.nm;
+        ++traced.traced;
+        follow(start, grid.patch, rng, traced);
+    }
+
+private:
+    Branch start_of(const LightSample& light, const Vec3d& point, const PatchRay& through,
+                    const Grid& grid) const {
+        Branch start;
+        const Vec3 along = through.direction.cast<float>();
+        const bool directional = light.kind == LightSample::Kind::directional;
+        if (directional) {
+            const Vec3 at = point.cast<float>();
+            start.flight.ray = {at + distance_to_entry(light.bounds, at, along) * along, along};
+        } else {
+            start.flight.ray = spawn_ray({light.position, light.normal, light.offset}, along);
+        }
+        const double distance = (point - light.position.cast<double>()).norm();
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Vec3d side = grid.side(i) / std::sqrt(grid.chance);
+            if (directional)
+                start.change[i].place = side;
+            else
+                start.change[i].direction =
+                    (side - through.direction.dot(side) * through.direction) / distance;
+        }
+        if (light.kind == LightSample::Kind::area)
+            spread_over_light(light, grid.patch, through, start);
+        return start;
+    }
+
+    // Rays from beside the light's point to where the ray passes its caster.
+    void spread_over_light(const LightSample& light, const LightPatch& patch,
+                           const PatchRay& through, Branch& start) const {
+        const Vec3d from = light.position.cast<double>();
+        const Vec3d middle = bounds(scene_.shapes()[patch.caster]).center().cast<double>();
+        const double distance = through.direction.dot(middle - from);
+        const double side = std::sqrt(light.area);
+        if (!(distance > side)) return;
+        const Frame frame(light.normal);
+        start.changes = 4;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Vec3d way = side * (i == 0 ? frame.s : frame.t).cast<double>();
+            start.change[2 + i].place = way;
+            start.change[2 + i].direction =
+                (through.direction.dot(way) * through.direction - way) / distance;
+        }
+    }
+
+    // Of two branches the reflected one with all that comes of it first.
+    void follow(const Branch& start, const LightPatch& patch, Rng& rng,
+                TracedPencils& traced) const {
+        std::vector<Branch> waiting = {start};
+        while (!waiting.empty()) {
+            Branch branch = waiting.back();
+            waiting.pop_back();
+            while (moves_on(branch, patch, waiting, rng, traced)) {}
+        }
+    }
+
+    // Along one segment and through the event at its end.
+    bool moves_on(Branch& branch, const LightPatch& patch, std::vector<Branch>& waiting, Rng& rng,
+                  TracedPencils& traced) const {
+        Flight& flight = branch.flight;
+        ++traced.segments;
+        const std::optional<SurfacePoint> hit = scene_.intersect(flight.ray);
+        if (!hit || (flight.bounces == 0 && hit->shape != patch.caster)) return false;
+        const Bsdf& bsdf = scene_.shape_at(*hit).bsdf;
+        flight.flux *= segment_transmittance(
+            flight.start_medium,
+            medium_absorption(bsdf, hit->geometric_normal, -flight.ray.direction), hit->distance);
+        if (is_black(flight.flux)) return false;
+        for (RayChange& one : branch.all())
+            one = at_surface(one, flight.ray.direction.cast<double>(),
+                             static_cast<double>(hit->distance),
+                             hit->geometric_normal.cast<double>());
+        if (is_receiver(bsdf) && flight.bounces > 0) land(branch, *hit, patch, traced);
+        if (!is_caster(bsdf)) return false;
+        if (flight.bounces == settings_.max_bounces) {
+            traced.cut += static_cast<double>(flight.flux.mean());
+            return false;
+        }
+        return goes_on_from(*hit, branch, waiting, rng);
+    }
+
+    void land(const Branch& branch, const SurfacePoint& hit, const LightPatch& patch,
+              TracedPencils& traced) const {
+        const std::optional<Deposit> deposit = deposit_of(scene_, hit, branch.flight);
+        if (!deposit) return;
+        PencilPrint print{.position = deposit->position,
+                          .normal = deposit->geometric_normal,
+                          .wi = deposit->wi,
+                          .sides = {},
+                          .flux = deposit->flux,
+                          .light = patch.light,
+                          .caster = patch.caster,
+                          .events = static_cast<std::uint32_t>(branch.flight.bounces),
+                          .first_refracted = branch.first_refracted,
+                          .flat = exact_is_flat(scene_.shape_at(hit))};
+        std::array<Vec3d, 4> ways;
+        for (std::size_t i = 0; i < branch.changes; ++i) {
+            const double length = branch.change[i].place.norm();
+            ways[i] = (length > longest_ ? longest_ / length : 1) * branch.change[i].place;
+        }
+        std::array<Vec3d, 2> sides = {ways[0], ways[1]};
+        if (branch.changes > 2)
+            sides = spread_along(std::span(ways).first(branch.changes),
+                                 deposit->geometric_normal.cast<double>());
+        print.sides = {sides[0].cast<float>(), sides[1].cast<float>()};
+        traced.prints.push_back(print);
+    }
+
+    bool goes_on_from(const SurfacePoint& hit, Branch& branch, std::vector<Branch>& waiting,
+                      Rng& rng) const {
+        const float before = branch.flight.flux.sum();
+        if (!survives(branch.flight, rng)) return false;
+        scale(branch, std::sqrt(static_cast<double>(branch.flight.flux.sum() / before)));
+        const SpecularSplit split = split_at(scene_, hit, branch.flight, rng);
+        Branch refracted = branch;
+        const bool reflects = bend(hit, split, false, branch, rng);
+        const bool refracts = bend(hit, split, true, refracted, rng);
+        if (reflects && refracts) waiting.push_back(refracted);
+        if (!reflects && refracts) branch = refracted;
+        return reflects || refracts;
+    }
+
+    // Sends a branch through an event; false where no light goes that way.
+    bool bend(const SurfacePoint& hit, const SpecularSplit& split, bool refracts, Branch& branch,
+              Rng& rng) const {
+        Flight& flight = branch.flight;
+        flight.flux *= refracts ? split.refracted_weight : split.reflected_weight;
+        const float left = flight.flux.sum();
+        if (!(left > 0)) return false;
+        const float least = faint * flight.start_flux;
+        if (left < least) {
+            if (rng.next() * least >= left) return false;
+            flight.flux *= least / left;
+            scale(branch, std::sqrt(static_cast<double>(least / left)));
+        }
+        const Vec3d direction = (refracts ? split.refracted : split.reflected).cast<double>();
+        SpecularBend bend{.w = -flight.ray.direction.cast<double>(),
+                          .n = hit.shading_normal.cast<double>(),
+                          .cosine = 0,
+                          .refracts = refracts};
+        const double side = bend.n.dot(bend.w) < 0 ? -1 : 1;
+        bend.n *= side;
+        bend.cosine = bend.n.dot(bend.w);
+        bend.eta = static_cast<double>(split.eta);
+        bend.inner = refracts ? std::max(-direction.dot(bend.n), 1e-6) : 1;
+        turn(hit, bend, side, branch);
+        if (flight.bounces == 0) branch.first_refracted = refracts;
+        leave(scene_, hit, direction.cast<float>(), flight);
+        return true;
+    }
+
+    // Changes a branch's directions at an event; `side` is -1 where the light comes to the back of the surface.
+    void turn(const SurfacePoint& hit, const SpecularBend& bend, double side,
+              Branch& branch) const {
+        const Shape& shape = scene_.shape_at(hit);
+        std::optional<SpecularSurface> facet;
+        if (!exact_[hit.shape]) facet.emplace(shape.mesh, hit.triangle);
+        const SpecularSurface& surface = facet ? *facet : *exact_[hit.shape];
+        SpecularSurface::Place place;
+        if (!surface.is_flat_facet())
+            place = surface.beside(surface.local(hit.position.cast<double>()));
+        for (RayChange& one : branch.all()) {
+            Vec3d by_normal = Vec3d::Zero();
+            if (!surface.is_flat_facet())
+                by_normal = side * surface.normal_change(place, one.place);
+            one.direction = bend.direction_change(-one.direction, by_normal);
+        }
+    }
+
+    const Scene& scene_;
+    std::span<const LightSample> lights_;
+    const PencilSettings& settings_;
+    std::uint64_t seed_;
+    double longest_;
+    std::vector<std::optional<SpecularSurface>> exact_;  ///< one a shape, of exact casters
+};
+
+// The grid that has a stratum.
+const Grid& grid_with(const std::vector<Grid>& grids, std::uint64_t stratum) {
+    return *std::prev(std::ranges::upper_bound(grids, stratum, {}, &Grid::first));
+}
+
+}  // namespace
+
+TracedPencils trace_pencils(const Scene& scene, std::span<const LightSample> lights,
+                            const PencilSettings& settings, const RunOptions& options) {
+    const std::vector<LightPatch> patches = light_patches(scene, lights);
+    TracedPencils all;
+    if (patches.empty() || settings.count == 0) return all;
+    const std::vector<Grid> grids = grids_of(patches, settings.count, options.seed);
+    const PencilTracer tracer(scene, lights, settings, options.seed);
+    const std::uint64_t strata = grids.back().first + grids.back().size();
+    std::vector<TracedPencils> parts(chunk_count(strata, strata_together));
+    parallel_chunks(options.threads, strata, strata_together, [&](const Chunk& chunk) {
+        for (std::uint64_t i = chunk.first; i < chunk.end; ++i) {
+            const Grid& grid = grid_with(grids, i);
+            tracer.trace(grid, i - grid.first, parts[chunk.index]);
+        }
+    });
+    for (TracedPencils& part : parts) {
+        all.prints.insert(all.prints.end(), part.prints.begin(), part.prints.end());
+        all.traced += part.traced;
+        all.segments += part.segments;
+        all.cut += part.cut;
+        part = {};
+    }
+    return all;
+}
+
+}  // namespace caustics::beamtree
