@@ -63,20 +63,23 @@ ScenePencils trace_scene_pencils(const Scene& scene, const BeamTreeParams& param
 }
 
 BeamPlan plan_beams(const Scene& scene, const BeamTreeParams& params, const RunOptions& options) {
-    if (params.beam_events != BeamTreeParams::planned)
-        return {std::min(params.beam_events, params.max_bounces),
-                params.beam_events < params.max_bounces};
     const ScenePencils pilot = trace_scene_pencils(scene, params, pilot_pencils, options);
-    const std::vector<LightSample> lights = beam_lights(scene, "beamtree", params, options);
     const auto with = [&](int most_events) -> BeamPlan {
-        return {most_events, 1 - pilot.share_up_to(most_events) > least_light};
+        const double share = pilot.share_up_to(most_events);
+        return {most_events, most_events < params.max_bounces && 1 - share > least_light, share};
     };
+    if (params.beam_events != BeamTreeParams::planned) {
+        BeamPlan given = with(std::min(params.beam_events, params.max_bounces));
+        given.needs_pencils = given.beam_events < params.max_bounces;
+        return given;
+    }
+    const std::vector<LightSample> lights = beam_lights(scene, "beamtree", params, options);
     const int most = std::min(params.max_bounces, preset_bounces);
-    const bool first_fits =
-        count_polygons(scene, params.mesh_resolution) * lights.size() <= few_polygons;
     const double first = pilot.share_up_to(1);
     if (most > 1 && 1 - first > least_light && all_beams_fit(scene, params, lights, most, options))
         return with(most);
+    const bool first_fits =
+        count_polygons(scene, params.mesh_resolution) * lights.size() <= few_polygons;
     return with(first_fits && first >= most_light ? 1 : 0);
 }
 

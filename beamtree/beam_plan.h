@@ -11,6 +11,7 @@ namespace caustics::beamtree {
 struct BeamPlan {
     int beam_events = 0;        ///< beams carry the light of up to so many specular events; 0: none
     bool needs_pencils = true;  ///< there is other light
+    double beam_share = 0;      ///< of the caustic on receivers, as a sample tells
 };
 
 /// Beams carry what they carry at a few times the cost of a photon map: all light, where all beams are few; else light of

@@ -5,6 +5,7 @@
 #include "beamtree/beam_plan.h"
 #include "beamtree/forest.h"
 #include "beamtree/sampled_beams.h"
+#include "core/method/unlit_estimator.h"
 
 namespace caustics::beamtree {
 
@@ -84,6 +85,13 @@ struct Planned {
     BuildReport report;
 };
 
+BuildReport report_of(const BeamPlan& plan) {
+    BuildReport report;
+    report.resolved["events_by_beams"] = plan.beam_events;
+    report.resolved["beam_share"] = plan.beam_share;
+    return report;
+}
+
 Planned planned(const Scene& scene, const BeamTreeParams& params, const RunOptions& options) {
     Planned planned{params, true, {}, {}};
     if (params.rest != BeamTreeParams::Rest::pencils) return planned;
@@ -91,8 +99,7 @@ Planned planned(const Scene& scene, const BeamTreeParams& params, const RunOptio
     const BeamPlan plan = plan_beams(scene, params, options);
     planned.has_beams = plan.beam_events > 0;
     if (planned.has_beams) planned.params.max_bounces = plan.beam_events;
-    planned.report.resolved["beam_events"] = plan.beam_events;
-    planned.report.resolved["beam_share"] = 1;
+    planned.report = report_of(plan);
     if (!plan.needs_pencils) return planned;
     options.phase("pencils");
     ScenePencils pencils = trace_scene_pencils(
@@ -111,7 +118,10 @@ Planned planned(const Scene& scene, const BeamTreeParams& params, const RunOptio
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
-    if (params.sampled) return sampled_beams(scene, "beamtree", params, options);
+    if (params.sampled && params.rest != BeamTreeParams::Rest::pencils)
+        return sampled_beams(scene, "beamtree", params, options);
+    if (params.sampled)
+        return std::make_unique<UnlitEstimator>(report_of(plan_beams(scene, params, options)));
     Planned plan = planned(scene, params, options);
     TracedScene traced;
     if (plan.has_beams)

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <optional>
 
+#include "beamtree/beams/trace_progress.h"
 #include "beamtree/light/specular_surface.h"
 #include "beamtree/pencils/light_patch.h"
 #include "core/base/parallel.h"
@@ -89,7 +90,7 @@ struct Branch {
 };
 
 // The sides of a rectangle that lies as widely as light does which is spread along all of several vectors of a plane.
-std::array<Vec3d, 2> spread_along(std::span<const Vec3d> ways, const Vec3d& normal) {
+std::array<Vec3d, 2> rectangle_of(std::span<const Vec3d> ways, const Vec3d& normal) {
     const Frame frame(normal.cast<float>());
     const Vec3d s = frame.s.cast<double>(), t = frame.t.cast<double>();
     Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
@@ -250,7 +251,7 @@ private:
         }
         std::array<Vec3d, 2> sides = {ways[0], ways[1]};
         if (branch.changes > 2)
-            sides = spread_along(std::span(ways).first(branch.changes),
+            sides = rectangle_of(std::span(ways).first(branch.changes),
                                  deposit->geometric_normal.cast<double>());
         print.sides = {sides[0].cast<float>(), sides[1].cast<float>()};
         traced.prints.push_back(print);
@@ -341,11 +342,13 @@ TracedPencils trace_pencils(const Scene& scene, std::span<const LightSample> lig
     const PencilTracer tracer(scene, lights, settings, options.seed);
     const std::uint64_t strata = grids.back().first + grids.back().size();
     std::vector<TracedPencils> parts(chunk_count(strata, strata_together));
+    TraceProgress progress(options);
     parallel_chunks(options.threads, strata, strata_together, [&](const Chunk& chunk) {
         for (std::uint64_t i = chunk.first; i < chunk.end; ++i) {
             const Grid& grid = grid_with(grids, i);
             tracer.trace(grid, i - grid.first, parts[chunk.index]);
         }
+        progress.add(static_cast<double>(chunk.end - chunk.first) / static_cast<double>(strata));
     });
     for (TracedPencils& part : parts) {
         all.prints.insert(all.prints.end(), part.prints.begin(), part.prints.end());

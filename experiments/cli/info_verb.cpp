@@ -49,6 +49,14 @@ std::string sampling_name(const PixelSampling& sampling) {
 
 // Of how much of its work, where that is not all.
 std::string judged_by(const BuildReport& report) {
+    if (const auto events = report.resolved.find("events_by_beams");
+        events != report.resolved.end())
+        return events->second > 0
+                   ? fmt::format(
+                         ": by beams of up to {:g} events, with {:.1f} % of the caustic, "
+                         "and pencils",
+                         events->second, 100 * report.resolved.at("beam_share"))
+                   : ": by pencils, for beams of all events would cost too much";
     const auto sampled = report.counters.find("polygons_sampled");
     if (sampled == report.counters.end()) return "";
     return fmt::format(", by a sample of {} polygons of {}", sampled->second,

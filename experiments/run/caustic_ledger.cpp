@@ -117,6 +117,17 @@ std::optional<std::string> note_of_photons(const Method& method, const BuildRepo
         100 * carried);
 }
 
+/// Where pencils carry what beams would take too long for.
+std::optional<std::string> note_of_pencils(const BuildReport& report) {
+    const double by_beams = resolved_or(report, "beam_share", 1);
+    if (by_beams > 1 - least_share_of_note) return {};
+    return fmt::format(
+        "pencils of light paths carry {:.1f} % of the caustic, and beams the rest: each pencil's "
+        "light is even over the image of its stratum (more rest_photons make them smaller; "
+        "rest=max_beams asks for beams of all events, beam_events for those of few)",
+        100 * (1 - by_beams));
+}
+
 }  // namespace
 
 LightSurvey survey_light(const Scene& scene, int max_bounces, std::uint64_t paths) {
@@ -203,6 +214,7 @@ std::vector<std::string> notes_on_light(const Method& method, const BuildReport&
     const double pruned = ledger.share(ledger.missed_by_pruning);
     if (pruned >= least_share_of_note) all.push_back(note_of_beams(method, report, pruned));
     if (const auto photons = note_of_photons(method, report)) all.push_back(*photons);
+    if (const auto pencils = note_of_pencils(report)) all.push_back(*pencils);
     if (!ledger.picture) return all;
     if (const auto sum = note_on(*ledger.picture)) all.push_back(*sum);
     return all;

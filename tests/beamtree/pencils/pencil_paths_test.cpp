@@ -181,8 +181,8 @@ TEST(Pencils, ShareLightWithBeams) {
     std::vector<ReceiverPoint> points;
     for (int i = 0; i < 20; ++i)
         for (int j = 0; j < 20; ++j)
-            points.push_back(support::probe(scene, 1, {0.1 * (i - 9.5), 0.1 * (j - 9.5), 0},
-                                            Vec3d::UnitZ(), 0));
+            points.push_back(
+                support::probe(scene, 1, {0.1 * (i - 9.5), 0.1 * (j - 9.5), 0}, Vec3d::UnitZ(), 0));
     const auto mean = [&](BeamTreeParams params) {
         params.footprint = 0.1F;
         double sum = 0;
@@ -252,7 +252,7 @@ TEST(BeamPlan, EndsAtTheLimitOfEvents) {
     for (const int beam_events : {0, 1}) {
         params.beam_events = beam_events;
         const BuildReport report = build(scene, params, {})->build_report();
-        EXPECT_EQ(report.resolved.at("beam_events"), beam_events);
+        EXPECT_EQ(report.resolved.at("events_by_beams"), beam_events);
         EXPECT_EQ(report.resolved.at("beam_share"), beam_events);
     }
 }

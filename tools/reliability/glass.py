@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""What `beamtree` by default costs and errs beside `photonmap` by default, on glass.
+
+Usage: glass.py PROGRAM SCENE...     a file `causticbench`, and scene files; `water` is the project's glass of cognac,
+                                     with water on a table
+
+Prints a Markdown table. Each picture has 240 x 180 pixels of 4 samples, on one thread. Processor seconds are those of the whole
+program, loading included, medians of three seeds. The truth is `lighttrace` of 64 million paths. For the last columns
+`photonmap` gets so many photons that it takes as long as `beamtree`.
+"""
+
+import json
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from report import exr
+
+SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../experiments/scenes")
+FILM = ("--set", "/sensor/film/width=240", "--set", "/sensor/film/height=180", "--spp", "4")
+PATHS = 64_000_000
+PHOTONS = 100_000  # photonmap's default
+SEEDS = (1, 2, 3)
+
+
+def glass_of_water(folder):
+    with open(os.path.join(SCENES, "cognac.json")) as file:
+        scene = json.load(file)
+    for name in ("sand", "room"):
+        del scene[name]
+    for name in ("inside", "cognac"):
+        scene[name]["bsdf"]["int_ior"] = 1.333
+        del scene[name]["bsdf"]["absorption"]
+    scene["table"] = {"type": "rectangle", "to_world": [{"scale": 0.4}],
+                      "bsdf": {"type": "diffuse", "reflectance": [0.6, 0.5, 0.4]}}
+    path = os.path.join(folder, "water.json")
+    with open(path, "w") as file:
+        json.dump(scene, file)
+    return path
+
+
+class Pictures:
+    """Renders of one scene."""
+
+    def __init__(self, program, scene, folder):
+        self.program, self.scene, self.folder = program, scene, folder
+        self.truth = os.path.join(folder, "truth.exr")
+        self.render("lighttrace", 77, self.truth, [f"paths={PATHS}"])
+
+    def render(self, method, seed, output, params=(), threads=1):
+        """Processor seconds of a picture."""
+        command = [self.program, "render", self.scene, *FILM, "--method", method, "--seed", str(seed), "--threads", str(threads),
+                   "-o", output]
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(command + [word for param in params for word in ("--param", param)], check=True, capture_output=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    def scored(self, method, params=()):
+        """Medians over the seeds of processor seconds, relmse and rmse, the mean of the light over the truth's, and the beams' share."""
+        seconds, metrics, shares = [], [], []
+        for seed in SEEDS:
+            output = os.path.join(self.folder, f"{method}.exr")
+            seconds.append(self.render(method, seed, output, params))
+            told = subprocess.run([self.program, "compare", output, self.truth, "--json"], check=True, capture_output=True, text=True)
+            metrics.append(json.loads(told.stdout)["metrics"])
+            _, attributes = exr.read(output)
+            shares.append(json.loads(attributes.get("causticbench.resolved", "{}")).get("beam_share"))
+        middle = statistics.median
+        return {"seconds": middle(seconds), "relmse": middle(m["relmse"] for m in metrics), "rmse": middle(m["rmse"] for m in metrics),
+                "light": statistics.mean(m["mean_ratio"] for m in metrics), "share": shares[0]}
+
+
+def row(name, pictures):
+    least = pictures.render("none", 1, os.path.join(pictures.folder, "none.exr"))
+    photons = pictures.scored("photonmap")
+    beams = pictures.scored("beamtree")
+    more = max(1, (beams["seconds"] - least) / (photons["seconds"] - least))
+    equal = pictures.scored("photonmap", [f"photons={round(PHOTONS * more)}"])
+    # Half of the time does not grow with the photons: what is missing is added once.
+    if equal["seconds"] < 0.95 * beams["seconds"]:
+        more *= (beams["seconds"] - least) / (equal["seconds"] - least)
+        equal = pictures.scored("photonmap", [f"photons={round(PHOTONS * more)}"])
+    return (f"| {name} | {photons['seconds']:.2f} | {beams['seconds']:.2f} | {beams['seconds'] / photons['seconds']:.1f} | {beams['share']:.2f} | "
+            f"{beams['light']:.4f} | {beams['relmse']:.4f} | {equal['seconds']:.2f} | {equal['relmse']:.4f} | "
+            f"{beams['relmse'] / equal['relmse']:.2f} | {beams['rmse'] / equal['rmse']:.2f} |")
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__.strip())
+    print("| scene | `photonmap` [CPU s] | `beamtree` [CPU s] | over it | beam_share | light | relmse | photon map of equal time [CPU s] | "
+          "its relmse | relmse over its | rmse over its |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
+    for scene in sys.argv[2:]:
+        with tempfile.TemporaryDirectory() as folder:
+            path = glass_of_water(folder) if scene == "water" else scene
+            name = os.path.splitext(os.path.basename(path))[0]
+            print(row(name, Pictures(sys.argv[1], path, folder)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
