@@ -102,9 +102,9 @@ Planned planned(const Scene& scene, const BeamTreeParams& params, const RunOptio
     planned.report = report_of(plan);
     if (!plan.needs_pencils) return planned;
     options.phase("pencils");
-    ScenePencils pencils = trace_scene_pencils(
-        scene, params, static_cast<std::uint64_t>(params.rest_photons), options);
-    planned.report.counters["pencils"] = pencils.traced.traced;
+    ScenePencils pencils =
+        trace_scene_pencils(scene, params, static_cast<std::uint64_t>(params.pencils), options);
+    planned.report.counters["pencils_traced"] = pencils.traced.traced;
     planned.report.resolved["beam_share"] = pencils.share_up_to(plan.beam_events);
     std::erase_if(pencils.traced.prints, [&](const PencilPrint& print) {
         return std::cmp_less_equal(print.events, plan.beam_events);

@@ -85,7 +85,11 @@ std::vector<Parameter<P>> tree_parameters() {
             {.key = "pixel_footprint",
              .meaning = "With two_slice: averages over each pixel as the camera sees it on the "
                         "receiver; what mirrors and glass show is asked at points."})
-            .only_if([](const P& p) { return p.bound == Bound::two_slice && p.footprint == 0; }),
+            .only_if([](const P& p) {
+                return p.pixel_footprint || (p.rest == P::Rest::pencils &&
+                                             p.bound == Bound::two_slice && p.footprint == 0);
+            })
+            .usually("true with rest pencils, else false"),
         parameter::choice<P>(
             &P::rest,
             {{"none", P::Rest::none},
@@ -111,6 +115,13 @@ std::vector<Parameter<P>> tree_parameters() {
                         "default of as many as cost little; the record has their number."})
             .only_if([](const P& p) { return p.beam_events != P::planned; })
             .usually("by a sample of the scene"),
+        parameter::whole_number<P>(
+            &P::pencils, 1, 1'000'000'000,
+            {.key = "pencils",
+             .meaning = "With rest pencils: their number, over all lights and casters. More are "
+                        "smaller and nearer to the truth.",
+             .unit = "pencils"})
+            .only_if([](const P& p) { return p.rest == P::Rest::pencils; }),
         parameter::whole_number<P>(
             &P::rest_photons, 1, 1'000'000'000,
             {.key = "rest_photons",
@@ -152,11 +163,12 @@ void settle_intensity(const JsonNode& node, const P& params) {
         given->fail("only the intensity \"refined\" searches for rays");
 }
 
-// Averages over pixels are the default where they can be.
+// Averages over pixels are the default with pencils, where they can be; who asks about beams has points.
 void settle_pixels(const JsonNode& node, P& params) {
     if (!node.has("pixel_footprint"))
-        params.pixel_footprint = params.pixel_footprint && params.bound == Bound::two_slice &&
-                                 params.footprint == 0 && params.dispersion == Dispersion::bins;
+        params.pixel_footprint = params.rest == P::Rest::pencils &&
+                                 params.bound == Bound::two_slice && params.footprint == 0 &&
+                                 params.dispersion == Dispersion::bins;
 }
 
 void settle_footprint(const JsonNode& node, const P& params) {
@@ -187,10 +199,11 @@ bool asks_for_beams(const JsonNode& node, const P& params) {
 
 void settle_rest(const JsonNode& node, P& params) {
     if (params.preset.empty() && !node.has("rest") && !node.has("beam_events") &&
-        asks_for_beams(node, params))
+        !node.has("pencils") && asks_for_beams(node, params))
         params.rest = P::Rest::max_beams;
-    if (const auto given = node.find("beam_events"); given && params.rest != P::Rest::pencils)
-        given->fail("only \"rest\": \"pencils\" shares light with beams");
+    for (const char* key : {"beam_events", "pencils"})
+        if (const auto given = node.find(key); given && params.rest != P::Rest::pencils)
+            given->fail("only \"rest\": \"pencils\" shares light with beams");
     if (params.rest == P::Rest::none)
         for (const char* key : {"rest_photons", "rest_nearest"})
             if (const auto given = node.find(key))
@@ -237,10 +250,10 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
              [](const JsonNode& node, P& params) {
                  settle_bound(node, params);
                  settle_intensity(node, params);
+                 settle_rest(node, params);
                  settle_pixels(node, params);
                  settle_footprint(node, params);
                  settle_tree(node, params);
-                 settle_rest(node, params);
              },
          .take_least_work = [](P& params) { params.sampled = true; }});
     return method;

@@ -47,8 +47,9 @@ struct BeamTreeParams : BeamParams {
     static constexpr int planned = -1;
     /// With `pencils`: beams carry the light of up to so many events, or of as many as are worth it (beam_plan.h).
     int beam_events = planned;
+    std::int64_t pencils = 200'000;  ///< over all lights and casters
     std::int64_t rest_photons =
-        200'000;            ///< paths for all light on casters; what is left out has its share
+        300'000;            ///< paths for all light on casters; what is left out has its share
     int rest_nearest = 50;  ///< photons that a photon's disc reaches to
 
     /// The settings of [CC95]: hybrid cones, merged from their children's, over the caster's own

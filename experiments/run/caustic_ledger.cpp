@@ -123,7 +123,8 @@ std::optional<std::string> note_of_pencils(const BuildReport& report) {
     if (by_beams > 1 - least_share_of_note) return {};
     return fmt::format(
         "pencils of light paths carry {:.1f} % of the caustic, and beams the rest: each pencil's "
-        "light is even over the image of its stratum (more rest_photons make them smaller; "
+        "light is even over the image of its stratum (a larger number, pencils, makes them "
+        "smaller; "
         "rest=max_beams asks for beams of all events, beam_events for those of few)",
         100 * (1 - by_beams));
 }

@@ -40,7 +40,7 @@ std::string why_missed(const Method& method, const CausticSurvey& survey, const 
     const std::string found =
         fmt::format(" ({} of {} light paths traced to find out arrived where the camera sees them)",
                     survey.seen, survey.counts.emitted);
-    if (counters.contains("beams") && !counters.contains("pencils"))
+    if (counters.contains("beams") && !counters.contains("pencils_traced"))
         return fmt::format(
             "{} has no beam for it: the casters' polygons are too coarse for what they light{}",
             method.name, found);

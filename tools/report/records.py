@@ -27,7 +27,7 @@ MEASURES = ("photons_emitted", "photons_stored", "parse_s", "precompute_s", "bal
             "mask_fraction", "flip", "parse_cpu_s", "precompute_cpu_s", "balance_cpu_s", "render_cpu_s", "gathers",
             "gathered_photons", "nodes_visited", "nodes_passed", "used_photons", "camera_rays", "trees", "trees_binned", "nodes", "tree_height",
             "casters_with_face_normals", "flux_share_captured", "flux_share_pruned", "flux_share_over_budget",
-            "flux_share_rest", "events_by_beams", "beam_share", "pencils", "pencil_prints", "rest_photons_stored",
+            "flux_share_rest", "events_by_beams", "beam_share", "pencils_traced", "pencil_prints", "rest_photons_stored",
             "beams_unreceived", "photons_aimed", "photons_reflected",
             "photons_refracted", "photons_connected", "empty_gathers", "receiver_points", "lit_points", "indirect_rmse",
             "indirect_relmse", "indirect_mean_ratio", "indirect_s", "indirect_cpu_s", "reference_indirect_mean",

@@ -223,6 +223,23 @@ TEST(Knobs, OfBeamsOfSeveralEvents) {
               rough.mean());
 }
 
+TEST(Knobs, OfPencils) {
+    const auto pencils = [](const std::vector<std::string>& parameters) {
+        return ask("slab", "beamtree", parameters);
+    };
+    const Answer few = pencils({"beam_events=0", "pencils=20000"});
+    const Answer many = pencils({"beam_events=0", "pencils=80000"});
+    EXPECT_NEAR(static_cast<double>(count(many, "pencils_traced")) /
+                    static_cast<double>(count(few, "pencils_traced")),
+                4, 0.2);
+    EXPECT_NEAR(many.mean(), 1, 0.01);
+    EXPECT_EQ(count(few, "beams"), 0U);
+    const Answer shared = pencils({"beam_events=2", "pencils=80000"});
+    EXPECT_GT(count(shared, "beams"), 0U);
+    EXPECT_LT(count(shared, "pencil_prints"), count(many, "pencil_prints"));
+    EXPECT_NEAR(shared.mean(), 1, 0.01);
+}
+
 TEST(Knobs, OfTheBeamTreeUnderALargeLight) {
     const Answer few =
         ask("furnace", "beamtree", {"mesh_resolution=4", "light_samples=1", "max_bounces=1"});
@@ -294,7 +311,7 @@ TEST(Knobs, AreAllTurnedAbove) {
                           "pixel_footprint", "polygons",     "light_samples",    "mesh_resolution",
                           "max_bounces",     "prune",        "max_beams",        "rest",
                           "rest_photons",    "rest_nearest", "root_events",      "wavelengths",
-                          "dispersion"}},
+                          "dispersion",      "beam_events",  "pencils"}},
             // pixel_footprint: beamtree/slices/pixel_footprint_test; root_events: agreement/root_events_test; the
             // last two: agreement/dispersion_test
             {"causticpolygons",

@@ -108,7 +108,12 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
               R"({"adaptive":true,"emission":"random","emitted":10,"estimator":"unbiased",)"
               R"("filter":"none","interaction":"roulette","max_bounces":1000,"max_radius":1.0,)"
               R"("nearest":200,"passes":1,"tables":false,"tree":"packed"})");
-    EXPECT_EQ(text("beamtree", {}),
+    EXPECT_EQ(
+        text("beamtree", {}),
+        R"({"bound":"two_slice","hierarchy":"binned","intensity":"refined","leaf":"k",)"
+        R"("light_samples":16,"max_bounces":1000,"merging":"rays","mesh_resolution":64,)"
+        R"("pencils":200000,"pixel_footprint":true,"polygons":"triangles","rest":"pencils"})");
+    EXPECT_EQ(text("beamtree", {"rest=max_beams"}),
               R"({"bound":"two_slice","hierarchy":"binned","intensity":"refined","leaf":"k",)"
               R"("light_samples":16,"max_bounces":16,"merging":"rays","mesh_resolution":64,)"
               R"("polygons":"triangles"})");
@@ -118,8 +123,28 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
               R"("polygons":"triangles","spread_threshold":10.0})");
     EXPECT_EQ(text("beamtree", {"footprint=0.1"}),
               R"({"bound":"two_slice","footprint":0.10000000149011612,"hierarchy":"binned",)"
-              R"("intensity":"refined","leaf":"k","light_samples":16,"max_bounces":16,)"
-              R"("merging":"rays","mesh_resolution":64,"polygons":"triangles"})");
+              R"("intensity":"refined","leaf":"k","light_samples":16,"max_bounces":1000,)"
+              R"("merging":"rays","mesh_resolution":64,"pencils":200000,"polygons":"triangles",)"
+              R"("rest":"pencils"})");
+}
+
+// Who takes the parameters of a record has its settings, whatever the defaults have become.
+TEST(Methods, AreTheSameByTheParametersOfTheirRecords) {
+    for (const std::vector<std::string>& given : {std::vector<std::string>{},
+                                                  {"rest=max_beams"},
+                                                  {"max_beams=1000"},
+                                                  {"rest=photons"},
+                                                  {"pixel_footprint=false"},
+                                                  {"beam_events=2"},
+                                                  {"bound=hybrid"},
+                                                  {"preset=chuang1995"}}) {
+        const nlohmann::json recorded = describe(method("beamtree", given));
+        std::vector<std::string> all;
+        for (const auto& [key, value] : recorded.items())
+            all.push_back(key + "=" +
+                          (value.is_string() ? value.get<std::string>() : value.dump()));
+        EXPECT_EQ(describe(method("beamtree", all)), recorded);
+    }
 }
 
 TEST(Methods, KeepTheWordsOfOlderFilesInRecords) {
