@@ -58,11 +58,6 @@ PencilMap::PencilMap(std::vector<PencilPrint> prints, std::span<const LightSampl
                      int threads)
     : prints_(std::move(prints)) {
     for (const LightSample& light : lights) bins_.push_back(light.bin);
-    std::erase_if(prints_, [](const PencilPrint& print) {
-        const Vec3d wi = print.wi.cast<double>();
-        const Vec3d a = across_ray(print.sides[0], wi), b = across_ray(print.sides[1], wi);
-        return !(std::max(a.squaredNorm(), b.squaredNorm()) > 0);
-    });
     if (prints_.empty()) return;
     leaves_.resize(std::bit_ceil((prints_.size() + leaf_size - 1) / leaf_size));
     sort_into_leaves(prints_, leaves_.size(), threads);

@@ -21,8 +21,9 @@ namespace {
 constexpr std::uint64_t strata_together = 2048;
 // A branch with less of its pencil's light goes on by chance.
 constexpr float faint = 0.125F;
-// How far a print reaches at most, over the scene's diameter.
+// Of a print, over the scene's diameter, and the smallest over that.
 constexpr double longest_side = 0.1;
+constexpr double smallest_side = 1e-5;
 // A low-discrepancy sequence in the plane (Roberts 2018).
 constexpr std::array<double, 2> r2 = {0.7548776662466927, 0.5698402909980532};
 
@@ -244,17 +245,27 @@ private:
                           .events = static_cast<std::uint32_t>(branch.flight.bounces),
                           .first_refracted = branch.first_refracted,
                           .flat = exact_is_flat(scene_.shape_at(hit))};
+        const auto [a, b] = sides_of(branch, deposit->geometric_normal.cast<double>());
+        print.sides = {a.cast<float>(), b.cast<float>()};
+        traced.prints.push_back(print);
+    }
+
+    // Of what a branch has come to be on a plane. What derivatives say nothing of, and a perfect focus, is small.
+    std::array<Vec3d, 2> sides_of(const Branch& branch, const Vec3d& normal) const {
         std::array<Vec3d, 4> ways;
+        double size = 0;
         for (std::size_t i = 0; i < branch.changes; ++i) {
             const double length = branch.change[i].place.norm();
             ways[i] = (length > longest_ ? longest_ / length : 1) * branch.change[i].place;
+            size += ways[i].squaredNorm();
         }
-        std::array<Vec3d, 2> sides = {ways[0], ways[1]};
-        if (branch.changes > 2)
-            sides = rectangle_of(std::span(ways).first(branch.changes),
-                                 deposit->geometric_normal.cast<double>());
-        print.sides = {sides[0].cast<float>(), sides[1].cast<float>()};
-        traced.prints.push_back(print);
+        const double smallest = smallest_side * longest_;
+        if (!(size > smallest * smallest && std::isfinite(size))) {
+            const Frame frame(normal.cast<float>());
+            return {smallest * frame.s.cast<double>(), smallest * frame.t.cast<double>()};
+        }
+        if (branch.changes == 2) return {ways[0], ways[1]};
+        return rectangle_of(std::span(ways).first(branch.changes), normal);
     }
 
     bool goes_on_from(const SurfacePoint& hit, Branch& branch, std::vector<Branch>& waiting,

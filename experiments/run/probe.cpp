@@ -223,7 +223,7 @@ bool asks_for_pixels(const MethodOf<Estimator>& method) {
     const std::string key = "pixel_footprint";
     return describe(method).value(key, false) &&
            std::ranges::none_of(method.description->parameters(), [&](const KeyText& text) {
-               return text.key == key && text.usual == value_text(true);
+               return text.key == key && text.usual.starts_with(value_text(true));
            });
 }
 

@@ -157,6 +157,7 @@ TEST(BeamFlatMirror, AnAreaLightIsTheSumOfItsSamples) {
     beamtree::BeamTreeParams params;
     params.light_samples = 64;
     params.mesh_resolution = 96;
+    params.rest = beamtree::BeamTreeParams::Rest::max_beams;
     const auto method = build(scene, params, RunOptions{});
     for (int i = 0; i < 8; ++i) {
         const Vec3d middle(-0.3 + 0.3 * (i % 4), -0.6 + 0.6 * (i / 4), 0);

@@ -300,6 +300,7 @@ TEST(Dispersion, IntervalsOfWavelengthsLeaveABallLensItsLight) {
     beamtree::BeamTreeParams params;
     params.mesh_resolution = 96;
     params.max_bounces = 2;
+    params.rest = beamtree::BeamTreeParams::Rest::none;
     params.dispersion = beamtree::Dispersion::intervals;
     for (const int wavelengths : {4, 16}) {
         params.wavelengths = wavelengths;
@@ -320,6 +321,7 @@ TEST(Dispersion, ABallLensIsTheClosedFormOverItsWavelengths) {
     beamtree::BeamTreeParams beams;
     beams.mesh_resolution = 96;
     beams.max_bounces = 2;
+    beams.rest = beamtree::BeamTreeParams::Rest::max_beams;
     beams.intensity = beamtree::Intensity::refined;
     expect_on_rings(ball_lens(), 0, {0.1, 0.15, 0.2}, below_ball, beams, 5e-3);
     // The fringes are there: blue light has gone through a stronger lens.

@@ -268,7 +268,8 @@ TEST(Info, TellsWhatTheSceneHolds) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     for (const char* word :
          {"exact sphere", "caster", "receiver", "point at", "16 x 12", "photonmap        yes",
-          "pathtrace        no: ", "beamtree         yes, by a sample of "})
+          "pathtrace        no: ",
+          "beamtree         yes, by beams of up to 16 events with 100.0 % of the caustic"})
         EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
 }
 
