@@ -14,7 +14,7 @@ using Merging = ConeTreeSettings::Merging;
 
 bool has_own_rest(const P& p) {
     return p.rest == P::Rest::photons ||
-           (p.rest == P::Rest::max_beams &&
+           (p.rest != P::Rest::none &&
             (p.rest_photons != P{}.rest_photons || p.rest_nearest != P{}.rest_nearest));
 }
 
@@ -255,7 +255,12 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
                  settle_footprint(node, params);
                  settle_tree(node, params);
              },
-         .take_least_work = [](P& params) { params.sampled = true; }});
+         .take_least_work = [](P& params) { params.sampled = true; },
+         // Pencils are the light whose noise is seen, where beams carry any of it.
+         .work = [](const MethodFacts& facts, const P& params) -> WorkParameter {
+             if (params.rest != P::Rest::pencils) return facts.work;
+             return {.parameter = "pencils", .first = 20'000, .most = 1'000'000'000};
+         }});
     return method;
 }
 

@@ -18,6 +18,9 @@ struct MethodTable {
         [](const Scene& scene, const Params& params, const RunOptions& options, int) {
             return build(scene, params, options);
         };
+    /// Of methods whose time grows with another number where their parameters ask for it.
+    WorkParameter (*work)(const MethodFacts& of, const Params& params) =
+        [](const MethodFacts& of, const Params&) { return of.work; };
     int Params::* passes = nullptr;
     double Params::* disc_radius = nullptr;
 };
@@ -81,6 +84,7 @@ private:
         int pass_count() const override {
             return table_.passes == nullptr ? 1 : params_.*table_.passes;
         }
+        WorkParameter work() const override { return table_.work(table_.facts, params_); }
         double disc_radius() const override {
             return table_.disc_radius == nullptr ? 0 : params_.*table_.disc_radius;
         }

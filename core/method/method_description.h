@@ -37,7 +37,7 @@ struct MethodFacts {
     bool has_caustic = true;
     bool is_unbiased = false;  ///< so that it may serve as a reference
     SampleCount samples = {};
-    WorkParameter work = {};
+    WorkParameter work = {};  ///< unless its parameters choose another (ConfiguredParameters::work)
     bool gathers_over_discs = false;  ///< answers a probe over a disc round each point, all at once
     /// Further numbers that must grow with the work for the method to converge.
     std::vector<WorkParameter> refined_with = {};
@@ -57,6 +57,8 @@ public:
     virtual std::vector<std::string> files_written() const = 0;
     /// How often the method goes through its precompute pass; 1 for most.
     virtual int pass_count() const = 0;
+    /// The whole number that its time grows with, as its other parameters are.
+    virtual WorkParameter work() const = 0;
     /// Of points in `probe` that have none of their own [m]; 0 = none.
     virtual double disc_radius() const = 0;
 };

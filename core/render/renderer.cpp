@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/math/rng.h"
 #include "core/render/tile_sampler.h"
 
 namespace caustics {
@@ -18,9 +19,11 @@ constexpr int followed_samples = 4;
 /// The three ways to take a picture's samples: a fixed number a pixel, adaptively, or pass by pass.
 class EyePass {
 public:
-    EyePass(const Scene& scene, const RunOptions& options, const IndirectEstimator* indirect)
+    EyePass(const Scene& scene, const RunOptions& options, const IndirectEstimator* indirect,
+            int pixel_step)
         : scene_(scene),
           options_(options),
+          pixel_step_(static_cast<std::size_t>(pixel_step)),
           adaptive_(options.adaptive && scene.sampling().max_sample_count > 0),
           samples_(scene, options,
                    adaptive_ ? scene.sampling().max_sample_count : options.samples_per_pixel),
@@ -242,11 +245,22 @@ private:
     void sample_all(const Tile& tile, std::vector<PixelSums>& sums, TileWorker& worker) const {
         worker.pixels.resize(sums.size());
         std::iota(worker.pixels.begin(), worker.pixels.end(), std::size_t{0});
+        if (pixel_step_ > 1)
+            std::erase_if(worker.pixels,
+                          [&](std::size_t pixel) { return is_left_out(tile, pixel); });
         sampler_.sample(tile, 0, options_.samples_per_pixel, sums, worker);
+    }
+
+    // Scattered by chance, so that no row or column of the picture is preferred.
+    bool is_left_out(const Tile& tile, std::size_t pixel) const {
+        const auto number =
+            static_cast<std::uint32_t>(samples_.pixel_number(tile.x(pixel), tile.y(pixel)));
+        return philox4x32({number, 0, 0, 0}, {})[0] % pixel_step_ != 0;
     }
 
     void write(const Tile& tile, const std::vector<PixelSums>& sums, FilmLayers& layers) {
         for (std::size_t i = 0; i < sums.size(); ++i) {
+            if (sums[i].samples == 0) continue;
             const std::size_t pixel = samples_.pixel_number(tile.x(i), tile.y(i));
             layers.write(pixel, sums[i]);
             caustic_error_[pixel] = static_cast<float>(std::sqrt(
@@ -256,6 +270,7 @@ private:
 
     const Scene& scene_;
     RunOptions options_;
+    std::size_t pixel_step_;
     bool adaptive_;
     std::optional<CameraLayer> indirect_layer_;
     CameraSamples samples_;
@@ -269,13 +284,15 @@ private:
 
 Rendering render(const Scene& scene, const CausticEstimator& estimator, const RunOptions& options,
                  const IndirectEstimator* indirect) {
-    return EyePass(scene, options, indirect).run(estimator);
+    return EyePass(scene, options, indirect, 1).run(estimator);
 }
 
 Rendering render(const Scene& scene, const Passes& passes, const RunOptions& options,
                  const IndirectEstimator* indirect) {
-    if (passes.count == 1) return render(scene, *passes.build(0), options, indirect);
-    return EyePass(scene, options, indirect).run(passes);
+    const std::unique_ptr<const CausticEstimator> only =
+        passes.count == 1 ? passes.build(0) : nullptr;
+    EyePass eye(scene, options, indirect, passes.pixel_step);
+    return only ? eye.run(*only) : eye.run(passes);
 }
 
 }  // namespace caustics

@@ -34,6 +34,9 @@ struct Passes {
     int count = 1;
     /// Builds pass 0, 1, ..., count - 1, when the one before is gone.
     std::function<std::unique_ptr<const CausticEstimator>(int pass)> build;
+    /// One of so many pixels is rendered, of those that lie scattered; the others stay black. For trials of time, without
+    /// adaptive sampling.
+    int pixel_step = 1;
 };
 
 /// The eye pass, the same code and the same camera samples for every method: direct light, the

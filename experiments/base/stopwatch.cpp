@@ -1,5 +1,7 @@
 #include "experiments/base/stopwatch.h"
 
+#include <sys/resource.h>
+
 #include <ctime>
 
 namespace caustics::experiments {
@@ -12,12 +14,28 @@ Seconds& Seconds::operator+=(const Seconds& other) {
 
 Seconds operator-(const Seconds& a, const Seconds& b) { return {a.wall - b.wall, a.cpu - b.cpu}; }
 
-Seconds Stopwatch::now() {
+namespace {
+
+double own_cpu_seconds() {
     timespec cpu{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+    return static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
+}
+
+}  // namespace
+
+double cpu_seconds_used() {
+    rusage children{};
+    getrusage(RUSAGE_CHILDREN, &children);
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return own_cpu_seconds() + seconds(children.ru_utime) + seconds(children.ru_stime);
+}
+
+Seconds Stopwatch::now() {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now().time_since_epoch();
-    return {wall.count(),
-            static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec)};
+    return {wall.count(), own_cpu_seconds()};
 }
 
 Stopwatch::Stopwatch() : start_(now()), begun_(start_) {}

@@ -17,6 +17,9 @@ struct Seconds {
     friend Seconds operator-(const Seconds& a, const Seconds& b);
 };
 
+/// CPU seconds that this process has used since it began, with those of its ended children.
+double cpu_seconds_used();
+
 /// Cuts a run into consecutive named phases. A phase may come again; its times add up. Thread-safe.
 class Stopwatch {
 public:

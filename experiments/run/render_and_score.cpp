@@ -143,7 +143,8 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
         add(report, own);
     }
     Rendering rendering =
-        render(scene, {pass_count(request.method), build_pass}, options, indirect.get());
+        render(scene, {pass_count(request.method), build_pass, request.pixel_step}, options,
+               indirect.get());
     stopwatch.stop();
 
     if (report.light) report.light = report.light->scaled(1.0 / pass_count(request.method));

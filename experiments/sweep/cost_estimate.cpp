@@ -20,7 +20,7 @@ std::string pair_of(const Trial& trial) { return groups(trial)[1]; }
 std::optional<double> work_of(const Trial& trial) {
     const Method& method = trial.request.method;
     if (method.configured == nullptr) return {};
-    const WorkParameter& work = method.facts().work;
+    const WorkParameter work = method.configured->work();
     for (const auto& [key, value] : method.configured->values())
         if (key == work.parameter)
             return std::pow(static_cast<double>(std::get<std::int64_t>(value)), work.power);

@@ -185,7 +185,7 @@ TEST(Render, MakesThePictureOfATimeAgainByTheCommandThatItTells) {
     const std::string timed = folder / "timed.exr", again = folder / "again.exr";
     for (const std::string method : {"photonmap", "lighttrace", "beamtree", "causticpolygons"}) {
         const ProgramResult result = causticbench(
-            {"render", scene_of_ball, "--method", method, "--seconds", "0.05", "-o", timed});
+            {"render", scene_of_ball, "--method", method, "--seconds", "1", "-o", timed});
         ASSERT_EQ(result.exit_code, 0) << result.err;
         const std::string words = "the same picture again: causticbench render ";
         const std::size_t told = result.err.find(words);
@@ -199,33 +199,62 @@ TEST(Render, MakesThePictureOfATimeAgainByTheCommandThatItTells) {
 }
 
 // 1, 8 and 64 paths a pixel are the same picture at 64 samples a pixel.
-// So few pixels that a machine of a tenth of the speed has time for more samples, too.
 TEST(Render, GoesOnWhereSamplesHaveAPathEachAnyway) {
     const support::TemporaryFolder folder;
     const ProgramResult result =
         causticbench({"render", CAUSTICS_SOURCE_DIR "/experiments/scenes/ring_area.json", "--set",
                       "/sensor/film/width=4", "--set", "/sensor/film/height=3", "--spp", "64",
-                      "--method", "pathtrace", "--seconds", "1", "-o", folder / "a.exr"});
+                      "--method", "pathtrace", "--seconds", "2", "-o", folder / "a.exr"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err.find("makes no difference"), std::string::npos) << result.err;
-    EXPECT_NE(result.err.find("\nspp=256: "), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("spp=64: "), 0U) << result.err;
+    EXPECT_NE(result.err.find("\nspp=512: "), std::string::npos) << result.err;
+}
+
+TEST(Render, RefusesATimeThatIsTooShortWithTheLeast) {
+    const support::TemporaryFolder folder;
+    const ProgramResult result =
+        causticbench({"render", scene_of_ball, "--method", "photonmap", "--spp", "2500",
+                      "--seconds", "0.01", "-o", folder / "a.exr"});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    const std::string words = "--seconds 0.01: the least that this picture takes is about ";
+    const std::size_t told = result.err.find(words);
+    ASSERT_NE(told, std::string::npos) << result.err;
+    const std::string rest = result.err.substr(told + words.size());
+    const std::string least = rest.substr(0, rest.find(' '));
+    EXPECT_NE(rest.find(" for loading (give --seconds " + least + " or more)"), std::string::npos)
+        << result.err;
+    EXPECT_FALSE(fs::exists(folder / "a.exr"));
+}
+
+// Beams carry all the light of a ball.
+TEST(Render, GivesTheTimeOfBeamsToTheMeshesOfExactCasters) {
+    const support::TemporaryFolder folder;
+    const ProgramResult result = causticbench({"render", scene_of_ball, "--method", "beamtree",
+                                               "--seconds", "2", "-o", folder / "a.exr"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.find("pencils=20000: "), 0U) << result.err;
+    EXPECT_NE(result.err.find("\nmesh_resolution=8: "), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("makes no difference"), std::string::npos) << result.err;
 }
 
 TEST(Render, GivesTheTimeToANumberOfTheScene) {
     const support::TemporaryFolder folder;
     const std::string pool = CAUSTICS_SOURCE_DIR "/experiments/scenes/pool.json";
-    const ProgramResult by_mesh = causticbench(
-        {"render", pool, "--method", "beamtree", "--seconds", "1e4", "-o", folder / "a.exr"});
+    const ProgramResult by_mesh =
+        causticbench({"render", pool, "--method", "beamtree", "--param", "rest=max_beams",
+                      "--seconds", "1e4", "-o", folder / "a.exr"});
     EXPECT_EQ(by_mesh.exit_code, 0) << by_mesh.err;
     EXPECT_NE(by_mesh.err.find("note: mesh_resolution makes no difference here, so that the "
                                "picture does not take the 10000 s of --seconds"),
               std::string::npos)
         << by_mesh.err;
     const ProgramResult by_scene =
-        causticbench({"render", pool, "--method", "beamtree", "--seconds", "0.1", "--work",
+        causticbench({"render", pool, "--method", "beamtree", "--seconds", "2", "--work",
                       "/water/resolution", "-o", folder / "b.exr"});
     EXPECT_EQ(by_scene.exit_code, 0) << by_scene.err;
-    EXPECT_EQ(by_scene.err.find("/water/resolution=8: "), 0U) << by_scene.err;
+    EXPECT_EQ(by_scene.err.find("/water/resolution=8"), 0U) << by_scene.err;
     EXPECT_NE(read_exr(folder / "b.exr").metadata.at("command").find("--set /water/resolution="),
               std::string::npos);
 }

@@ -5,7 +5,7 @@ Usage: glass.py PROGRAM SCENE...     a file `causticbench`, and scene files; `wa
                                      with water on a table
 
 Prints a Markdown table. Each picture has 240 x 180 pixels of 4 samples, on one thread. Processor seconds are those of the whole
-program, loading included, medians of three seeds. The truth is `lighttrace` of 64 million paths. For the last columns
+program, loading included, medians of three seeds. The truth is `lighttrace` of 32 million paths. For the last columns
 `photonmap` gets so many photons that it takes as long as `beamtree`.
 """
 
@@ -22,7 +22,7 @@ from report import exr
 
 SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../experiments/scenes")
 FILM = ("--set", "/sensor/film/width=240", "--set", "/sensor/film/height=180", "--spp", "4")
-PATHS = 64_000_000
+PATHS = 32_000_000
 PHOTONS = 100_000  # photonmap's default
 SEEDS = (1, 2, 3)
 

@@ -52,6 +52,8 @@ TEST(Methods, AreDescribedByParametersThatReadBack) {
         {"causticpolygons", {"receiver_resolution=5", "light_samples=2"}},
         {"causticpolygons", {"prune=0.05", "max_beams=1000"}},
         {"beamtree", {"max_beams=20000"}},
+        {"beamtree", {"rest_photons=5000"}},
+        {"beamtree", {"rest_nearest=20"}},
         {"beamtree", {"preset=chuang1995"}},
         {"beamtree", {"preset=chuang1995", "bound=two_slice"}},
         {"photonmap", {"preset=jensen1996", "tree=packed"}},

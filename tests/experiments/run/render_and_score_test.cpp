@@ -61,6 +61,30 @@ SceneDesc ball_lit_from(double height) {
     return desc;
 }
 
+// Trials of time are of the pixels that the whole picture has.
+TEST(Run, RendersSomeOfThePixelsAsInTheWholePicture) {
+    SceneDesc desc = ball_lit_from(3);
+    desc.camera.width = desc.camera.height = 64;
+    const Scene scene(std::move(desc));
+    RunRequest request = small_request();
+    request.method = parse_method("photonmap", parameters_node({"photons=1000"}));
+    Stopwatch stopwatch;
+    const RunResult whole = run(scene, request, RunOptions{}, stopwatch);
+    request.pixel_step = 4;
+    const RunResult some = run(scene, request, RunOptions{}, stopwatch);
+    const auto rays = [](const RunResult& result) {
+        return static_cast<double>(result.counters.at("camera_rays"));
+    };
+    EXPECT_NEAR(rays(some) / rays(whole), 0.25, 0.03) << "four standard errors";
+    for (const Plane& plane : some.film.planes()) {
+        const std::vector<float>* const of_whole = whole.film.find(plane.channel);
+        ASSERT_NE(of_whole, nullptr) << plane.channel;
+        for (std::size_t i = 0; i < plane.values.size(); ++i)
+            EXPECT_TRUE(plane.values[i] == 0 || plane.values[i] == (*of_whole)[i])
+                << plane.channel << " " << i;
+    }
+}
+
 // What a terminal shows: stages, and within them the phases of the method.
 TEST(Run, TellsItsStagesAndPhases) {
     const Scene scene(ball_lit_from(3));
