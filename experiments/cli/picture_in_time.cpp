@@ -76,7 +76,7 @@ bool are_same(const RunResult& a, const RunResult& b) {
            std::ranges::equal(a.film.planes(), b.film.planes(), {}, &Plane::values, &Plane::values);
 }
 
-TimeBudget::Work kind_of(const RenderOptions& options, const WorkParameter& work) {
+TimeBudget::Work work_kind(const RenderOptions& options, const WorkParameter& work) {
     const SampleCount& samples = options.method.parse().facts().samples;
     return samples.parameter == work.parameter && !samples.of_a_pixel ? TimeBudget::Work::of_picture
                                                                       : TimeBudget::Work::of_pixels;
@@ -173,7 +173,7 @@ void PictureInTime::tell(const WorkParameter& work, const TimeBudget::Plan& plan
 }
 
 PictureInTime::Found PictureInTime::search(const WorkParameter& work) {
-    TimeBudget budget(work, kind_of(options_, work), pixel_step_);
+    TimeBudget budget(work, work_kind(options_, work), pixel_step_);
     const TimeBudget::Plan least{budget.plan().work, true};
     std::optional<SinglePicture> last;
     while (!budget.plan().is_last) {

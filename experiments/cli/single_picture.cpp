@@ -7,7 +7,7 @@ namespace caustics::experiments {
 
 namespace {
 
-RunRequest request_of(const RenderOptions& options, const SceneFile& file) {
+RunRequest picture_request(const RenderOptions& options, const SceneFile& file) {
     return {options.scene.file,
             options.scene.overrides(),
             options.method.parse(),
@@ -18,7 +18,7 @@ RunRequest request_of(const RenderOptions& options, const SceneFile& file) {
 
 SceneFile loaded(const RenderOptions& options) {
     SceneFile file = options.scene.load();
-    require_files_apart(options.outputs, request_of(options, file), file.files);
+    require_files_apart(options.outputs, picture_request(options, file), file.files);
     return file;
 }
 
@@ -30,7 +30,7 @@ LoadedScene::LoadedScene(const RenderOptions& options)
 
 SinglePicture LoadedScene::picture_of(const RenderOptions& options, int pixel_step,
                                       const std::function<void()>& check) const {
-    RunRequest request = request_of(options, file_);
+    RunRequest request = picture_request(options, file_);
     request.pixel_step = pixel_step;
     Stopwatch stopwatch;
     RunOptions run_options = options.run.options(request.samples_per_pixel);
