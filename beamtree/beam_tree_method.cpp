@@ -190,16 +190,16 @@ void settle_footprint(const JsonNode& node, const P& params) {
 }
 
 // Beams themselves are what some parameters ask about.
-bool asks_for_beams(const JsonNode& node, const P& params) {
-    return params.bound != Bound::two_slice ||
-           std::ranges::any_of(
-               std::array{"root_events", "mesh_resolution", "polygons", "prune", "max_beams"},
-               [&](const char* key) { return node.has(key); });
+bool asks_for_beams(const JsonNode& node) {
+    return std::ranges::any_of(
+        std::array{"bound", "spread_threshold", "merging", "hierarchy", "leaf", "intensity",
+                   "root_events", "mesh_resolution", "polygons", "prune", "max_beams"},
+        [&](const char* key) { return node.has(key); });
 }
 
 void settle_rest(const JsonNode& node, P& params) {
     if (params.preset.empty() && !node.has("rest") && !node.has("beam_events") &&
-        !node.has("pencils") && asks_for_beams(node, params))
+        !node.has("pencils") && asks_for_beams(node))
         params.rest = P::Rest::max_beams;
     for (const char* key : {"beam_events", "pencils"})
         if (const auto given = node.find(key); given && params.rest != P::Rest::pencils)

@@ -221,10 +221,12 @@ std::vector<std::string> notes_of_built(const Scene& scene, const Method& method
 template <class Estimator>
 bool asks_for_pixels(const MethodOf<Estimator>& method) {
     const std::string key = "pixel_footprint";
-    return describe(method).value(key, false) &&
-           std::ranges::none_of(method.description->parameters(), [&](const KeyText& text) {
-               return text.key == key && text.usual.starts_with(value_text(true));
-           });
+    nlohmann::json others = describe(method);
+    if (!others.value(key, false)) return false;
+    others.erase(key);
+    const auto usual = method.description->configure(JsonNode::parse_text(others.dump(), key));
+    const auto values = usual->values();
+    return std::ranges::find(values, std::pair(key, ParameterValue(true))) == values.end();
 }
 
 template <class Estimator>

@@ -108,7 +108,8 @@ TEST(BeamTreeParams, LeaveLightToPencilsUnlessBeamsAreAskedFor) {
     EXPECT_EQ(params(R"({"light_samples": 4})").rest, Rest::pencils);
     for (const std::string asked :
          {R"("max_beams": 1000)", R"("prune": 0)", R"("mesh_resolution": 8)", R"("root_events": 3)",
-          R"("polygons": "triangles")", R"("bound": "hybrid")"}) {
+          R"("polygons": "triangles")", R"("bound": "hybrid")", R"("intensity": "area")",
+          R"("bound": "two_slice")", R"("hierarchy": "binned")"}) {
         EXPECT_EQ(params("{" + asked + "}").rest, Rest::max_beams) << asked;
         EXPECT_EQ(params("{" + asked + "}").max_bounces, preset_bounces) << asked;
         EXPECT_EQ(params(R"({"rest": "pencils", )" + asked + "}").rest, Rest::pencils) << asked;
