@@ -14,8 +14,10 @@ namespace {
 constexpr std::uint64_t pilot_pencils = 10'000;
 // Beams that take about a CPU second, at 60 microseconds each where several events follow each other.
 constexpr std::uint64_t few_beams = 100'000;
-// Polygons, once a light, that take about as long by one event alone.
-constexpr std::uint64_t few_polygons = 150'000;
+// Polygons, once a light, that take less than ten times as long as a photon map by one event alone (12 microseconds each),
+// and light points: every receiver point asks the beams of each.
+constexpr std::uint64_t few_polygons = 600'000;
+constexpr std::size_t few_points = 8;
 // Light of one event that is worth beams of its own, over all of the caustic.
 constexpr double most_light = 0.5;
 // Light that is too little to be followed.
@@ -79,6 +81,7 @@ BeamPlan plan_beams(const Scene& scene, const BeamTreeParams& params, const RunO
     if (most > 1 && 1 - first > least_light && all_beams_fit(scene, params, lights, most, options))
         return with(most);
     const bool first_fits =
+        lights.size() <= few_points &&
         count_polygons(scene, params.mesh_resolution) * lights.size() <= few_polygons;
     return with(first_fits && first >= most_light ? 1 : 0);
 }

@@ -231,6 +231,12 @@ TEST(BeamPlan, ChoosesByCostAndLight) {
     const BeamPlan pool = plan_beams(Scene(pool_desc(32)), params, options);
     EXPECT_GE(pool.beam_events, 1);
     EXPECT_FALSE(pool.needs_pencils);
+    SceneDesc lamp = pool_desc(32);
+    lamp.shapes.push_back(
+        support::rectangle("lamp", {0.4, 0.3, 2.5}, {0, 0.1, 0}, {0.1, 0, 0}, support::diffuse(0)));
+    lamp.shapes.back().radiance = Spectrum(Spectrum::Constant(20));
+    lamp.lights.clear();
+    EXPECT_EQ(plan_beams(Scene(std::move(lamp)), params, options).beam_events, 0);
     SceneDesc ball = ball_desc(128);
     ball.shapes[0].bsdf = support::glass(1.5F);
     const BeamPlan facets = plan_beams(Scene(std::move(ball)), params, options);
