@@ -26,10 +26,15 @@ constexpr double least_light = 1e-4;
 constexpr double pencils_of_point = 256;
 constexpr int most_points = 1024;
 
+// Parts of each light by wavelength.
+int bins_of(const Scene& scene, const BeamTreeParams& params) {
+    return disperses(scene) ? params.wavelengths : 1;
+}
+
 int points_of_light(const Scene& scene, const BeamTreeParams& params, std::uint64_t count) {
-    const double bins = disperses(scene) ? params.wavelengths : 1;
-    const double points = static_cast<double>(count) /
-                          (pencils_of_point * bins * static_cast<double>(scene.casters().size()));
+    const double points =
+        static_cast<double>(count) /
+        (pencils_of_point * bins_of(scene, params) * static_cast<double>(scene.casters().size()));
     return std::max(params.light_samples, static_cast<int>(std::min<double>(points, most_points)));
 }
 
@@ -81,7 +86,7 @@ BeamPlan plan_beams(const Scene& scene, const BeamTreeParams& params, const RunO
     if (most > 1 && 1 - first > least_light && all_beams_fit(scene, params, lights, most, options))
         return with(most);
     const bool first_fits =
-        lights.size() <= few_points &&
+        lights.size() <= few_points * static_cast<std::size_t>(bins_of(scene, params)) &&
         count_polygons(scene, params.mesh_resolution) * lights.size() <= few_polygons;
     return with(first_fits && first >= most_light ? 1 : 0);
 }
