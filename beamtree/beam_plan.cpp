@@ -12,7 +12,7 @@ namespace caustics::beamtree {
 namespace {
 
 constexpr std::uint64_t pilot_pencils = 10'000;
-// Beams that take about a CPU second, at 60 microseconds each where several events follow each other.
+// Beams and divisions of polygons that take about two CPU seconds where several events follow each other.
 constexpr std::uint64_t few_beams = 100'000;
 // Polygons, once a light, that take less than ten times as long as a photon map by one event alone (12 microseconds each),
 // and light points: every receiver point asks the beams of each.

@@ -53,9 +53,10 @@ std::string judged_by(const BuildReport& report) {
         events != report.resolved.end())
         return events->second > 0
                    ? fmt::format(
-                         ", by beams of up to {:g} events with {:.1f} % of the caustic, and "
-                         "by pencils for any other",
-                         events->second, 100 * report.resolved.at("beam_share"))
+                         ", by beams of up to {:g} event{} with {:.1f} % of the caustic, "
+                         "and by pencils for any other",
+                         events->second, events->second > 1 ? "s" : "",
+                         100 * report.resolved.at("beam_share"))
                    : ", by pencils, for beams would take many times a photon map's time";
     const auto sampled = report.counters.find("polygons_sampled");
     if (sampled == report.counters.end()) return "";

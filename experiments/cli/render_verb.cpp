@@ -125,9 +125,8 @@ Verb add_render(CLI::App& app) {
                      "With --seconds: the whole number of the scene that takes them, in place of "
                      "the method's parameter, such as /water/resolution")
         ->type_name("/POINTER");
-    add_repeatable(
-        *verb, "-o,--output", options->outputs,
-        "SinglePicture to write: .exr (float32, all layers) or .png (tone-mapped). Repeatable")
+    add_repeatable(*verb, "-o,--output", options->outputs,
+                   "Picture to write: .exr (float32, all layers) or .png (tone-mapped). Repeatable")
         ->required()
         ->type_name("FILE");
     verb->footer(
