@@ -22,7 +22,7 @@ constexpr std::size_t few_points = 8;
 constexpr double most_light = 0.5;
 // Light that is too little to be followed.
 constexpr double least_light = 1e-4;
-// Of the points of an area light, each has so many pencils of a caster or more.
+// The least number of pencils from each point of an area light to a caster.
 constexpr double pencils_of_point = 256;
 constexpr int most_points = 1024;
 
@@ -41,7 +41,6 @@ int points_of_light(const Scene& scene, const BeamTreeParams& params, std::uint6
 bool all_beams_fit(const Scene& scene, const BeamTreeParams& params,
                    const std::vector<LightSample>& lights, int most_events,
                    const RunOptions& options) {
-    if (count_polygons(scene, params.mesh_resolution) * lights.size() > few_beams) return false;
     return beams_fit(scene,
                      caster_meshes(scene, params.mesh_resolution, params.polygons, options.threads),
                      lights, settings_of_beams(params, most_events, few_beams), options);
@@ -70,24 +69,26 @@ ScenePencils trace_scene_pencils(const Scene& scene, const BeamTreeParams& param
 }
 
 BeamPlan plan_beams(const Scene& scene, const BeamTreeParams& params, const RunOptions& options) {
+    // Refuses lights that beams cannot serve, whatever the plan is.
+    const std::vector<LightSample> lights = beam_lights(scene, "beamtree", params, options);
+    if (params.beam_events != BeamTreeParams::planned) {
+        const int given = std::min(params.beam_events, params.max_bounces);
+        return {given, given < params.max_bounces, 1};
+    }
     const ScenePencils pilot = trace_scene_pencils(scene, params, pilot_pencils, options);
     const auto with = [&](int most_events) -> BeamPlan {
         const double share = pilot.share_up_to(most_events);
         return {most_events, most_events < params.max_bounces && 1 - share > least_light, share};
     };
-    if (params.beam_events != BeamTreeParams::planned) {
-        BeamPlan given = with(std::min(params.beam_events, params.max_bounces));
-        given.needs_pencils = given.beam_events < params.max_bounces;
-        return given;
-    }
-    const std::vector<LightSample> lights = beam_lights(scene, "beamtree", params, options);
+    const std::uint64_t polygons = count_polygons(scene, params.mesh_resolution) * lights.size();
     const int most = std::min(params.max_bounces, preset_bounces);
     const double first = pilot.share_up_to(1);
-    if (most > 1 && 1 - first > least_light && all_beams_fit(scene, params, lights, most, options))
+    if (most > 1 && 1 - first > least_light && polygons <= few_beams &&
+        all_beams_fit(scene, params, lights, most, options))
         return with(most);
     const bool first_fits =
         lights.size() <= few_points * static_cast<std::size_t>(bins_of(scene, params)) &&
-        count_polygons(scene, params.mesh_resolution) * lights.size() <= few_polygons;
+        polygons <= few_polygons;
     return with(first_fits && first >= most_light ? 1 : 0);
 }
 

@@ -11,12 +11,13 @@ namespace caustics::beamtree {
 struct BeamPlan {
     int beam_events = 0;        ///< beams carry the light of up to so many specular events; 0: none
     bool needs_pencils = true;  ///< there is other light
-    double beam_share = 0;      ///< of the caustic on receivers, as a sample tells
+    double beam_share =
+        0;  ///< of the caustic on receivers, as a sample tells; 1 where `beam_events` is given
 };
 
 /// Beams carry what they carry at a few times the cost of a photon map: all light, where all beams are few; else light of
-/// one event, where that is most of the caustic; else none, for behind glass polygons would be cut again and again. Some
-/// pencils and some polygons, drawn at random, tell which it is, by counts, so that the plan is the same on every machine.
+/// one event, where that is most of the caustic; else none, for behind glass polygons would be cut again and again. The plan
+/// rests on counts of some pencils and of some polygons drawn at random, so that it is the same on every machine.
 /// `beam_events` decides where it is given.
 BeamPlan plan_beams(const Scene& scene, const BeamTreeParams& params, const RunOptions& options);
 
@@ -29,7 +30,7 @@ struct ScenePencils {
     double share_up_to(int most_events) const;
 };
 
-/// About `count` pencils. Area lights have more points than beams take, for pencils cost the same from each.
+/// Traces about `count` pencils. Area lights have more points here than for beams: more points make no more pencils.
 ScenePencils trace_scene_pencils(const Scene& scene, const BeamTreeParams& params,
                                  std::uint64_t count, const RunOptions& options);
 

@@ -77,7 +77,7 @@ Completion completion(const BeamTreeParams& params) {
     return {static_cast<std::uint64_t>(params.rest_photons), params.rest != Rest::photons};
 }
 
-/// What `rest: pencils` makes of the parameters, and the pencils.
+/// Parameters for beams, as `rest: pencils` settles them, and the pencils.
 struct Planned {
     BeamTreeParams params;
     bool has_beams = true;
@@ -118,10 +118,11 @@ Planned planned(const Scene& scene, const BeamTreeParams& params, const RunOptio
 
 std::unique_ptr<const CausticEstimator> build(const Scene& scene, const BeamTreeParams& params,
                                               const RunOptions& options) {
-    if (params.sampled && params.rest != BeamTreeParams::Rest::pencils)
-        return sampled_beams(scene, "beamtree", params, options);
-    if (params.sampled)
+    if (params.sampled) {
+        if (params.rest != BeamTreeParams::Rest::pencils)
+            return sampled_beams(scene, "beamtree", params, options);
         return std::make_unique<UnlitEstimator>(report_of(plan_beams(scene, params, options)));
+    }
     Planned plan = planned(scene, params, options);
     TracedScene traced;
     if (plan.has_beams)

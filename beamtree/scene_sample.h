@@ -17,7 +17,7 @@ struct SceneSample {
     BuildReport report() const;
 };
 
-/// Of all casters; exact ones are tessellated.
+/// Counts the polygons of all casters, with exact ones tessellated.
 std::uint64_t count_polygons(const Scene& scene, int mesh_resolution);
 
 /// Traces beams of polygons drawn at random, as far as they have light to speak of, until their number is enough to

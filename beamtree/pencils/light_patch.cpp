@@ -15,7 +15,7 @@ using Corners = std::array<Vec3d, 8>;
 
 // Cosine of the angle up to which a caster's corners lie round the direction to its middle: else the light is near.
 constexpr double widest_cosine = 0.5;
-// Of the half angle of a spot's cone whose rays go through one rectangle.
+// The least cosine of a spot's half angle with which its rays go through one rectangle.
 constexpr double widest_cosine_of_spot = 0.4;
 // Rounding of floats, over the patch.
 constexpr double slack = 1e-5;
@@ -111,7 +111,7 @@ private:
             add_faces(light, caster, from, corners);
     }
 
-    // What a spot's cone has of the rectangle round the caster.
+    // Takes the part of the rectangle round the caster that a spot's cone reaches.
     void add_spot(std::uint32_t light, std::uint32_t caster, const Vec3d& from,
                   const Corners& corners) {
         const SpotCone& spot = *lights_[light].spot;
@@ -133,7 +133,7 @@ private:
         push(light, caster, rectangle, from + axis);
     }
 
-    // Of a cube round the light, those that see something of the caster's box.
+    // Takes those faces of a cube round the light that see something of the caster's box.
     void add_faces(std::uint32_t light, std::uint32_t caster, const Vec3d& from,
                    const Corners& corners) {
         for (int face = 0; face < 6; ++face) {

@@ -19,10 +19,11 @@ struct LightPatch {
     double watts = 0;  ///< that go through it, as some of its places tell
 };
 
-/// A ray through a point of a patch: unit direction, and what the sample's strength is multiplied by for the flux through
-/// an element of the patch's plane, over its area [1/m^2], or 1 for a directional light.
+/// A ray through a point of a patch.
 struct PatchRay {
-    Vec3d direction;
+    Vec3d direction;  ///< unit
+    /// The flux through a small area of the patch's plane is the sample's strength times this times the area: solid angle over
+    /// area [1/m^2], or 1 for a directional light.
     double measure;
 };
 PatchRay ray_through(const LightSample& light, const LightPatch& patch, const Vec3d& point);

@@ -19,10 +19,9 @@ constexpr float height_over_size = 0.25F;
 constexpr float height_of_flat = 1e-3F;
 // So much wider are boxes than the prints in them.
 constexpr float wider_box = 1e-5F;
-// Sides of a print are no longer than the box of so many prints about it: where light comes from everywhere, many more
-// over one point tell no more.
+// A side of a print is at most as long as the box of so many prints about it. More prints over a point cost time and gain little.
 constexpr std::size_t most_over_a_point = 64;
-// What threads take at a time.
+// Leaves that a thread takes at a time.
 constexpr std::size_t leaves_of_chunk = 64;
 
 // Sides of a parallelogram across a unit direction: at least so wide, across the longer one.

@@ -23,7 +23,6 @@ public:
     PencilMap(std::vector<PencilPrint> prints, std::span<const LightSample> lights, int threads);
 
     bool is_empty() const { return prints_.empty(); }
-    std::uint64_t size() const { return prints_.size(); }
     std::uint64_t bytes() const;
     /// [W m^-2] on the side of the geometric normal. `stack` is scratch.
     Spectrum irradiance(const ReceiverPoint& point, std::vector<std::uint32_t>& stack) const;

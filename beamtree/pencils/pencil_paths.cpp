@@ -8,6 +8,7 @@
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/light/specular_surface.h"
 #include "beamtree/pencils/light_patch.h"
+#include "beamtree/rest/spread_evenly.h"
 #include "core/base/parallel.h"
 #include "core/geometry/exact_shape.h"
 #include "core/light_path/flight.h"
@@ -17,17 +18,13 @@
 namespace caustics::beamtree {
 namespace {
 
-// What threads take at a time.
+// Strata that a thread takes at a time.
 constexpr std::uint64_t strata_together = 2048;
 // A branch with less of its pencil's light goes on by chance.
 constexpr float faint = 0.125F;
-// Of a print, over the scene's diameter, and the smallest over that.
+// The longest side of a print over the scene's diameter, and the smallest side over that.
 constexpr double longest_side = 0.1;
 constexpr double smallest_side = 1e-5;
-// A low-discrepancy sequence in the plane (Roberts 2018).
-constexpr std::array<double, 2> r2 = {0.7548776662466927, 0.5698402909980532};
-
-double part_of_one(double x) { return x - std::floor(x); }
 
 /// A patch in equal strata, of which those at its edges reach beyond it.
 struct Grid {
@@ -71,7 +68,7 @@ std::vector<Grid> grids_of(const std::vector<LightPatch>& patches, std::uint64_t
     for (std::size_t i = 0; i < patches.size(); ++i) {
         grids.push_back(grid_of(patches[i], static_cast<double>(count) * patches[i].watts / watts));
         for (std::size_t k = 0; k < 2; ++k)
-            grids.back().shift[k] = part_of_one(shift[k] + static_cast<double>(i) * r2[k]);
+            grids.back().shift[k] = fine_fraction(shift[k] + static_cast<double>(i) * r2_steps[k]);
         grids.back().first = strata;
         strata += grids.back().size();
     }
@@ -84,7 +81,6 @@ struct Branch {
     /// By the sides of its stratum, and by those of the part of the area light that its point stands for.
     std::array<RayChange, 4> change;
     std::size_t changes = 2;  ///< how many of them
-    bool first_refracted = false;
 
     std::span<RayChange> all() { return {change.data(), changes}; }
     std::span<const RayChange> all() const { return {change.data(), changes}; }
@@ -195,7 +191,7 @@ private:
         }
     }
 
-    // Of two branches the reflected one with all that comes of it first.
+    // Follows a pencil and all its branches: of two the reflected one first, with all that comes of it.
     void follow(const Branch& start, const LightPatch& patch, Rng& rng,
                 TracedPencils& traced) const {
         std::vector<Branch> waiting = {start};
@@ -210,7 +206,6 @@ private:
     bool moves_on(Branch& branch, const LightPatch& patch, std::vector<Branch>& waiting, Rng& rng,
                   TracedPencils& traced) const {
         Flight& flight = branch.flight;
-        ++traced.segments;
         const std::optional<SurfacePoint> hit = scene_.intersect(flight.ray);
         if (!hit || (flight.bounces == 0 && hit->shape != patch.caster)) return false;
         const Bsdf& bsdf = scene_.shape_at(*hit).bsdf;
@@ -223,12 +218,8 @@ private:
                              static_cast<double>(hit->distance),
                              hit->geometric_normal.cast<double>());
         if (is_receiver(bsdf) && flight.bounces > 0) land(branch, *hit, patch, traced);
-        if (!is_caster(bsdf)) return false;
-        if (flight.bounces == settings_.max_bounces) {
-            traced.cut += static_cast<double>(flight.flux.mean());
-            return false;
-        }
-        return goes_on_from(*hit, branch, waiting, rng);
+        return is_caster(bsdf) && flight.bounces < settings_.max_bounces &&
+               goes_on_from(*hit, branch, waiting, rng);
     }
 
     void land(const Branch& branch, const SurfacePoint& hit, const LightPatch& patch,
@@ -241,16 +232,14 @@ private:
                           .sides = {},
                           .flux = deposit->flux,
                           .light = patch.light,
-                          .caster = patch.caster,
                           .events = static_cast<std::uint32_t>(branch.flight.bounces),
-                          .first_refracted = branch.first_refracted,
                           .flat = exact_is_flat(scene_.shape_at(hit))};
         const auto [a, b] = sides_of(branch, deposit->geometric_normal.cast<double>());
         print.sides = {a.cast<float>(), b.cast<float>()};
         traced.prints.push_back(print);
     }
 
-    // Of what a branch has come to be on a plane. What derivatives say nothing of, and a perfect focus, is small.
+    // Finds the sides of a branch's print on a plane. The print of a perfect focus is small, and so is one whose derivatives are infinite.
     std::array<Vec3d, 2> sides_of(const Branch& branch, const Vec3d& normal) const {
         std::array<Vec3d, 4> ways;
         double size = 0;
@@ -306,7 +295,6 @@ private:
         bend.eta = static_cast<double>(split.eta);
         bend.inner = refracts ? std::max(-direction.dot(bend.n), 1e-6) : 1;
         turn(hit, bend, side, branch);
-        if (flight.bounces == 0) branch.first_refracted = refracts;
         leave(scene_, hit, direction.cast<float>(), flight);
         return true;
     }
@@ -364,8 +352,6 @@ TracedPencils trace_pencils(const Scene& scene, std::span<const LightSample> lig
     for (TracedPencils& part : parts) {
         all.prints.insert(all.prints.end(), part.prints.begin(), part.prints.end());
         all.traced += part.traced;
-        all.segments += part.segments;
-        all.cut += part.cut;
         part = {};
     }
     return all;

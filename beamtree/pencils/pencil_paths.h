@@ -17,12 +17,10 @@ struct PencilSettings {
     int max_bounces = most_bounces;
 };
 
-/// What pencils bring, in an order that does not depend on threads.
+/// The prints of pencils, in an order that does not depend on threads.
 struct TracedPencils {
     std::vector<PencilPrint> prints;
-    std::uint64_t traced = 0;    ///< pencils
-    std::uint64_t segments = 0;  ///< of their paths
-    double cut = 0;              ///< light that would go on after max_bounces [W]
+    std::uint64_t traced = 0;  ///< pencils
 };
 
 /// Pencils: light paths with the derivatives of place and direction by the two sides of a stratum. Each light sample and

@@ -12,15 +12,13 @@ namespace caustics::beamtree {
 /// across them.
 struct PencilPrint {
     Vec3 position;
-    Vec3 normal;                   ///< unit, geometric, on the side of arrival
-    Vec3 wi;                       ///< unit, where it came from
-    std::array<Vec3, 2> sides;     ///< of its image on the tangent plane [m]
-    Spectrum flux = black();       ///< [W]
-    std::uint32_t light = 0;       ///< index of the light sample
-    std::uint32_t caster = 0;      ///< that it met first, index into Scene::shapes
-    std::uint32_t events = 1;      ///< specular ones, from the light to here
-    bool first_refracted = false;  ///< what the first was
-    bool flat = false;             ///< the receiver is a plane
+    Vec3 normal;                ///< unit, geometric, on the side of arrival
+    Vec3 wi;                    ///< unit, where it came from
+    std::array<Vec3, 2> sides;  ///< of its image on the tangent plane [m]
+    Spectrum flux = black();    ///< [W]
+    std::uint32_t light = 0;    ///< index of the light sample
+    std::uint32_t events = 1;   ///< specular ones, from the light to here
+    bool flat = false;          ///< the receiver is a plane
 };
 
 }  // namespace caustics::beamtree

@@ -18,9 +18,9 @@ public:
         return radius_ > 0 ? box.squaredExteriorDistance(position_) <= radius_ * radius_
                            : box.contains(position_);
     }
-    /// Of a pencil that has so much area across its rays, the light that falls on the window over the window's area
-    /// [1/m^2]. `at` are the point's numbers along the pencil's sides, `by_side` what makes them of ways, `cosine` that
-    /// of the point's normal and the rays.
+    /// The light of a pencil that falls on the window, over the pencil's light and the window's area [1/m^2]. The pencil has
+    /// `area` across its rays, `at` are the point's numbers along its sides, `by_side` makes such numbers of ways, and `cosine` is
+    /// that of the point's normal and the rays.
     double density(const Vec2& at, const std::array<Vec3, 2>& by_side, double area,
                    double cosine) const;
 

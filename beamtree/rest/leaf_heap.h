@@ -40,13 +40,13 @@ void sort_into_leaves(std::vector<Item>& items, std::size_t leaves, int threads)
         });
 }
 
-/// Of a heap whose leaves' boxes are given.
+/// Finds the boxes of a heap's nodes from those of its leaves.
 inline void unite(std::vector<Box>& boxes) {
     for (std::size_t i = boxes.size() / 2; i-- > 1;)
         boxes[i] = boxes[2 * i].merged(boxes[2 * i + 1]);
 }
 
-/// Of the positions of items that are in the order of the leaves.
+/// The boxes of the positions of items that are in the order of the leaves.
 template <typename Item>
 std::vector<Box> boxes_of_positions(const std::vector<Item>& items, std::size_t leaves) {
     std::vector<Box> boxes(2 * leaves);
@@ -58,7 +58,7 @@ std::vector<Box> boxes_of_positions(const std::vector<Item>& items, std::size_t 
     return boxes;
 }
 
-/// Calls take(leaf) for each leaf whose box and those above it are touched; `stack` is scratch.
+/// Calls take(leaf) for each leaf where `touches` holds of its box and of all boxes above it. `stack` is scratch.
 template <typename Touches, typename Take>
 void for_each_leaf(const std::vector<Box>& boxes, std::vector<std::uint32_t>& stack,
                    const Touches& touches, const Take& take) {

@@ -132,14 +132,14 @@ double beams_of_polygon(double polygons, std::uint64_t max_beams) {
     return filling * static_cast<double>(max_beams) / polygons;
 }
 
-// Of polygons that are drawn, so many as all have where all are `max_beams`.
+// The number of beams that drawn polygons have where those of all polygons are `max_beams`.
 std::uint64_t most_of_draws(double polygons, std::uint64_t max_beams, std::size_t drawn) {
     return static_cast<std::uint64_t>(beams_of_polygon(polygons, max_beams) *
                                       static_cast<double>(drawn)) +
            1;
 }
 
-// What matters for their number.
+// Keeps the settings that matter for the number of beams.
 TraceSettings alone(const TraceSettings& settings) {
     return {.max_bounces = settings.max_bounces,
             .prune = settings.prune,

@@ -15,8 +15,8 @@ double expected_least(const Scene& scene, const SceneBoxes& boxes,
                       const std::vector<LightSample>& lights, const TraceSettings& settings,
                       const RunOptions& options);
 
-/// Whether all beams of several events that are bright enough (`prune`) are at most `max_beams`, as polygons drawn at
-/// random tell.
+/// Answers by polygons drawn at random whether there are at most `max_beams` beams of several events that are bright enough
+/// (`prune`).
 bool beams_fit(const Scene& scene, const std::vector<CasterMesh>& casters,
                const std::vector<LightSample>& lights, const TraceSettings& settings,
                const RunOptions& options);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "beamtree/rest/spread_evenly.h"
 #include "beamtree/tracing/cut_edge.h"
 #include "core/light_path/flight.h"
 #include "core/math/rng.h"
@@ -15,8 +16,6 @@ namespace {
 constexpr std::uint64_t own_streams = std::uint64_t{1} << 63U;
 // Shares of neighbours in the mesh: multiples of the golden ratio fall evenly.
 constexpr double golden = 0.6180339887498949;
-// A low-discrepancy sequence in the plane (Roberts 2018).
-constexpr std::array<double, 2> r2 = {0.7548776662466927, 0.5698402909980532};
 
 /// A number for a thing, equal for equal ones alone but by chance.
 class Name {
@@ -51,8 +50,6 @@ bool is_whole_triangle(const LeftOut& part) {
         return corner->vertex != RayOrigin::no_vertex;
     });
 }
-
-double fine_fraction(double x) { return x - std::floor(x); }
 
 // Evenly over a triangle.
 Vec3 weights_in_triangle(double u, double v) {
@@ -151,9 +148,9 @@ void RestPhotons::trace(const Level& level, const LeftOut& part,
     const std::size_t first = photons.size();
     for (std::uint64_t i = 0; i < count; ++i) {
         const auto number = static_cast<double>(i);
-        const PathPoint point =
-            path.inside(part.corners, weights_in_triangle(fine_fraction(shift_u + number * r2[0]),
-                                                          fine_fraction(shift_v + number * r2[1])));
+        const PathPoint point = path.inside(
+            part.corners, weights_in_triangle(fine_fraction(shift_u + number * r2_steps[0]),
+                                              fine_fraction(shift_v + number * r2_steps[1])));
         if (!goes_on(point)) continue;
         const double share = closeness(set.light, part, point.origin.position, measured) / wanted;
         Flight flight{{}, point.origin.weight * static_cast<float>(measured * share)};

@@ -18,7 +18,7 @@ struct MethodTable {
         [](const Scene& scene, const Params& params, const RunOptions& options, int) {
             return build(scene, params, options);
         };
-    /// Of methods whose time grows with another number where their parameters ask for it.
+    /// Finds the number that the time grows with, where parameters choose another than the facts name.
     WorkParameter (*work)(const MethodFacts& of, const Params& params) =
         [](const MethodFacts& of, const Params&) { return of.work; };
     int Params::* passes = nullptr;

@@ -14,10 +14,10 @@ namespace caustics::experiments {
 
 namespace {
 
-// What a written pixel takes [CPU s].
+// Writing of a pixel [CPU s].
 constexpr double writing_a_pixel = 1.2e-6;
-// What picture_light takes more where light paths leave a doubt is eight times what it takes before. Trials do not
-// tell whether they will: a quarter of it keeps both cases near the wanted time.
+// Where light paths leave a doubt, picture_light takes eight times as long again. Trials do not tell whether they will:
+// room for a quarter of it keeps both cases near the wanted time.
 constexpr double more_light_paths = 2;
 // So many pixels tell the time of all.
 constexpr double few_pixels = 2000;
@@ -29,7 +29,7 @@ std::string given_parameter(const RenderOptions& options, const WorkParameter& w
     return "";
 }
 
-/// What the time of --seconds goes into.
+/// The parameter that the time of --seconds goes into.
 WorkParameter work_parameter(const RenderOptions& options) {
     constexpr std::int64_t most_of_scene = 4096;
     const Method method = options.method.parse();
@@ -70,7 +70,7 @@ void require_whole_work(const RenderOptions& options, const SceneFile& file) {
         fmt::format("--work {}: holds {}, which is no whole number", options.work, held));
 }
 
-/// Whether more work made no difference: neither in the picture nor in what was counted.
+/// Answers whether more work made no difference, neither in the picture nor in the counts.
 bool are_same(const RunResult& a, const RunResult& b) {
     return a.counters == b.counters &&
            std::ranges::equal(a.film.planes(), b.film.planes(), {}, &Plane::values, &Plane::values);
@@ -146,7 +146,7 @@ void PictureInTime::refuse(double more) const {
 }
 
 SinglePicture PictureInTime::made(const WorkParameter& work, const TimeBudget::Plan& plan) {
-    // So long is waited to tell how much would be enough.
+    // A trial may take so long to tell how many seconds would be enough.
     const double most = 2 * seconds_ + 5;
     const double before = cpu_seconds_used();
     const std::string chosen = fmt::format("{}={}", work.parameter, plan.work);

@@ -17,7 +17,7 @@ public:
 
     /// Throws InputError, with the least that would do, where the time is too short.
     SinglePicture picture();
-    /// Of the picture.
+    /// The scene file of the picture.
     const SceneFile& file() const { return scene_->file(); }
 
 private:

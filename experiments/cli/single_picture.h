@@ -10,7 +10,7 @@
 
 namespace caustics::experiments {
 
-/// What the verb `render` is asked for.
+/// Options of the verb `render`.
 struct RenderOptions {
     SceneOptions scene;
     MethodOptions method;

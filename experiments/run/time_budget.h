@@ -15,7 +15,7 @@ public:
     /// How far from the wanted time [share of it] is near enough.
     static constexpr double tolerance = 0.1;
 
-    /// What the work is done for.
+    /// The part of a picture that the work is done for.
     enum class Work {
         of_pixels,  ///< rendering takes its time pixel by pixel
         of_picture  ///< light paths connect to the camera by themselves, however many pixels are asked for

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `beamtree` by default costs and errs beside `photonmap` by default, on glass.
+"""Cost and error of `beamtree` by default beside those of `photonmap` by default, on glass.
 
 Usage: glass.py PROGRAM SCENE...     a file `causticbench`, and scene files; `water` is the project's glass of cognac,
                                      with water on a table

@@ -29,7 +29,7 @@ double flux_of(const TracedPencils& pencils) {
     return sum;
 }
 
-/// What particles of the photon map's kind bring to all receivers [W], and its error.
+/// Light that particles of the photon map's kind bring to all receivers [W], and its error.
 std::pair<double, double> flux_of_particles(const Scene& scene) {
     const AimedEmission emission(scene);
     const support::ArrivedFlux all = support::arrived_flux(

@@ -9,7 +9,7 @@ namespace caustics::experiments {
 namespace {
 
 using Work = TimeBudget::Work;
-/// What a picture of so much work costs, and of what share of the pixels.
+/// The cost of a picture by its work and the share of its pixels.
 using CostOf = std::function<TimeBudget::Cost(double work, double pixels)>;
 
 struct Outcome {
@@ -66,7 +66,7 @@ TEST(TimeBudget, FillsWhatIsLeftWhateverItsConstantsAre) {
             }
 }
 
-// What trials take is not in the picture.
+// Trials leave less time to the picture.
 TEST(TimeBudget, SpendsLittleOnTrialsWhereTheyAreOfFewPixels) {
     for (const double seconds : {4.0, 100.0}) {
         const Outcome outcome = spend(seconds, {photons, 16}, [](double n, double pixels) {
@@ -94,7 +94,7 @@ TEST(TimeBudget, CountsThePathsOfAPictureOnce) {
     EXPECT_NEAR(outcome.used, 20, 0.05 * 20);
 }
 
-// Photons so few that pixels ask for none cost less than a line foretells.
+// Very few photons cost less than a line through larger numbers foretells.
 TEST(TimeBudget, DoesNotTrustTheFirstTwoTrials) {
     const Outcome outcome = spend(2, {photons}, [](double n, double) {
         return TimeBudget::Cost{0, (n < 5000 ? 0.09 : 0.22) + 1e-6 * n};
