@@ -256,6 +256,12 @@ const DescribedMethod<BeamTreeParams>& beamtree_method() {
                  settle_tree(node, params);
              },
          .take_least_work = [](P& params) { params.sampled = true; },
+         .take_share =
+             [](P& params, double share) {
+                 params.polygon_share =
+                     params.rest == P::Rest::pencils ? take_share_of(params.pencils, share) : share;
+                 return params.polygon_share;
+             },
          // Pencils are the light whose noise is seen, where beams carry any of it.
          .work = [](const MethodFacts& facts, const P& params) -> WorkParameter {
              if (params.rest != P::Rest::pencils) return facts.work;

@@ -147,7 +147,8 @@ const DescribedMethod<CausticPolygonsParams>& causticpolygons_method() {
                       "are.",
                   .unit = "polygons",
                   .source = "[Watt 1990]"})}),
-         .take_least_work = [](P& params) { params.sampled = true; }});
+         .take_least_work = [](P& params) { params.sampled = true; },
+         .take_share = [](P& params, double share) { return params.polygon_share = share; }});
     return method;
 }
 

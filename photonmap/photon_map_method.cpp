@@ -298,6 +298,12 @@ const DescribedMethod<PhotonMapParams>& photonmap_method() {
                  params.emitted = std::min<std::uint64_t>(params.emitted, 1);
                  params.save.clear();
              },
+         .take_share =
+             [](P& params, double share) {
+                 params.save.clear();
+                 if (!is_traced(params)) return 1.0;
+                 return take_share_of(params.photons > 0 ? params.photons : params.emitted, share);
+             },
          .make = build_pass,
          .passes = &P::passes});
     return method;

@@ -21,6 +21,8 @@ struct BeamParams {
     Dispersion dispersion = Dispersion::bins;
     /// Only a sample of the polygons is traced, to tell whether beams can serve the scene: no parameter.
     bool sampled = false;
+    /// The polygons that are traced, of all, for a trial of what they cost: no parameter.
+    double polygon_share = 1;
 };
 
 }  // namespace caustics::beamtree

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -104,6 +106,15 @@ void leave_out_degenerate(CasterMesh& caster) {
     }
 }
 
+// What stays is spread evenly by multiples of the golden ratio, and is among what stays of a larger share. The two triangles of
+// a cell go together.
+void leave_out_all_but(double share, CasterMesh& caster) {
+    for (std::size_t i = 0; i < caster.mesh.triangles.size(); ++i) {
+        const double turns = static_cast<double>(i / 2) * std::numbers::phi;
+        if (turns - std::floor(turns) >= share) caster.left_out[i] = true;
+    }
+}
+
 // Two triangles that run along one edge in opposite ways are a quad with that edge as diagonal.
 std::optional<CellQuad> quad_of(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto& t = mesh.triangles[triangle];
@@ -137,7 +148,7 @@ Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, PolygonKind kind,
-                                      int threads) {
+                                      int threads, double share) {
     std::vector<CasterMesh> casters;
     for (const std::uint32_t index : scene.casters()) {
         const Shape& shape = scene.shapes()[index];
@@ -154,8 +165,9 @@ std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution, Polygo
     leave_out_duplicates(casters, threads);
     for (CasterMesh& caster : casters) {
         throw_if_interrupted();
-        if (kind == PolygonKind::quad) find_quads(caster);
         caster.closed = ClosedParts(caster.mesh, caster.left_out, threads);
+        if (share < 1) leave_out_all_but(share, caster);
+        if (kind == PolygonKind::quad) find_quads(caster);
     }
     return casters;
 }

@@ -28,7 +28,7 @@ struct CellQuad {
 struct CasterMesh {
     std::uint32_t shape = 0;  ///< index into Scene::shapes
     TriangleMesh mesh;        ///< world frame, with normals
-    /// Triangles that make no beam: without area, or at the place of an earlier one.
+    /// Triangles that make no beam: without area, at the place of an earlier one, or beyond the share that is asked for.
     std::vector<bool> left_out;
     std::vector<CellQuad> quads;  ///< by ascending triangle; none unless they were asked for
     ClosedParts closed;
@@ -40,9 +40,11 @@ struct CasterMesh {
     std::size_t polygon_count() const { return mesh.triangles.size() - quads.size(); }
 };
 
-/// Exact casters are tessellated with `resolution`; meshes are taken as they are.
+/// Exact casters are tessellated with `resolution`; meshes are taken as they are. All but about that share of the polygons are
+/// left out.
 std::vector<CasterMesh> caster_meshes(const Scene& scene, int resolution,
-                                      PolygonKind kind = PolygonKind::triangle, int threads = 1);
+                                      PolygonKind kind = PolygonKind::triangle, int threads = 1,
+                                      double share = 1);
 
 /// Unit normal of a triangle, by its winding; zero when it has no area.
 Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c);

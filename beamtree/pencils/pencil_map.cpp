@@ -15,7 +15,7 @@ namespace {
 // A print's width is at least this share of its length: those of folds lie on lines.
 constexpr double thinnest = 1e-3;
 // How far off its plane a print's rays count, over its size: a rough surface lies there, a flat one but for rounding not.
-constexpr float height_over_size = 0.25F;
+constexpr float height_over_size = 0.5F;
 constexpr float height_of_flat = 1e-3F;
 // So much wider are boxes than the prints in them.
 constexpr float wider_box = 1e-5F;

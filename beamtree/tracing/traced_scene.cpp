@@ -122,7 +122,8 @@ TracedScene trace_scene(const Scene& scene, const std::string& method, const Bea
     const std::vector<LightSample> lights = beam_lights(scene, method, params, options);
     options.phase("beams");
     TracedScene traced;
-    traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons, options.threads);
+    traced.casters = caster_meshes(scene, params.mesh_resolution, params.polygons, options.threads,
+                                   params.polygon_share);
     for (const CasterMesh& caster : traced.casters) {
         const WallsBehind walls = walls_behind_polygons(scene, caster);
         if (walls.share > traced.walls.share) traced.walls = walls;

@@ -183,7 +183,9 @@ const DescribedMethod<IlluminationMapParams>& illuminationmap_method() {
                              .unit = "texels",
                              .source = "[Arvo 1986]"}),
                         parameter::max_bounces<P>()},
-         .take_least_work = [](P& params) { params.only_checked = true; }});
+         .take_least_work = [](P& params) { params.only_checked = true; },
+         .take_share = [](P& params,
+                          double share) { return take_share_of(params.emitted, share); }});
     return method;
 }
 

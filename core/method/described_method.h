@@ -1,8 +1,20 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/method/method_description.h"
 
 namespace caustics {
+
+/// Takes about that share of a number, at least 1, and tells the share; 1 of none.
+template <class Number>
+double take_share_of(Number& number, double share) {
+    if (number <= 0) return 1;
+    const auto all = static_cast<double>(number);
+    number = static_cast<Number>(std::max(1.0, std::round(share * all)));
+    return static_cast<double>(number) / all;
+}
 
 /// A method described by a params struct with its defaults in place and a table of its members.
 template <class Params, class Estimator = CausticEstimator>
@@ -13,6 +25,8 @@ struct MethodTable {
     /// puts defaults in place that depend on others.
     void (*settle)(const JsonNode& node, Params& params) = [](const JsonNode&, Params&) {};
     void (*take_least_work)(Params& params) = [](Params&) {};
+    /// Takes about that share of the work, and tells the share.
+    double (*take_share)(Params& params, double share) = [](Params&, double) { return 1.0; };
     std::unique_ptr<const Estimator> (*make)(const Scene&, const Params&, const RunOptions&,
                                              int pass) =
         [](const Scene& scene, const Params& params, const RunOptions& options, int) {
@@ -92,6 +106,12 @@ private:
             Params least = params_;
             table_.take_least_work(least);
             return std::make_shared<Configured>(table_, std::move(least));
+        }
+        std::pair<std::shared_ptr<const ConfiguredMethodOf<Estimator>>, double> with_share_of_work(
+            double share) const override {
+            Params some = params_;
+            const double taken = table_.take_share(some, share);
+            return {std::make_shared<Configured>(table_, std::move(some)), taken};
         }
         std::unique_ptr<const Estimator> build(const Scene& scene, const RunOptions& options,
                                                int pass) const override {

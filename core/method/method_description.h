@@ -18,6 +18,9 @@ struct SampleCount {
     std::string parameter = {};  ///< that says how many; empty: the method has no such number
     /// Whether they count for each pixel, shared by the eye pass's samples, at least one each.
     bool of_a_pixel = false;
+
+    /// Whether light paths connect to the camera by themselves, however many pixels are asked for.
+    bool is_of_picture() const { return !parameter.empty() && !of_a_pixel; }
 };
 
 /// The whole number that a method's time grows with.
@@ -70,6 +73,10 @@ public:
     /// The same where building costs next to nothing: what a method can serve does not depend on how
     /// much work it is given.
     virtual std::shared_ptr<const ConfiguredMethodOf> with_least_work() const = 0;
+    /// The same with about that share of its work, and the share that it then has: a trial that costs little and tells what
+    /// all of it costs. The share is 1 where the method has no number to make smaller.
+    virtual std::pair<std::shared_ptr<const ConfiguredMethodOf>, double> with_share_of_work(
+        double share) const = 0;
     /// Runs the precompute pass of that number.
     virtual std::unique_ptr<const Estimator> build(const Scene& scene, const RunOptions& options,
                                                    int pass) const = 0;

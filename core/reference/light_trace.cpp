@@ -337,6 +337,12 @@ const DescribedMethod<LightTraceParams>& lighttrace_method() {
                         "over a disc at each point"),
          .parameters = caustic_parameters(),
          .settle = settle,
+         .take_share =
+             [](P& params, double share) {
+                 // Stratified paths need one in each batch.
+                 const double least = batches / static_cast<double>(params.paths);
+                 return take_share_of(params.paths, std::clamp(share, std::min(least, 1.0), 1.0));
+             },
          .disc_radius = &P::radius});
     return method;
 }

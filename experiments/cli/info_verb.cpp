@@ -18,6 +18,7 @@
 #include "core/picture/exr_file.h"
 #include "core/picture/png_file.h"
 #include "core/scene/transport_hash.h"
+#include "experiments/base/environment.h"
 #include "experiments/base/file_io.h"
 #include "experiments/base/number_option.h"
 #include "experiments/base/signals.h"
@@ -29,6 +30,7 @@
 #include "experiments/picture/previews.h"
 #include "experiments/run/caustic_ledger.h"
 #include "experiments/run/cli_options.h"
+#include "experiments/run/cost_forecast.h"
 #include "experiments/run/notes.h"
 #include "experiments/run/run_progress.h"
 #include "experiments/run/written_files.h"
@@ -64,7 +66,47 @@ std::string judged_by(const BuildReport& report) {
                        report.counters.at("polygons"));
 }
 
-std::string describe_scene(const SceneOptions& options, const SceneFile& file, const Scene& scene) {
+/// What pictures by the methods' defaults take, from the start of a command.
+class Costs {
+public:
+    explicit Costs(const Scene& scene) : forecast_(scene, scene.sampling().sample_count) {}
+
+    std::string text(const Method& method, const Serving& serving) const {
+        const auto polygons = serving.report.counters.find("polygons");
+        const PictureCost cost =
+            forecast_.of(method, polygons == serving.report.counters.end() ? 0 : polygons->second);
+        return fmt::format(", {}{:.2g} CPU s and {:.0f} MB", cost.is_least ? "at least " : "",
+                           loading_ + cost.seconds, (loaded_ + cost.bytes) / 1e6);
+    }
+
+private:
+    double loading_ = cpu_seconds_used();
+    double loaded_ = static_cast<double>(resident_bytes());
+    CostForecast forecast_;
+};
+
+std::string methods_text(const Scene& scene, bool is_quick) {
+    std::string text =
+        is_quick ? "methods\n" : "methods, and what a picture by their defaults takes\n";
+    std::optional<Costs> costs;
+    if (!is_quick) costs.emplace(scene);
+    StatusLine asked;
+    for (const std::string& name : method_names()) {
+        if (asked.is_on_terminal()) asked.show(fmt::format("asking {} ...", name));
+        const Method method = parse_method(name, parameters_node({}));
+        const Serving serving = try_serving(scene, method);
+        text += fmt::format("  {:<16} ", name);
+        if (serving.why_not)
+            text += "no: " + *serving.why_not + "\n";
+        else
+            text += "yes" + (costs ? costs->text(method, serving) : "") +
+                    judged_by(serving.report) + "\n";
+    }
+    return text;
+}
+
+std::string describe_scene(const SceneOptions& options, const SceneFile& file, const Scene& scene,
+                           bool is_quick) {
     std::string text = fmt::format("scene    {}\nhash     {}\n", one_line(options.file), file.hash);
     for (const auto& [name, hash] : file.assets)
         text += fmt::format("asset    {} ({})\n", one_line(name), hash);
@@ -96,15 +138,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
     for (const std::string& line :
          lines_of(scene, survey_light(scene, most_bounces, sampled_paths)))
         text += "  " + line + "\n";
-    text += "methods\n";
-    StatusLine asked;
-    for (const std::string& name : method_names()) {
-        if (asked.is_on_terminal()) asked.show(fmt::format("asking {} ...", name));
-        const Serving serving = try_serving(scene, parse_method(name, parameters_node({})));
-        text += fmt::format(
-            "  {:<16} {}\n", name,
-            serving.why_not ? "no: " + *serving.why_not : "yes" + judged_by(serving.report));
-    }
+    text += methods_text(scene, is_quick);
     for (const std::string& note : mesh_notes(scene, meshes)) text += "note     " + note + "\n";
     for (const std::string& note : notes_on(scene)) text += "note     " + note + "\n";
     return text;
@@ -113,6 +147,7 @@ std::string describe_scene(const SceneOptions& options, const SceneFile& file, c
 struct InfoOptions {
     SceneOptions scene;  ///< or a photon map
     std::string map_scene;
+    bool is_quick = false;  ///< nothing is rendered
     bool beams = false;
     std::vector<std::string> params;  ///< of `beamtree`, for its beams
     std::string output;
@@ -151,7 +186,8 @@ void info_on_scene(const InfoOptions& options) {
         throw InputError("--beams and -o belong together, for a scene; --param is for them");
     if (options.dot) throw InputError("--dot is for photons, which -o draws of a photon map");
     if (options.beams) require_png("-o", options.output, "beams");
-    SceneFile file = options.scene.load(options.beams ? PictureDepth::whole : PictureDepth::header);
+    SceneFile file = options.scene.load(options.is_quick && !options.beams ? PictureDepth::header
+                                                                           : PictureDepth::whole);
     const Scene scene(std::move(file.desc));  // a copy of large meshes takes seconds
     if (options.beams) {
         require_files_apart({options.output}, {}, file.files);
@@ -159,7 +195,7 @@ void info_on_scene(const InfoOptions& options) {
             return draw_beams(scene, parameters_node(options.params), run);
         });
     }
-    write_stdout(describe_scene(options.scene, file, scene));
+    write_stdout(describe_scene(options.scene, file, scene, options.is_quick));
 }
 
 void draw(const InfoOptions& options, photonmap::SavedPhotons saved) {
@@ -177,8 +213,8 @@ void draw(const InfoOptions& options, photonmap::SavedPhotons saved) {
 void info_on_map(const InfoOptions& options) {
     if (options.map_scene.empty() && !(options.output.empty() && options.scene.sets.empty()))
         throw InputError("-o and --set need --scene: the scene that the photons are drawn in");
-    if (options.beams || !options.params.empty())
-        throw InputError("--beams and --param are for scenes");
+    if (options.beams || options.is_quick || !options.params.empty())
+        throw InputError("--beams, --param and --quick are for scenes");
     if (options.dot && options.output.empty())
         throw InputError("--dot is for photons that are drawn, by -o");
     if (!options.output.empty()) require_png("-o", options.output, "photons");
@@ -204,6 +240,9 @@ Verb add_info(CLI::App& app) {
             "Picture (.png) of a photon map's photons as dots, through the scene's camera; "
             "as bright as the logarithm of their number, over the dim scene; or of a scene's beams")
         ->type_name("FILE");
+    verb->add_flag(
+        "--quick", options->is_quick,
+        "Leave out what pictures take, which is foretold by small trials of each method");
     verb->add_flag("--beams", options->beams,
                    "Draw the caustic polygons of `beamtree` over its picture: orange, blue where "
                    "they are turned over, white between the two, where the caustic is");

@@ -78,8 +78,9 @@ bool are_same(const RunResult& a, const RunResult& b) {
 
 TimeBudget::Work work_kind(const RenderOptions& options, const WorkParameter& work) {
     const SampleCount& samples = options.method.parse().facts().samples;
-    return samples.parameter == work.parameter && !samples.of_a_pixel ? TimeBudget::Work::of_picture
-                                                                      : TimeBudget::Work::of_pixels;
+    return samples.parameter == work.parameter && samples.is_of_picture()
+               ? TimeBudget::Work::of_picture
+               : TimeBudget::Work::of_pixels;
 }
 
 /// The parameter that takes the time where the usual one makes no difference; none has an empty name.

@@ -32,6 +32,7 @@ SinglePicture LoadedScene::picture_of(const RenderOptions& options, int pixel_st
                                       const std::function<void()>& check) const {
     RunRequest request = picture_request(options, file_);
     request.pixel_step = pixel_step;
+    request.is_trial = pixel_step > 1;
     Stopwatch stopwatch;
     RunOptions run_options = options.run.options(request.samples_per_pixel);
     const RunProgress progress(run_options, pass_count(request.method));

@@ -150,11 +150,12 @@ bool is_in_doubt(const ReceiverLight& all) {
 }  // namespace
 
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,
-                                          const Method& method, double photons, int threads) {
+                                          const Method& method, double photons, int threads,
+                                          bool is_trial) {
     if (!method.facts().has_caustic || method.name == "lighttrace") return {};
     const std::vector<std::uint32_t> receivers = receivers_of_pixels(scene, threads);
     const auto light = light_beside(paths_of_survey, scene, rendering, receivers, photons, threads);
-    if (!light || !is_in_doubt(light->all)) return light;
+    if (!light || is_trial || !is_in_doubt(light->all)) return light;
     return light_beside(paths_of_doubt, scene, rendering, receivers, photons, threads);
 }
 

@@ -32,9 +32,11 @@ struct PictureLight {
 /// The picture's sums beside those of 50,000 light paths of up to 1,000 events, or of 400,000 where these leave a
 /// difference open. None for `lighttrace`, whose picture such paths are, and where no path came to a pixel that sees one receiver alone. `photons` is how many photons
 /// the picture is made of, or 0. Where the rendering has no errors of pixels, differences between neighbours stand for
-/// them. The same for any number of threads.
+/// them. Of a trial 50,000 paths are enough, for its sums mean nothing. The same for any number
+/// of threads.
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,
-                                          const Method& method, double photons, int threads);
+                                          const Method& method, double photons, int threads,
+                                          bool is_trial = false);
 
 /// By receiver: "picture", "paths", "ratio" and "error"; those of all under "ratio" and "error".
 nlohmann::json to_json(const PictureLight& light);

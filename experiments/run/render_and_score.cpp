@@ -47,13 +47,14 @@ BuildReport of_indirect(const BuildReport& own) {
 
 std::optional<CausticLedger> ledger_of(const Scene& scene, const Method& method,
                                        const BuildReport& report, const Rendering& rendering,
-                                       int threads) {
+                                       int threads, bool is_trial) {
     std::optional<CausticLedger> ledger = caustic_ledger(scene, method, report);
     if (!ledger) return {};
     const auto photons = report.counters.find("photons_stored");
-    ledger->picture = picture_light(
-        scene, rendering, method,
-        photons == report.counters.end() ? 0.0 : static_cast<double>(photons->second), threads);
+    ledger->picture =
+        picture_light(scene, rendering, method,
+                      photons == report.counters.end() ? 0.0 : static_cast<double>(photons->second),
+                      threads, is_trial);
     return ledger;
 }
 
@@ -151,7 +152,8 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
     if (rendering.report.light) report.light = rendering.report.light;
     BuildReport all = report;
     for (const auto& [name, count] : rendering.report.counters) all.counters[name] += count;
-    auto ledger = ledger_of(scene, request.method, all, rendering, options.threads);
+    auto ledger =
+        ledger_of(scene, request.method, all, rendering, options.threads, request.is_trial);
     RunResult result{std::move(rendering.film), std::move(report), all.counters, {}, {}, {},
                      std::move(ledger)};
     result.notes = notes(scene, request.method, all, result.ledger);

@@ -23,7 +23,9 @@ struct RunRequest {
     std::uint64_t seed = 1;
     int samples_per_pixel = 1;
     std::optional<IndirectMethod> indirect = {};  ///< none: a picture without that layer
-    int pixel_step = 1;  ///< one of so many pixels is rendered: of a trial of time (Passes)
+    int pixel_step = 1;                           ///< one of so many pixels is rendered (Passes)
+    bool is_trial =
+        false;  ///< only its time is asked for: few light paths stand beside its picture
 };
 
 /// The command line of a verb that makes it, with every parameter in force.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "beamtree/beam_tree_method.h"
 #include "beamtree/caustic_polygons.h"
 #include "beamtree/tracing/traced_scene.h"
@@ -91,6 +93,32 @@ TEST(FluxBalance, RefusesToLoseMostLight) {
                       "of 8 polygons, "),
             0U);
     }
+}
+
+std::vector<bool> left_out_but(const Scene& scene, double share) {
+    return caster_meshes(scene, 64, PolygonKind::triangle, 1, share).front().left_out;
+}
+
+TEST(SceneSample, LeavesOutAllButAShareSpreadEvenly) {
+    const Scene scene(meshed_glass_ball(64));
+    const std::vector<bool> quarter = left_out_but(scene, 0.25);
+    const auto kept = [&](std::size_t first, std::size_t end) {
+        return std::count(quarter.begin() + static_cast<std::ptrdiff_t>(first),
+                          quarter.begin() + static_cast<std::ptrdiff_t>(end), false);
+    };
+    const std::size_t all = quarter.size();
+    constexpr std::size_t parts = 16;
+    for (std::size_t i = 0; i < parts; ++i)
+        EXPECT_NEAR(static_cast<double>(kept(i * all / parts, (i + 1) * all / parts)),
+                    0.25 * static_cast<double>(all) / parts, 6);
+    for (std::size_t i = 0; i + 1 < all; i += 2) EXPECT_EQ(quarter[i], quarter[i + 1]);
+}
+
+TEST(SceneSample, KeepsWhatASmallerShareKeeps) {
+    const Scene scene(meshed_glass_ball(32));
+    const std::vector<bool> some = left_out_but(scene, 0.05);
+    const std::vector<bool> more = left_out_but(scene, 0.3);
+    for (std::size_t i = 0; i < some.size(); ++i) EXPECT_TRUE(some[i] || !more[i]);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "core/render/film.h"
@@ -293,13 +294,26 @@ TEST(Render, RefusesATimeThatNothingCouldTake) {
 }
 
 TEST(Info, TellsWhatTheSceneHolds) {
-    const ProgramResult result = causticbench({"info", scene_of_ball});
+    const ProgramResult result = causticbench({"info", scene_of_ball, "--quick"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     for (const char* word :
-         {"exact sphere", "caster", "receiver", "point at", "16 x 12", "photonmap        yes",
+         {"exact sphere", "caster", "receiver", "point at", "16 x 12", "photonmap        yes\n",
           "pathtrace        no: ",
           "beamtree         yes, by beams of up to 16 events with 100.0 % of the caustic"})
         EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
+}
+
+TEST(Info, ForetellsWhatEachMethodTakes) {
+    const ProgramResult result = causticbench({"info", scene_of_ball});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::regex cost("yes, (at least )?[0-9.e+]+ CPU s and [0-9]+ MB");
+    int methods = 0;
+    for (const std::string& line : lines(result.out)) {
+        if (line.find(" yes") == std::string::npos) continue;
+        EXPECT_TRUE(std::regex_search(line, cost)) << line;
+        ++methods;
+    }
+    EXPECT_EQ(methods, 6) << result.out;
 }
 
 TEST(Info, DrawsBeams) {

@@ -169,7 +169,7 @@ def children(process):
 
 def measure(folder, verb):
     """Exit code, what was said, the most memory of the program and of what it started, added [MB], and how many processes these were."""
-    line = {"info": [PROGRAM, "info", "scene.json"],
+    line = {"info": [PROGRAM, "info", "scene.json", "--quick"],
             "render": [PROGRAM, "render", "scene.json", "--method", "none", "--spp", "1", "--threads", "1", "-o", "out.exr"]}[verb]
     most = {}
     with open(folder / "said", "w", encoding="utf-8") as said, \

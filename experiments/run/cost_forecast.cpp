@@ -1,0 +1,138 @@
+#include "experiments/run/cost_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <tuple>
+
+#include "experiments/base/environment.h"
+#include "experiments/run/render_and_score.h"
+
+namespace caustics::experiments {
+
+namespace {
+
+// The pixels of a trial: a share of the picture's, within bounds.
+constexpr double pixel_share = 1.0 / 40;
+constexpr double fewest_pixels = 2000;
+constexpr double most_pixels = 10'000;
+// The first trial's share of the work, and one that tells enough.
+constexpr double first_share = 1.0 / 256;
+constexpr double enough = 1.0 / 8;
+// The first trial's polygons, where there are few.
+constexpr double fewest_polygons = 4;
+// From trial to trial.
+constexpr double least_growth = 8;
+constexpr double most_growth = 32;
+// What work is to take in the last trial: seconds, and of what the first took.
+constexpr double told_seconds = 0.15;
+constexpr double told_part = 0.5;
+// After a long trial there is no other, and one that is too long is given up: seconds, and of what a picture without a caustic
+// takes to be told of.
+constexpr double long_seconds = 1.5;
+constexpr double long_part = 3;
+constexpr double too_long = 2;  ///< of a long one
+
+/// A trial is given up.
+struct TooLong : std::exception {};
+
+/// The line through the values at two shares of the work, at all of it. More work is never cheaper.
+double on_line(double before, double share_before, double last, double share) {
+    const double slope = std::max(0.0, last - before) / (share - share_before);
+    return last + slope * (1 - share);
+}
+
+/// The same for what may grow with a power of the work up to 1, or not at all.
+double on_power(double before, double share_before, double last, double share) {
+    if (before <= 0 || last <= before) return last;
+    const double power = std::log(last / before) / std::log(share / share_before);
+    return last * std::pow(1 / share, std::min(power, 1.0));
+}
+
+}  // namespace
+
+CostForecast::CostForecast(const Scene& scene, int samples_per_pixel)
+    : scene_(scene), samples_per_pixel_(samples_per_pixel) {
+    const double pixels = static_cast<double>(scene.camera().width) * scene.camera().height;
+    pixel_step_ = static_cast<int>(
+        std::max(1.0, pixels / std::clamp(pixel_share * pixels, fewest_pixels, most_pixels)));
+    // The film takes its time, however few pixels are rendered.
+    const Method none = parse_method("none", parameters_node({}));
+    const double told = trial(none, 1, std::numeric_limits<int>::max()).took;
+    long_ = std::max(long_seconds, long_part * told);
+    film_ = trial(none, 1, std::numeric_limits<int>::max()).caustic;
+    eye_ = trial(none, 1, pixel_step_).caustic;
+}
+
+CostForecast::Trial CostForecast::trial(const Method& method, double share, int pixel_step) const {
+    Trial trial;
+    RunRequest request;
+    request.method = method;
+    request.samples_per_pixel = samples_per_pixel_;
+    request.pixel_step = pixel_step;
+    request.is_trial = true;
+    std::tie(request.method.configured, trial.share) = method.configured->with_share_of_work(share);
+    RunOptions options;
+    options.adaptive = false;
+
+    reset_peak_resident_bytes();
+    const auto resident = static_cast<double>(resident_bytes());
+    const double before = cpu_seconds_used();
+    Stopwatch stopwatch;
+    options.progress = [&](double) {
+        if (cpu_seconds_used() - before > too_long * long_) throw TooLong();
+    };
+    std::size_t written = 0;
+    try {
+        const RunResult result = run(scene_, request, options, stopwatch);
+        written = result.film.planes().size() * result.film.pixel_count() * sizeof(float);
+    } catch (const TooLong&) {
+        trial.is_whole = false;
+    }
+    trial.took = cpu_seconds_used() - before;
+    // A picture that is written is in memory twice.
+    trial.bytes =
+        static_cast<double>(peak_resident_bytes()) - resident + static_cast<double>(written);
+    double render = 0;
+    for (const auto& [phase, seconds] : stopwatch.phases())
+        if (phase.starts_with("render")) render += seconds.cpu;
+    trial.build = trial.took - render;
+    trial.caustic = std::max(0.0, render - film_ - eye_);
+    return trial;
+}
+
+CostForecast::Trials CostForecast::trials(const Method& method, std::uint64_t polygons) const {
+    const double few = polygons > 0 ? fewest_polygons / static_cast<double>(polygons) : 0;
+    const Trial first = trial(method, std::clamp(few, first_share, 1.0), pixel_step_);
+    Trials trials{first, first, first.share >= enough};
+    const double told = std::max(told_seconds, told_part * first.took);
+    double growth = 1 / first.took;
+    while (!trials.are_enough && trials.last.is_whole && trials.last.took < long_) {
+        trials.before = trials.last;
+        const double share = trials.last.share * std::clamp(growth, least_growth, most_growth);
+        trials.last = trial(method, std::min(share, 1.0), pixel_step_);
+        const double more = trials.last.took - first.took;
+        trials.are_enough = trials.last.share >= enough || more >= told;
+        growth = told / std::max(more, 1e-9);
+    }
+    return trials;
+}
+
+PictureCost CostForecast::of(const Method& method, std::uint64_t polygons) const {
+    const auto [before, last, are_enough] = trials(method, polygons);
+    if (!last.is_whole) return {last.took, last.bytes, true};
+    const auto whole = [&, &before = before, &last = last](double Trial::* value,
+                                                           const auto& curve) {
+        if (before.share == last.share) return last.*value;
+        return curve(before.*value, before.share, last.*value, last.share);
+    };
+    // Light paths connect to the camera by themselves, however many pixels are asked for.
+    const double caustic = method.facts().samples.is_of_picture()
+                               ? whole(&Trial::caustic, on_line)
+                               : pixel_step_ * whole(&Trial::caustic, on_power);
+    return {film_ + pixel_step_ * eye_ + whole(&Trial::build, on_line) + caustic,
+            whole(&Trial::bytes, on_line), !are_enough};
+}
+
+}  // namespace caustics::experiments
