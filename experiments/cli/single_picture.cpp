@@ -1,5 +1,7 @@
 #include "experiments/cli/single_picture.h"
 
+#include "core/base/error.h"
+#include "experiments/run/cost_forecast.h"
 #include "experiments/run/run_progress.h"
 #include "experiments/run/written_files.h"
 
@@ -22,6 +24,25 @@ SceneFile loaded(const RenderOptions& options) {
     return file;
 }
 
+/// Phases of a picture that takes long, by trials that then take a small part of it; else nothing. What a trial cannot tell
+/// is left to the picture.
+std::map<std::string, double> plan_of(const Scene& scene, const RunRequest& request, int threads) {
+    constexpr double long_samples = 1e7;
+    constexpr double much_work = 20;
+    const Camera& camera = scene.camera();
+    const double samples = double{1} * camera.width * camera.height * request.samples_per_pixel;
+    if (request.indirect ||
+        (samples < long_samples && work_over_default(request.method) < much_work))
+        return {};
+    try {
+        auto phases = CostForecast(scene, request.samples_per_pixel).phases_of(request.method);
+        for (auto& [phase, seconds] : phases) seconds /= threads;
+        return phases;
+    } catch (const InputError&) {
+    } catch (const UnsupportedScene&) {}
+    return {};
+}
+
 }  // namespace
 
 // A copy of large meshes takes seconds.
@@ -35,7 +56,9 @@ SinglePicture LoadedScene::picture_of(const RenderOptions& options, int pixel_st
     request.is_trial = pixel_step > 1;
     Stopwatch stopwatch;
     RunOptions run_options = options.run.options(request.samples_per_pixel);
-    const RunProgress progress(run_options, pass_count(request.method));
+    const auto plan = [&] { return plan_of(scene_, request, run_options.threads); };
+    const RunProgress progress(run_options, pass_count(request.method),
+                               check ? std::function<std::map<std::string, double>()>{} : plan);
     if (check)
         run_options.progress = [&check, show = run_options.progress](double share) {
             check();

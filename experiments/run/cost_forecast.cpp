@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "experiments/base/environment.h"
@@ -50,7 +51,23 @@ double on_power(double before, double share_before, double last, double share) {
     return last * std::pow(1 / share, std::min(power, 1.0));
 }
 
+/// The share of a method's work that costs next to nothing (WorkParameter); 1 where it is not known.
+double share_of_least_work(const Method& method) {
+    const WorkParameter work = method.configured->work();
+    if (work.power != 1) return 1;
+    const nlohmann::json values = describe(method);
+    for (const std::string& name : {work.parameter, work.instead})
+        if (const auto value = values.find(name); value != values.end() && value->is_number())
+            return static_cast<double>(work.first) / value->get<double>();
+    return 1;
+}
+
 }  // namespace
+
+double work_over_default(const Method& method) {
+    return share_of_least_work(parse_method(method.name, parameters_node({}))) /
+           share_of_least_work(method);
+}
 
 CostForecast::CostForecast(const Scene& scene, int samples_per_pixel)
     : scene_(scene), samples_per_pixel_(samples_per_pixel) {
@@ -96,7 +113,10 @@ CostForecast::Trial CostForecast::trial(const Method& method, double share, int 
         static_cast<double>(peak_resident_bytes()) - resident + static_cast<double>(written);
     double render = 0;
     for (const auto& [phase, seconds] : stopwatch.phases())
-        if (phase.starts_with("render")) render += seconds.cpu;
+        if (phase.starts_with("render"))
+            render += seconds.cpu;
+        else
+            trial.phases[phase.substr(phase.find('/') + 1)] += seconds.cpu;
     trial.build = trial.took - render;
     trial.caustic = std::max(0.0, render - film_ - eye_);
     return trial;
@@ -104,7 +124,8 @@ CostForecast::Trial CostForecast::trial(const Method& method, double share, int 
 
 CostForecast::Trials CostForecast::trials(const Method& method, std::uint64_t polygons) const {
     const double few = polygons > 0 ? fewest_polygons / static_cast<double>(polygons) : 0;
-    const Trial first = trial(method, std::clamp(few, first_share, 1.0), pixel_step_);
+    const double least = std::min(first_share, share_of_least_work(method));
+    const Trial first = trial(method, std::clamp(few, least, 1.0), pixel_step_);
     Trials trials{first, first, first.share >= enough};
     const double told = std::max(told_seconds, told_part * first.took);
     double growth = 1 / first.took;
@@ -119,20 +140,41 @@ CostForecast::Trials CostForecast::trials(const Method& method, std::uint64_t po
     return trials;
 }
 
-PictureCost CostForecast::of(const Method& method, std::uint64_t polygons) const {
-    const auto [before, last, are_enough] = trials(method, polygons);
-    if (!last.is_whole) return {last.took, last.bytes, true};
-    const auto whole = [&, &before = before, &last = last](double Trial::* value,
-                                                           const auto& curve) {
-        if (before.share == last.share) return last.*value;
-        return curve(before.*value, before.share, last.*value, last.share);
-    };
+double CostForecast::whole(const Trials& trials, const std::function<double(const Trial&)>& value,
+                           double (*curve)(double, double, double, double)) {
+    const auto& [before, last, _] = trials;
+    if (before.share == last.share) return value(last);
+    return curve(value(before), before.share, value(last), last.share);
+}
+
+double CostForecast::caustic_of(const Method& method, const Trials& trials) const {
     // Light paths connect to the camera by themselves, however many pixels are asked for.
-    const double caustic = method.facts().samples.is_of_picture()
-                               ? whole(&Trial::caustic, on_line)
-                               : pixel_step_ * whole(&Trial::caustic, on_power);
-    return {film_ + pixel_step_ * eye_ + whole(&Trial::build, on_line) + caustic,
-            whole(&Trial::bytes, on_line), !are_enough};
+    if (method.facts().samples.is_of_picture()) return whole(trials, &Trial::caustic, on_line);
+    return pixel_step_ * whole(trials, &Trial::caustic, on_power);
+}
+
+PictureCost CostForecast::of(const Method& method, std::uint64_t polygons) const {
+    const Trials all = trials(method, polygons);
+    if (!all.last.is_whole) return {all.last.took, all.last.bytes, true};
+    return {
+        film_ + pixel_step_ * eye_ + whole(all, &Trial::build, on_line) + caustic_of(method, all),
+        whole(all, &Trial::bytes, on_line), !all.are_enough};
+}
+
+std::map<std::string, double> CostForecast::phases_of(const Method& method) const {
+    const Trials all = trials(method, 0);
+    if (!all.are_enough || !all.last.is_whole) return {};
+    std::map<std::string, double> phases;
+    for (const auto& [phase, seconds] : all.last.phases)
+        phases[phase] = whole(
+            all,
+            [&name = phase](const Trial& trial) {
+                const auto own = trial.phases.find(name);
+                return own == trial.phases.end() ? 0 : own->second;
+            },
+            on_line);
+    phases["render"] = film_ + pixel_step_ * eye_ + caustic_of(method, all);
+    return phases;
 }
 
 }  // namespace caustics::experiments

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "core/scene/scene.h"
 #include "experiments/run/method.h"
@@ -15,12 +18,18 @@ struct PictureCost {
     bool is_least = false;  ///< trials that did not take too long told too little of more work
 };
 
+/// How many times as much work as by default a method's parameters ask for; 1 where that is not known.
+double work_over_default(const Method& method);
+
 /// Foretells what pictures of a scene take, by trials that do a small share of the work for some of the pixels. Seconds are
 /// those of the machine that it runs on; adaptive samples beyond the first are not among them.
 class CostForecast {
 public:
     CostForecast(const Scene& scene, int samples_per_pixel);
 
+    /// What each phase of the picture takes [CPU s], as RunOptions::begin_phase names them; nothing where trials do not tell.
+    /// Throws as the picture would.
+    std::map<std::string, double> phases_of(const Method& method) const;
     /// Throws as the picture would: UnsupportedScene, InputError. `polygons`: how many the method's work is done for, one by
     /// one; 0: it is not.
     PictureCost of(const Method& method, std::uint64_t polygons) const;
@@ -34,13 +43,18 @@ private:
         double caustic =
             0;  ///< of it, to render the trial's pixels, beyond what they take without a caustic [CPU s]
         double bytes = 0;
-        bool is_whole = true;  ///< else given up
+        std::map<std::string, double> phases;  ///< of the build [CPU s]
+        bool is_whole = true;                  ///< else given up
     };
     struct Trials {
         Trial before;  ///< the last where there is no other
         Trial last;
         bool are_enough = false;  ///< to tell what all work takes
     };
+    /// The value at all work by those of the last two trials.
+    static double whole(const Trials& trials, const std::function<double(const Trial&)>& value,
+                        double (*curve)(double, double, double, double));
+    double caustic_of(const Method& method, const Trials& trials) const;
     /// Renders one of so many pixels.
     Trial trial(const Method& method, double share, int pixel_step) const;
     /// With more and more work.

@@ -7,13 +7,59 @@
 
 namespace caustics::experiments {
 
+namespace {
+
+// By the plan until so much of it is done; then by what that took.
+constexpr double known_part = 0.05;
+
+}  // namespace
+
+RunEta::RunEta(int passes, std::map<std::string, double> plan)
+    : passes_(passes), plan_(std::move(plan)) {
+    for (const auto& [phase, seconds] : plan_) all_ += seconds;
+}
+
 void RunEta::begin(std::string_view phase, double now) {
     (rendering_ ? render_seconds_ : build_seconds_) += now - begun_;
     const bool rendering = phase == "render";
-    if (rendering_ && !rendering) built_ = build_seconds_;
+    if (rendering_ && !rendering) {
+        built_ = build_seconds_;
+        over_.clear();
+    } else if (!phase_.empty() && phase_ != phase) {
+        over_.push_back(phase_);
+    }
     if (rendering && !rendering_) ++renders_;
     rendering_ = rendering;
+    phase_ = phase;
     begun_ = now;
+}
+
+double RunEta::planned(const std::string& phase) const {
+    const auto found = plan_.find(phase);
+    return found == plan_.end() ? 0 : found->second;
+}
+
+double RunEta::planned_until(double share) const {
+    // What comes last begins when all else is over.
+    if (rendering_) return all_ - (1 - share) * planned(phase_);
+    double until = share * planned(phase_);
+    for (const std::string& phase : over_) until += planned(phase);
+    return std::min(until, all_);
+}
+
+double RunEta::done(double share) {
+    double own = 0;
+    if (all_ > 0)
+        own = planned_until(share) / all_;
+    else if (rendering_)
+        own = (1 + share) / 2;
+    else
+        own = (1 - std::exp2(-static_cast<double>(over_.size()) - share)) / 2;
+    const double passes_over = rendering_ ? renders_ - 1 : renders_;
+    // The share of rendering is that of all passes.
+    if (passes_ > 1 && rendering_) own = (1 + passes_ * share - passes_over) / 2;
+    done_ = std::max(done_, std::clamp((passes_over + own) / passes_, 0.0, 1.0));
+    return done_;
 }
 
 std::optional<Eta> RunEta::at(double share, double now) const {
@@ -23,6 +69,10 @@ std::optional<Eta> RunEta::at(double share, double now) const {
         if (!(share > 0)) return {};
         return Eta((render_seconds_ + in_phase) * (1 - share) / share +
                    passes_left * build_seconds_ / renders_);
+    }
+    if (all_ > 0 && passes_ == 1) {
+        const double until = planned_until(share);
+        return Eta((all_ - until) * (until > known_part * all_ ? now / until : 1));
     }
     if (renders_ == 0) {
         if (!(share > 0)) return {};
@@ -41,7 +91,14 @@ std::string phase_text(const std::string& phase, double share,
                        100 * share, eta_text(remaining));
 }
 
-RunProgress::RunProgress(RunOptions& options, int passes) : passes_(passes), eta_(passes) {
+RunProgress::RunProgress(RunOptions& options, int passes,
+                         const std::function<std::map<std::string, double>()>& plan)
+    : passes_(passes), eta_(passes) {
+    if (plan && line_.is_on_terminal()) {
+        line_.show("planning ...");
+        eta_ = RunEta(passes, plan());
+        begun_ = std::chrono::steady_clock::now();
+    }
     options.begin_phase = [this](std::string_view phase) { begin(phase); };
     options.progress = [this](double done) { share(done); };
 }
@@ -67,7 +124,8 @@ void RunProgress::share(double done) {
     // Shares that fall far are those of another stretch of work under the same name; threads may tell theirs late.
     if (done < last_share_ / 2) eta_.begin(phase_, now);
     last_share_ = done;
-    line_.show(phase_text(shown_phase(), done, eta_.at(done, now)));
+    const std::optional<Eta> remaining = eta_.at(done, now);
+    line_.show(phase_text(shown_phase(), eta_.done(done), remaining));
 }
 
 }  // namespace caustics::experiments

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/caustic_estimator.h"
 #include "experiments/base/progress.h"
@@ -16,17 +19,29 @@ namespace caustics::experiments {
 /// "render", whose share is that of all passes.
 class RunEta {
 public:
-    explicit RunEta(int passes) : passes_(passes) {}
+    /// `plan` is what the phases of a run of one pass are foretold to take [s]; empty where nothing is.
+    explicit RunEta(int passes, std::map<std::string, double> plan = {});
 
     /// A phase begins, at a time [s] since the run began.
     void begin(std::string_view phase, double now);
     /// The done share of the phase at a time; of the whole run, or at least that until something of each phase is known.
     std::optional<Eta> at(double share, double now) const;
+    /// The done share of the whole run at that share of the phase, which never falls: by the plan, or else half of it for each
+    /// phase that is left to the build, and the other half for rendering.
+    double done(double share);
     /// The pass at work, from 1.
     int pass() const { return rendering_ ? renders_ : renders_ + 1; }
 
 private:
+    double planned(const std::string& phase) const;
+    double planned_until(double share) const;
+
     int passes_;
+    std::map<std::string, double> plan_;
+    double all_ = 0;                 ///< of the plan
+    std::vector<std::string> over_;  ///< phases of this pass
+    std::string phase_;
+    double done_ = 0;
     int renders_ = 0;  ///< "render" phases that have begun
     bool rendering_ = false;
     double begun_ = 0;          ///< of the phase
@@ -41,7 +56,9 @@ class RunProgress {
 public:
     /// Takes the callbacks of `options`, for as long as this lives; they throw Interrupted when the
     /// user asked to stop.
-    explicit RunProgress(RunOptions& options, int passes = 1);
+    /// `plan` is asked where the line is kept up to date.
+    explicit RunProgress(RunOptions& options, int passes = 1,
+                         const std::function<std::map<std::string, double>()>& plan = {});
 
 private:
     void begin(std::string_view phase);
@@ -57,7 +74,7 @@ private:
     RunEta eta_;
 };
 
-/// "trace [#####.....] 50 %, ETA at least 0:12".
+/// A phase at work and the done share of the whole run: "trace [#####.....] 50 %, ETA at least 0:12".
 std::string phase_text(const std::string& phase, double share, const std::optional<Eta>& remaining);
 
 }  // namespace caustics::experiments

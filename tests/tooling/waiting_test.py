@@ -46,11 +46,22 @@ class Waiting(unittest.TestCase):
 
     def test_render_in_each_phase(self):
         render = ["render", *POOL, "--spp", "100", "-o", "a.exr", "--method"]
-        self.interrupt([*render, "photonmap", "--param", "photons=30000000"], r"^trace \[.* %, ETA at least \d")
+        self.interrupt([*render, "photonmap", "--param", "photons=30000000"], r"^trace \[.* %, ETA \d")
         fine = ["/water/resolution=512" if word == POOL[-1] else word for word in render]
         self.interrupt([*fine, "beamtree"], r"^beams \[.* %, ETA at least \d")
         self.interrupt([*render, "none"], r"^render \[.* %, ETA \d")
         self.interrupt([*render, "lighttrace", "--param", "paths=100000000000"], r" %, ETA ")
+
+    def test_the_done_share_of_a_render_never_falls(self):
+        for method, params in (("photonmap", ["--param", "photons=2000000"]), ("photonmap", ["--param", "passes=3"]), ("beamtree", []),
+                               ("lighttrace", ["--param", "paths=4000000"])):
+            work = measure_waiting.Terminal([PROGRAM, "render", *map(str, POOL), "--spp", "9", "-o", "a.exr", "--method", method, *params],
+                                            self.folder, COLUMNS)
+            work.wait(lambda _: False)
+            self.assertEqual(work.code, 0, work.lines())
+            shares = [int(found[1]) for _, line in work.lines() if (found := re.search(r"\] (\d+) %, ETA", line))]
+            self.assertGreater(len(shares), 2, work.lines())
+            self.assertEqual(shares, sorted(shares), f"{method} {params}")
 
     def test_probe(self):
         (self.folder / "points.csv").write_text("x,y,z,nx,ny,nz\n0.1,0.1,0,0,0,1\n", encoding="ascii")

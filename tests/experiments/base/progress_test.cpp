@@ -68,6 +68,41 @@ TEST(RunEta, IsThatOfTheWholeRunOnceItRenders) {
     EXPECT_DOUBLE_EQ(eta.at(0.25, 9)->seconds, 6);
 }
 
+TEST(RunEta, GoesByThePlanFromTheStart) {
+    RunEta eta(1, {{"plan", 1}, {"trace", 3}, {"render", 6}});
+    eta.begin("plan", 0);
+    EXPECT_DOUBLE_EQ(eta.done(0), 0);
+    EXPECT_DOUBLE_EQ(eta.at(0, 0)->seconds, 10);
+    eta.begin("trace", 1);
+    EXPECT_DOUBLE_EQ(eta.done(0), 0.1);
+    // Twice as slow as foretold so far.
+    EXPECT_DOUBLE_EQ(eta.at(1.0 / 3, 4)->seconds, 16);
+    EXPECT_FALSE(eta.at(1.0 / 3, 4)->at_least);
+    eta.begin("render", 8);
+    EXPECT_DOUBLE_EQ(eta.done(0.5), 0.7);
+    EXPECT_DOUBLE_EQ(eta.done(1), 1);
+}
+
+TEST(RunEta, DoneNeverFalls) {
+    for (const int passes : {1, 3}) {
+        RunEta eta(passes);
+        double last = 0;
+        for (int pass = 0; pass < passes; ++pass) {
+            for (const char* phase : {"trace", "balance", "render"}) {
+                eta.begin(phase, 0);
+                for (const double share : {0.0, 0.5, 0.2, 1.0}) {
+                    const bool renders = std::string(phase) == "render";
+                    const double done = eta.done(renders ? (pass + share) / passes : share);
+                    EXPECT_GE(done, last);
+                    EXPECT_LE(done, 1);
+                    last = done;
+                }
+            }
+        }
+        EXPECT_DOUBLE_EQ(last, 1);
+    }
+}
+
 TEST(RunEta, CountsAPassOnceWhoseRenderingHasSeveralStretches) {
     RunEta eta(2);
     eta.begin("trace", 0);
