@@ -16,9 +16,6 @@ namespace {
 
 // Writing of a pixel [CPU s].
 constexpr double writing_a_pixel = 1.2e-6;
-// Where light paths leave a doubt, picture_light takes eight times as long again. Trials do not tell whether they will:
-// room for a quarter of it keeps both cases near the wanted time.
-constexpr double more_light_paths = 2;
 // So many pixels tell the time of all.
 constexpr double few_pixels = 2000;
 constexpr double most_pixel_step = 20;
@@ -136,12 +133,12 @@ std::string PictureInTime::least_text(const std::string& least) const {
 }
 
 bool PictureInTime::has_time_for(double more) const {
-    // The least has no room for what may not come.
-    return cpu_seconds_used() + writing_ + more <= (1 + TimeBudget::tolerance) * seconds_;
+    // Half of the tolerance is left for what the picture takes beyond what was foretold.
+    return cpu_seconds_used() + ending_ + more <= (1 + TimeBudget::tolerance / 2) * seconds_;
 }
 
 void PictureInTime::refuse(double more) const {
-    const std::string least = rounded_up(cpu_seconds_used() + writing_ + more);
+    const std::string least = rounded_up(cpu_seconds_used() + ending_ + more);
     throw InputError(
         fmt::format("{} (give --seconds {} or more)", least_text("about " + least), least));
 }
@@ -154,12 +151,18 @@ SinglePicture PictureInTime::made(const WorkParameter& work, const TimeBudget::P
     RenderOptions trial = options_;
     (options_.work.empty() ? trial.method.params : trial.scene.sets).push_back(chosen);
     if (!options_.work.empty()) scene_.emplace(trial);
-    SinglePicture picture = scene_->picture_of(trial, plan.is_last ? 1 : pixel_step_, [&] {
+    // What is told of a picture takes as long for each: the first trial tells how long.
+    const Telling telling =
+        may_refuse_ || plan.is_last || pixel_step_ == 1 ? Telling::of_few_paths : Telling::nothing;
+    SinglePicture picture = scene_->picture_of(trial, plan.is_last ? 1 : pixel_step_, telling, [&] {
         if (may_refuse_ && cpu_seconds_used() > most)
             throw InputError(least_text("more than " + shortest(most)));
     });
-    cost_ = {cpu_seconds_used() - before - picture.render_cpu, picture.render_cpu};
-    if (may_refuse_) ending_ += more_light_paths * picture.told_cpu;
+    const double all = cpu_seconds_used() - before - picture.told_cpu;
+    cost_ = {.build = all - picture.render_cpu - picture.plan_cpu,
+             .render = picture.render_cpu,
+             .fixed = picture.plan_cpu};
+    if (may_refuse_) ending_ += picture.told_cpu;
     may_refuse_ = false;
     return picture;
 }
@@ -169,8 +172,8 @@ void PictureInTime::tell(const WorkParameter& work, const TimeBudget::Plan& plan
         plan.is_last || pixel_step_ == 1 ? "" : fmt::format(", 1 of {} pixels", pixel_step_);
     write_stderr(fmt::format(
         "{}={}{}: {:.3g} CPU s, with which {:.3g} of the {} CPU s of --seconds are used\n",
-        work.parameter, plan.work, pixels, cost_.build + cost_.render, cpu_seconds_used(),
-        shortest(seconds_)));
+        work.parameter, plan.work, pixels, cost_.fixed + cost_.build + cost_.render,
+        cpu_seconds_used(), shortest(seconds_)));
 }
 
 PictureInTime::Found PictureInTime::search(const WorkParameter& work) {

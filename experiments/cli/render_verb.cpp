@@ -69,7 +69,8 @@ Rendered rendered(const RenderOptions& options) {
         return {std::move(picture), in_time.file()};
     }
     const LoadedScene scene(options);
-    return {scene.picture_of(options), scene.file()};
+    const Telling telling = options.has_few_light_paths ? Telling::of_few_paths : Telling::all;
+    return {scene.picture_of(options, 1, telling), scene.file()};
 }
 
 int render_picture(const RenderOptions& options) {
@@ -77,7 +78,8 @@ int render_picture(const RenderOptions& options) {
     check_outputs(options.outputs);
     if (!options.work.empty() && !options.seconds) throw InputError("--work: belongs to --seconds");
     auto [picture, file] = rendered(options);
-    auto& [request, result, took, render_cpu, told_cpu] = picture;
+    const auto& request = picture.request;
+    RunResult& result = picture.result;
 
     require_finite(result.film, "the picture");
     write_stderr(told_counts(result.counters) + "\n");
@@ -97,7 +99,7 @@ int render_picture(const RenderOptions& options) {
         write_stderr(
             fmt::format("{}: {}x{} pixels, {} samples a pixel, exposure {:.2f} stops, {:.1f} s\n",
                         output, result.film.width(), result.film.height(),
-                        request.samples_per_pixel, exposure, took.wall));
+                        request.samples_per_pixel, exposure, picture.took.wall));
     }
     if (options.seconds)
         write_stderr("the same picture again: " + command("render", request) + "\n");
@@ -125,6 +127,10 @@ Verb add_render(CLI::App& app) {
                      "With --seconds: the whole number of the scene that takes them, in place of "
                      "the method's parameter, such as /water/resolution")
         ->type_name("/POINTER");
+    verb->add_flag(
+        "--few-light-paths", options->has_few_light_paths,
+        "Compare the picture's light with 50,000 light paths, even where 400,000 would tell "
+        "more, as --seconds does");
     add_repeatable(*verb, "-o,--output", options->outputs,
                    "Picture to write: .exr (float32, all layers) or .png (tone-mapped). Repeatable")
         ->required()

@@ -49,11 +49,11 @@ std::map<std::string, double> plan_of(const Scene& scene, const RunRequest& requ
 LoadedScene::LoadedScene(const RenderOptions& options)
     : file_(loaded(options)), scene_(take_shapes(file_)) {}
 
-SinglePicture LoadedScene::picture_of(const RenderOptions& options, int pixel_step,
+SinglePicture LoadedScene::picture_of(const RenderOptions& options, int pixel_step, Telling telling,
                                       const std::function<void()>& check) const {
     RunRequest request = picture_request(options, file_);
     request.pixel_step = pixel_step;
-    request.is_trial = pixel_step > 1;
+    request.telling = telling;
     Stopwatch stopwatch;
     RunOptions run_options = options.run.options(request.samples_per_pixel);
     const auto plan = [&] { return plan_of(scene_, request, run_options.threads); };
@@ -69,9 +69,10 @@ SinglePicture LoadedScene::picture_of(const RenderOptions& options, int pixel_st
     double render = 0;
     for (const auto& [phase, seconds] : stopwatch.phases())
         if (phase.starts_with("render")) render += seconds.cpu;
+    const double planned = stopwatch.of("precompute/plan").cpu;
     const Seconds took = stopwatch.worked();
     const double told = cpu_seconds_used() - before - took.cpu;
-    return {std::move(request), std::move(result), took, render, told};
+    return {std::move(request), std::move(result), took, render, planned, told};
 }
 
 }  // namespace caustics::experiments

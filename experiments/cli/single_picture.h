@@ -19,7 +19,8 @@ struct RenderOptions {
     int spp = 0;
     std::optional<double> exposure;
     std::optional<double> seconds;  ///< CPU seconds that the whole command is to take
-    std::string work;               ///< the scene's number that takes them; empty: the method's
+    bool has_few_light_paths = false;
+    std::string work;  ///< the scene's number that takes them; empty: the method's
     std::vector<std::string> outputs;
 };
 
@@ -29,6 +30,7 @@ struct SinglePicture {
     RunResult result;
     Seconds took;           ///< building and rendering
     double render_cpu = 0;  ///< of it, rendering [CPU s]
+    double plan_cpu = 0;    ///< of it, deciding how the work is done, however much it is [CPU s]
     double told_cpu = 0;    ///< what was then found out to be told of the picture [CPU s]
 };
 
@@ -44,6 +46,7 @@ public:
 
     /// The picture that the options ask for, or one of so many of its pixels. `check` is called as work goes on and may throw.
     SinglePicture picture_of(const RenderOptions& options, int pixel_step = 1,
+                             Telling telling = Telling::all,
                              const std::function<void()>& check = {}) const;
 
 private:

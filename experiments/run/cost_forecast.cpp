@@ -88,7 +88,7 @@ CostForecast::Trial CostForecast::trial(const Method& method, double share, int 
     request.method = method;
     request.samples_per_pixel = samples_per_pixel_;
     request.pixel_step = pixel_step;
-    request.is_trial = true;
+    request.telling = Telling::of_few_paths;
     std::tie(request.method.configured, trial.share) = method.configured->with_share_of_work(share);
     RunOptions options;
     options.adaptive = false;

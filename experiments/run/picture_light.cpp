@@ -151,11 +151,13 @@ bool is_in_doubt(const ReceiverLight& all) {
 
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,
                                           const Method& method, double photons, int threads,
-                                          bool is_trial) {
+                                          bool few_paths) {
     if (!method.facts().has_caustic || method.name == "lighttrace") return {};
     const std::vector<std::uint32_t> receivers = receivers_of_pixels(scene, threads);
-    const auto light = light_beside(paths_of_survey, scene, rendering, receivers, photons, threads);
-    if (!light || is_trial || !is_in_doubt(light->all)) return light;
+    auto light = light_beside(paths_of_survey, scene, rendering, receivers, photons, threads);
+    if (!light || !is_in_doubt(light->all)) return light;
+    light->is_open = true;
+    if (few_paths) return light;
     return light_beside(paths_of_doubt, scene, rendering, receivers, photons, threads);
 }
 
@@ -171,6 +173,12 @@ nlohmann::json to_json(const PictureLight& light) {
 
 std::optional<std::string> note_on(const PictureLight& light) {
     const double excess = light.all.ratio() - 1;
+    if (light.is_open)
+        return fmt::format(
+            "this picture's caustic has {:.3f} ± {:.3f} of the light that light paths bring to "
+            "what "
+            "the camera sees; more paths would tell (leave out --seconds or --few-light-paths)",
+            light.all.ratio(), light.all.error);
     if (std::abs(excess) < least_excess || std::abs(excess) < least_errors * light.all.error)
         return {};
     std::string where;

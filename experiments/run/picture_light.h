@@ -27,16 +27,17 @@ struct ReceiverLight {
 struct PictureLight {
     std::vector<ReceiverLight> receivers;  ///< that light paths reached, in the scene's order
     ReceiverLight all;
+    bool is_open = false;  ///< more paths would tell whether the sums differ
 };
 
 /// The picture's sums beside those of 50,000 light paths of up to 1,000 events, or of 400,000 where these leave a
 /// difference open. None for `lighttrace`, whose picture such paths are, and where no path came to a pixel that sees one receiver alone. `photons` is how many photons
 /// the picture is made of, or 0. Where the rendering has no errors of pixels, differences between neighbours stand for
-/// them. Of a trial 50,000 paths are enough, for its sums mean nothing. The same for any number
+/// them. With `few_paths` these are left out. The same for any number
 /// of threads.
 std::optional<PictureLight> picture_light(const Scene& scene, const Rendering& rendering,
                                           const Method& method, double photons, int threads,
-                                          bool is_trial = false);
+                                          bool few_paths = false);
 
 /// By receiver: "picture", "paths", "ratio" and "error"; those of all under "ratio" and "error".
 nlohmann::json to_json(const PictureLight& light);

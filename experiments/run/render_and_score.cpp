@@ -47,14 +47,15 @@ BuildReport of_indirect(const BuildReport& own) {
 
 std::optional<CausticLedger> ledger_of(const Scene& scene, const Method& method,
                                        const BuildReport& report, const Rendering& rendering,
-                                       int threads, bool is_trial) {
+                                       int threads, Telling telling) {
+    if (telling == Telling::nothing) return {};
     std::optional<CausticLedger> ledger = caustic_ledger(scene, method, report);
     if (!ledger) return {};
     const auto photons = report.counters.find("photons_stored");
     ledger->picture =
         picture_light(scene, rendering, method,
                       photons == report.counters.end() ? 0.0 : static_cast<double>(photons->second),
-                      threads, is_trial);
+                      threads, telling == Telling::of_few_paths);
     return ledger;
 }
 
@@ -73,6 +74,7 @@ std::string command(const std::string& verb, const RunRequest& request) {
         line += " --indirect " + request.indirect->name +
                 parameter_words("--indirect-param", describe(*request.indirect));
     if (verb == "render") line += fmt::format(" --spp {}", request.samples_per_pixel);
+    if (request.telling == Telling::of_few_paths) line += " --few-light-paths";
     return line + fmt::format(" --seed {}", request.seed);
 }
 
@@ -153,9 +155,10 @@ RunResult run(const Scene& scene, const RunRequest& request, RunOptions options,
     BuildReport all = report;
     for (const auto& [name, count] : rendering.report.counters) all.counters[name] += count;
     auto ledger =
-        ledger_of(scene, request.method, all, rendering, options.threads, request.is_trial);
+        ledger_of(scene, request.method, all, rendering, options.threads, request.telling);
     RunResult result{std::move(rendering.film), std::move(report), all.counters, {}, {}, {},
                      std::move(ledger)};
+    if (request.telling == Telling::nothing) return result;
     result.notes = notes(scene, request.method, all, result.ledger);
     std::ranges::copy(notes_on_picture(request.method, request.indirect, options),
                       std::back_inserter(result.notes));

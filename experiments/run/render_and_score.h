@@ -15,6 +15,13 @@
 
 namespace caustics::experiments {
 
+/// How much is found out to be told of a picture's light.
+enum class Telling {
+    all,
+    of_few_paths,  ///< what few light paths tell, for time is short
+    nothing        ///< of a trial
+};
+
 /// A picture to make: what a trial, a reference and the verb `render` have in common.
 struct RunRequest {
     std::filesystem::path scene_file;
@@ -24,8 +31,7 @@ struct RunRequest {
     int samples_per_pixel = 1;
     std::optional<IndirectMethod> indirect = {};  ///< none: a picture without that layer
     int pixel_step = 1;                           ///< one of so many pixels is rendered (Passes)
-    bool is_trial =
-        false;  ///< only its time is asked for: few light paths stand beside its picture
+    Telling telling = Telling::all;
 };
 
 /// The command line of a verb that makes it, with every parameter in force.

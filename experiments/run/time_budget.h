@@ -28,6 +28,7 @@ public:
     struct Cost {
         double build = 0;   ///< and all else that does not grow with the pixels [s]
         double render = 0;  ///< [s]
+        double fixed = 0;   ///< whatever the work is [s]
     };
 
     /// Trials render one of `pixel_step` pixels.
@@ -44,10 +45,13 @@ private:
         double size = 0;     ///< that time grows in proportion to, but for a constant
         double seconds = 0;  ///< that it took
         double whole = 0;    ///< seconds of the whole picture with its work
+        double fixed = 0;    ///< of these, whatever the work is
+        double render = 0;   ///< of these, rendering
     };
     double size_that_takes(double seconds, double Trial::* cost) const;
     double size_of_next_trial(double left) const;
     double size_of_picture(double left) const;
+    double size_by_one_trial(double left) const;
     bool is_enough(double left) const;
     void plan_of(double size, bool is_last);
 

@@ -195,11 +195,11 @@ TEST(Render, MakesThePictureOfATimeAgainByTheCommandThatItTells) {
         const ProgramResult second = support::shell(
             "$P render " + command.substr(0, command.find('\n')) + " -o '" + again + "' 2>&1");
         ASSERT_EQ(second.exit_code, 0) << second.out;
-        EXPECT_EQ(read_input(timed), read_input(again)) << method;
+        EXPECT_TRUE(read_input(timed) == read_input(again)) << method;
     }
 }
 
-// 1, 8 and 64 paths a pixel are the same picture at 64 samples a pixel.
+// 1 to 64 paths a pixel are the same picture at 64 samples a pixel.
 TEST(Render, GoesOnWhereSamplesHaveAPathEachAnyway) {
     const support::TemporaryFolder folder;
     const ProgramResult result =
@@ -209,7 +209,7 @@ TEST(Render, GoesOnWhereSamplesHaveAPathEachAnyway) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err.find("makes no difference"), std::string::npos) << result.err;
     EXPECT_EQ(result.err.find("spp=64: "), 0U) << result.err;
-    EXPECT_NE(result.err.find("\nspp=512: "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("\nspp=2048: "), std::string::npos) << result.err;
 }
 
 TEST(Render, RefusesATimeThatIsTooShortWithTheLeast) {
