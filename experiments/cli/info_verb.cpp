@@ -73,13 +73,22 @@ public:
 
     std::string text(const Method& method, const Serving& serving) const {
         const auto polygons = serving.report.counters.find("polygons");
-        const PictureCost cost =
-            forecast_.of(method, polygons == serving.report.counters.end() ? 0 : polygons->second);
+        try {
+            return text(forecast_.of(
+                method, polygons == serving.report.counters.end() ? 0 : polygons->second));
+        } catch (const UnsupportedScene& refusal) {
+            return fmt::format(", but a trial is refused ({})", refusal.what());
+        } catch (const InputError& refusal) {
+            return fmt::format(", but a trial is refused ({})", refusal.what());
+        }
+    }
+
+private:
+    std::string text(const PictureCost& cost) const {
         return fmt::format(", {}{:.2g} CPU s and {:.0f} MB", cost.is_least ? "at least " : "",
                            loading_ + cost.seconds, (loaded_ + cost.bytes) / 1e6);
     }
 
-private:
     double loading_ = cpu_seconds_used();
     double loaded_ = static_cast<double>(resident_bytes());
     CostForecast forecast_;

@@ -62,18 +62,19 @@ TEST_F(Pictures, ADecoderThatEndsIsOneLineAndExitCode2) {
     }
 }
 
-TEST_F(Pictures, InfoReadsHeadersAlone) {
+TEST_F(Pictures, QuickInfoReadsHeadersAlone) {
     // 4096 x 4096 pixels are declared, and hardly any is there.
     put("P6\n4096 4096\n255\nabc");
-    const ProgramResult info = run("$P info $D/scene.json");
+    const ProgramResult info = run("$P info $D/scene.json --quick");
     EXPECT_EQ(info.exit_code, 0) << info.err;
-    const ProgramResult rendered = render();
-    EXPECT_EQ(rendered.exit_code, 2);
-    EXPECT_NE(rendered.err.find("floor: cannot be read ("), std::string::npos) << rendered.err;
+    for (const ProgramResult& whole : {run("$P info $D/scene.json"), render()}) {
+        EXPECT_EQ(whole.exit_code, 2);
+        EXPECT_NE(whole.err.find("floor: cannot be read ("), std::string::npos) << whole.err;
+    }
 }
 
 TEST_F(Pictures, InfoNamesThePhotonsOfAGlobalMapByThePicture) {
-    const auto photons = [&] { return run("$P info $D/scene.json | grep '^photons'").out; };
+    const auto photons = [&] { return run("$P info $D/scene.json --quick | grep '^photons'").out; };
     put("P3\n1 1\n255\n255 0 0\n");
     const std::string red = photons();
     EXPECT_EQ(photons(), red);
