@@ -95,8 +95,10 @@ private:
 };
 
 std::string methods_text(const Scene& scene, bool is_quick) {
-    std::string text =
-        is_quick ? "methods\n" : "methods, and what a picture by their defaults takes\n";
+    std::string text = "methods";
+    if (!is_quick) text += ", and what a picture by their defaults takes";
+    if (!is_quick && scene.sampling().max_sample_count > 0) text += " without adaptive samples";
+    text += "\n";
     std::optional<Costs> costs;
     if (!is_quick) costs.emplace(scene);
     StatusLine asked;
