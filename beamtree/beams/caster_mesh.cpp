@@ -106,7 +106,7 @@ void leave_out_degenerate(CasterMesh& caster) {
     }
 }
 
-// What stays is spread evenly by multiples of the golden ratio, and is among what stays of a larger share. The two triangles of
+// Triangles that stay are spread evenly by multiples of the golden ratio. A larger share keeps them, too. The two triangles of
 // a cell go together.
 void leave_out_all_but(double share, CasterMesh& caster) {
     for (std::size_t i = 0; i < caster.mesh.triangles.size(); ++i) {

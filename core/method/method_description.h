@@ -19,7 +19,7 @@ struct SampleCount {
     /// Whether they count for each pixel, shared by the eye pass's samples, at least one each.
     bool of_a_pixel = false;
 
-    /// Whether light paths connect to the camera by themselves, however many pixels are asked for.
+    /// Answers whether light paths connect to the camera by themselves, however many pixels are asked for.
     bool is_of_picture() const { return !parameter.empty() && !of_a_pixel; }
 };
 

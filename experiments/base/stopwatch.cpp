@@ -63,6 +63,14 @@ Seconds Stopwatch::of(const std::string& phase) const {
     return found == phases_.end() ? Seconds{} : found->second;
 }
 
+Seconds Stopwatch::of_stage(const std::string& stage) const {
+    const std::scoped_lock lock(mutex_);
+    Seconds sum;
+    for (const auto& [phase, seconds] : phases_)
+        if (phase == stage || phase.starts_with(stage + "/")) sum += seconds;
+    return sum;
+}
+
 Seconds Stopwatch::worked() const {
     const std::scoped_lock lock(mutex_);
     Seconds sum;

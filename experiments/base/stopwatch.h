@@ -31,6 +31,8 @@ public:
 
     /// Of a phase that ended; zero when it never began.
     Seconds of(const std::string& phase) const;
+    /// The phase of that name and those below it ("render", "render/PHASE"), as far as they ended.
+    Seconds of_stage(const std::string& stage) const;
     Seconds worked() const;  ///< of all phases that ended
     Seconds total() const;   ///< since construction
     const std::map<std::string, Seconds>& phases() const { return phases_; }

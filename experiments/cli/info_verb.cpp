@@ -66,7 +66,7 @@ std::string judged_by(const BuildReport& report) {
                        report.counters.at("polygons"));
 }
 
-/// What pictures by the methods' defaults take, from the start of a command.
+/// Costs of pictures by the methods' defaults, from the start of a command.
 class Costs {
 public:
     explicit Costs(const Scene& scene) : forecast_(scene, scene.sampling().sample_count) {}

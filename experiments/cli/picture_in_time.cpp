@@ -26,7 +26,7 @@ std::string given_parameter(const RenderOptions& options, const WorkParameter& w
     return "";
 }
 
-/// The parameter that the time of --seconds goes into.
+/// The parameter whose value --seconds chooses.
 WorkParameter work_parameter(const RenderOptions& options) {
     constexpr std::int64_t most_of_scene = 4096;
     const Method method = options.method.parse();
@@ -133,7 +133,7 @@ std::string PictureInTime::least_text(const std::string& least) const {
 }
 
 bool PictureInTime::has_time_for(double more) const {
-    // Half of the tolerance is left for what the picture takes beyond what was foretold.
+    // Half of the tolerance stays free, for the picture may take longer than foretold.
     return cpu_seconds_used() + ending_ + more <= (1 + TimeBudget::tolerance / 2) * seconds_;
 }
 
@@ -151,7 +151,7 @@ SinglePicture PictureInTime::made(const WorkParameter& work, const TimeBudget::P
     RenderOptions trial = options_;
     (options_.work.empty() ? trial.method.params : trial.scene.sets).push_back(chosen);
     if (!options_.work.empty()) scene_.emplace(trial);
-    // What is told of a picture takes as long for each: the first trial tells how long.
+    // Comparing its light with light paths takes as long for each picture: the first trial tells how long.
     const Telling telling =
         may_refuse_ || plan.is_last || pixel_step_ == 1 ? Telling::of_few_paths : Telling::nothing;
     SinglePicture picture = scene_->picture_of(trial, plan.is_last ? 1 : pixel_step_, telling, [&] {

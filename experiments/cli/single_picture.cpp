@@ -66,9 +66,7 @@ SinglePicture LoadedScene::picture_of(const RenderOptions& options, int pixel_st
         };
     const double before = cpu_seconds_used();
     RunResult result = run(scene_, request, run_options, stopwatch);
-    double render = 0;
-    for (const auto& [phase, seconds] : stopwatch.phases())
-        if (phase.starts_with("render")) render += seconds.cpu;
+    const double render = stopwatch.of_stage("render").cpu;
     const double planned = stopwatch.of("precompute/plan").cpu;
     const Seconds took = stopwatch.worked();
     const double told = cpu_seconds_used() - before - took.cpu;

@@ -26,7 +26,7 @@ constexpr double fewest_polygons = 4;
 // From trial to trial.
 constexpr double least_growth = 8;
 constexpr double most_growth = 32;
-// What work is to take in the last trial: seconds, and of what the first took.
+// Seconds that the work takes in the last trial, at least, and as a share of what the first trial took.
 constexpr double told_seconds = 0.15;
 constexpr double told_part = 0.5;
 // After a long trial there is no other, and one that is too long is given up: seconds, and of what a picture without a caustic
@@ -111,11 +111,9 @@ CostForecast::Trial CostForecast::trial(const Method& method, double share, int 
     // A picture that is written is in memory twice.
     trial.bytes =
         static_cast<double>(peak_resident_bytes()) - resident + static_cast<double>(written);
-    double render = 0;
+    const double render = stopwatch.of_stage("render").cpu;
     for (const auto& [phase, seconds] : stopwatch.phases())
-        if (phase.starts_with("render"))
-            render += seconds.cpu;
-        else
+        if (phase.starts_with("precompute"))
             trial.phases[phase.substr(phase.find('/') + 1)] += seconds.cpu;
     trial.build = trial.took - render;
     trial.caustic = std::max(0.0, render - film_ - eye_);

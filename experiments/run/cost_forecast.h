@@ -11,7 +11,7 @@
 
 namespace caustics::experiments {
 
-/// What a picture is foretold to take.
+/// Time and memory that a picture is foretold to take.
 struct PictureCost {
     double seconds = 0;     ///< of all threads, from a loaded scene to the picture's layers [CPU s]
     double bytes = 0;       ///< in memory at most beyond the loaded scene
@@ -27,7 +27,7 @@ class CostForecast {
 public:
     CostForecast(const Scene& scene, int samples_per_pixel);
 
-    /// What each phase of the picture takes [CPU s], as RunOptions::begin_phase names them; nothing where trials do not tell.
+    /// Foretells each phase of the picture [CPU s], by the names of RunOptions::begin_phase; nothing where trials do not tell.
     /// Throws as the picture would.
     std::map<std::string, double> phases_of(const Method& method) const;
     /// Throws as the picture would: UnsupportedScene, InputError. `polygons`: how many the method's work is done for, one by

@@ -40,7 +40,7 @@ double RunEta::planned(const std::string& phase) const {
 }
 
 double RunEta::planned_until(double share) const {
-    // What comes last begins when all else is over.
+    // Rendering begins when all else is over.
     if (rendering_) return all_ - (1 - share) * planned(phase_);
     double until = share * planned(phase_);
     for (const std::string& phase : over_) until += planned(phase);
@@ -48,16 +48,16 @@ double RunEta::planned_until(double share) const {
 }
 
 double RunEta::done(double share) {
-    double own = 0;
-    if (all_ > 0)
-        own = planned_until(share) / all_;
-    else if (rendering_)
-        own = (1 + share) / 2;
-    else
-        own = (1 - std::exp2(-static_cast<double>(over_.size()) - share)) / 2;
     const double passes_over = rendering_ ? renders_ - 1 : renders_;
     // The share of rendering is that of all passes.
-    if (passes_ > 1 && rendering_) own = (1 + passes_ * share - passes_over) / 2;
+    const double in_phase = rendering_ ? passes_ * share - passes_over : share;
+    double own = 0;
+    if (all_ > 0)
+        own = planned_until(in_phase) / all_;
+    else if (rendering_)
+        own = (1 + in_phase) / 2;
+    else
+        own = (1 - std::exp2(-static_cast<double>(over_.size()) - in_phase)) / 2;
     done_ = std::max(done_, std::clamp((passes_over + own) / passes_, 0.0, 1.0));
     return done_;
 }
@@ -70,7 +70,7 @@ std::optional<Eta> RunEta::at(double share, double now) const {
         return Eta((render_seconds_ + in_phase) * (1 - share) / share +
                    passes_left * build_seconds_ / renders_);
     }
-    if (all_ > 0 && passes_ == 1) {
+    if (all_ > 0) {
         const double until = planned_until(share);
         return Eta((all_ - until) * (until > known_part * all_ ? now / until : 1));
     }
@@ -94,7 +94,7 @@ std::string phase_text(const std::string& phase, double share,
 RunProgress::RunProgress(RunOptions& options, int passes,
                          const std::function<std::map<std::string, double>()>& plan)
     : passes_(passes), eta_(passes) {
-    if (plan && line_.is_on_terminal()) {
+    if (plan && passes == 1 && line_.is_on_terminal()) {
         line_.show("planning ...");
         eta_ = RunEta(passes, plan());
         begun_ = std::chrono::steady_clock::now();

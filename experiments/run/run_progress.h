@@ -56,7 +56,7 @@ class RunProgress {
 public:
     /// Takes the callbacks of `options`, for as long as this lives; they throw Interrupted when the
     /// user asked to stop.
-    /// `plan` is asked where the line is kept up to date.
+    /// `plan` is asked for a run of one pass, where the line is kept up to date.
     explicit RunProgress(RunOptions& options, int passes = 1,
                          const std::function<std::map<std::string, double>()>& plan = {});
 

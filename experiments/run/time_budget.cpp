@@ -22,7 +22,8 @@ constexpr std::size_t least_trials = 3;
 // Times that differ by less of themselves do so by chance.
 constexpr double chance = 0.05;
 constexpr double least_seconds = 1e-6;
-// What rendering grows with where one trial tells no more: by 1/4 to 1/3 with pencils, hardly with photons.
+// Power of the work that rendering is taken to grow with after one trial: 1/4 to 1/3 was measured with pencils, and hardly
+// any with photons.
 constexpr double render_power = 1.0 / 3;
 constexpr double times_precision = 1e-3;
 

@@ -199,7 +199,7 @@ TEST(Render, MakesThePictureOfATimeAgainByTheCommandThatItTells) {
     }
 }
 
-// 1 to 64 paths a pixel are the same picture at 64 samples a pixel.
+// With 64 samples a pixel, 1 to 64 paths a pixel make the same picture: each sample has one path.
 TEST(Render, GoesOnWhereSamplesHaveAPathEachAnyway) {
     const support::TemporaryFolder folder;
     const ProgramResult result =

@@ -22,5 +22,15 @@ TEST(Stopwatch, CountsAsWorkWhatIsInPhasesThatEnded) {
     EXPECT_EQ(watch.worked().wall, worked.wall);
 }
 
+TEST(Stopwatch, AddsUpAStage) {
+    Stopwatch stopwatch;
+    for (const char* phase : {"render", "render/tiles", "rendering", "precompute"})
+        stopwatch.begin(phase);
+    stopwatch.stop();
+    EXPECT_DOUBLE_EQ(stopwatch.of_stage("render").wall,
+                     stopwatch.of("render").wall + stopwatch.of("render/tiles").wall);
+    EXPECT_DOUBLE_EQ(stopwatch.of_stage("precompute").cpu, stopwatch.of("precompute").cpu);
+}
+
 }  // namespace
 }  // namespace caustics::experiments
