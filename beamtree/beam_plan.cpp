@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "beamtree/pencils/light_patch.h"
 #include "beamtree/scene_sample.h"
 #include "beamtree/tracing/beam_lights.h"
 #include "beamtree/tracing/expected_least.h"
@@ -22,20 +23,10 @@ constexpr std::size_t few_points = 8;
 constexpr double most_light = 0.5;
 // Light that is too little to be followed.
 constexpr double least_light = 1e-4;
-// The least number of pencils from each point of an area light to a caster.
-constexpr double pencils_of_point = 256;
-constexpr int most_points = 1024;
 
 // Parts of each light by wavelength.
 int bins_of(const Scene& scene, const BeamTreeParams& params) {
     return disperses(scene) ? params.wavelengths : 1;
-}
-
-int points_of_light(const Scene& scene, const BeamTreeParams& params, std::uint64_t count) {
-    const double points =
-        static_cast<double>(count) /
-        (pencils_of_point * bins_of(scene, params) * static_cast<double>(scene.casters().size()));
-    return std::max(params.light_samples, static_cast<int>(std::min<double>(points, most_points)));
 }
 
 bool all_beams_fit(const Scene& scene, const BeamTreeParams& params,
@@ -62,8 +53,8 @@ double ScenePencils::share_up_to(int most_events) const {
 ScenePencils trace_scene_pencils(const Scene& scene, const BeamTreeParams& params,
                                  std::uint64_t count, const RunOptions& options) {
     BeamTreeParams own = params;
-    own.light_samples = points_of_light(scene, params, count);
-    ScenePencils pencils{beam_lights(scene, "beamtree", own, options), {}};
+    own.light_samples = 1;
+    ScenePencils pencils{whole_lamps(scene, beam_lights(scene, "beamtree", own, options)), {}};
     pencils.traced = trace_pencils(scene, pencils.lights, {count, params.max_bounces}, options);
     return pencils;
 }

@@ -30,7 +30,7 @@ struct ScenePencils {
     double share_up_to(int most_events) const;
 };
 
-/// Traces about `count` pencils. Area lights have more points here than for beams: more points make no more pencils.
+/// Traces about `count` pencils, which start all over area lights.
 ScenePencils trace_scene_pencils(const Scene& scene, const BeamTreeParams& params,
                                  std::uint64_t count, const RunOptions& options);
 

@@ -21,6 +21,8 @@ constexpr float height_of_flat = 1e-3F;
 constexpr float wider_box = 1e-5F;
 // A side of a print is at most as long as the box of so many prints about it. More prints over a point cost time and gain little.
 constexpr std::size_t most_over_a_point = 64;
+// Where light is denser than on average, so many times twice as many: there errors weigh most, and few points ask.
+constexpr int most_doublings = 6;
 // Leaves that a thread takes at a time.
 constexpr std::size_t leaves_of_chunk = 64;
 
@@ -72,9 +74,15 @@ std::uint64_t PencilMap::bytes() const {
 void PencilMap::shorten_prints(int threads) {
     const std::vector<Box> around = boxes_of_positions(prints_, leaves_.size());
     constexpr int levels = std::countr_zero(most_over_a_point / leaf_size);
+    const std::size_t nodes = std::max<std::size_t>(1, leaves_.size() >> levels);
+    double mean = 0;
+    for (std::size_t node = nodes; node < 2 * nodes; ++node)
+        mean += static_cast<double>(around[node].diagonal().squaredNorm()) / static_cast<double>(nodes);
     parallel_chunks(threads, leaves_.size(), leaves_of_chunk, [&](const Chunk& chunk) {
         for (std::size_t leaf = chunk.first; leaf < chunk.end; ++leaf) {
-            const std::size_t node = std::max<std::size_t>(1, (leaves_.size() + leaf) >> levels);
+            std::size_t node = std::max<std::size_t>(1, (leaves_.size() + leaf) >> levels);
+            double room = mean / static_cast<double>(2 * around[node].diagonal().squaredNorm());
+            for (int up = 0; up < most_doublings && node > 1 && room > 1; ++up, room /= 2) node >>= 1;
             const float longest = around[node].diagonal().norm();
             for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
                 for (Vec3& side : prints_[i].sides)

@@ -14,6 +14,7 @@
 #include "core/light_path/flight.h"
 #include "core/light_path/ray_change.h"
 #include "core/math/frame.h"
+#include "core/math/lattice.h"
 
 namespace caustics::beamtree {
 namespace {
@@ -26,59 +27,80 @@ constexpr float faint = 0.125F;
 constexpr double longest_side = 0.1;
 constexpr double smallest_side = 1e-5;
 
-/// A patch in equal strata, of which those at its edges reach beyond it.
-struct Grid {
+/// A patch in equal strata: a grid of its rectangle, of which those at the edges reach beyond it, or the cells of a lattice over all places
+/// of an area light and all directions from them.
+struct Strata {
     LightPatch patch;
-    std::array<std::uint64_t, 2> counts = {1, 1};
-    std::array<double, 2> shift = {0, 0};  ///< of the strata, over one of them
-    double chance = 1;                     ///< that its pencils are traced
-    std::uint64_t first = 0;               ///< number of its first stratum
+    bool of_lamp = false;
+    std::array<std::uint64_t, 2> counts = {1, 1};  ///< along a grid's sides; of a lattice, the first
+    std::array<double, 4> shift = {0, 0, 0, 0};    ///< of a grid over one of its strata; of a lattice
+    double chance = 1;                             ///< that its pencils are traced
+    std::uint64_t first = 0;                       ///< number of its first stratum
 
-    std::uint64_t size() const { return (counts[0] + 1) * (counts[1] + 1); }
-    Vec3d side(std::size_t i) const { return patch.sides[i] / static_cast<double>(counts[i]); }
+    std::uint64_t size() const { return of_lamp ? counts[0] : (counts[0] + 1) * (counts[1] + 1); }
+    Vec3d side(std::size_t i) const {
+        return patch.rectangle.sides[i] / static_cast<double>(counts[i]);
+    }
     Vec3d middle(std::uint64_t stratum) const {
         const std::array<std::uint64_t, 2> at = {stratum % (counts[0] + 1),
                                                  stratum / (counts[0] + 1)};
-        Vec3d point = patch.corner;
-        for (std::size_t i = 0; i < 2; ++i)
-            point += (static_cast<double>(at[i]) - shift[i] + 0.5) * side(i);
-        return point;
+        const auto place = [&](std::size_t i) {
+            return (static_cast<double>(at[i]) - shift[i] + 0.5) / static_cast<double>(counts[i]);
+        };
+        return patch.rectangle.at(place(0), place(1));
     }
+    /// A number of a lattice's point, from 0 to 1.
+    double number(std::uint64_t stratum, std::size_t k) const {
+        const double step = static_cast<double>(high_word(stratum * r4_steps[k])) * 0x1p-32;
+        return fine_fraction(shift[k] + step);
+    }
+    /// A side of a lattice's cell along each number.
+    double side_of_cell() const { return std::pow(static_cast<double>(counts[0]), -0.25); }
 };
 
-Grid grid_of(const LightPatch& patch, double strata) {
-    Grid grid{.patch = patch, .chance = std::min(1.0, strata)};
-    const double ratio = patch.sides[0].norm() / patch.sides[1].norm();
-    const double most = std::max(1.0, strata);
+Strata strata_of(const LightPatch& patch, bool of_lamp, double wanted) {
+    Strata strata{.patch = patch, .of_lamp = of_lamp, .chance = std::min(1.0, wanted)};
+    const double most = std::max(1.0, wanted);
+    if (of_lamp) {
+        strata.counts = {static_cast<std::uint64_t>(std::ceil(most - 0.5)), 1};
+        return strata;
+    }
+    const auto& sides = patch.rectangle.sides;
+    const double ratio = sides[0].norm() / sides[1].norm();
     const double along = std::clamp(std::sqrt(most * ratio), 1.0, most);
-    grid.counts = {static_cast<std::uint64_t>(std::ceil(along - 0.5)),
-                   static_cast<std::uint64_t>(std::ceil(most / along - 0.5))};
-    return grid;
+    strata.counts = {static_cast<std::uint64_t>(std::ceil(along - 0.5)),
+                     static_cast<std::uint64_t>(std::ceil(most / along - 0.5))};
+    return strata;
 }
 
 // Strata are shared out by the light that goes through the patches, so that pencils have about as much each.
-std::vector<Grid> grids_of(const std::vector<LightPatch>& patches, std::uint64_t count,
-                           std::uint64_t seed) {
+std::vector<Strata> shared_strata(const std::vector<LightPatch>& patches,
+                                  std::span<const LightSample> lights, std::uint64_t count,
+                                  std::uint64_t seed) {
     double watts = 0;
     for (const LightPatch& patch : patches) watts += patch.watts;
     Rng rng(seed, Stage::pencils, ~std::uint64_t{0});
-    const std::array<double, 2> shift = {rng.next_fine(), rng.next_fine()};
-    std::vector<Grid> grids;
-    std::uint64_t strata = 0;
+    std::array<double, 4> shift;
+    for (double& one : shift) one = rng.next_fine();
+    std::vector<Strata> all;
+    std::uint64_t first = 0;
     for (std::size_t i = 0; i < patches.size(); ++i) {
-        grids.push_back(grid_of(patches[i], static_cast<double>(count) * patches[i].watts / watts));
-        for (std::size_t k = 0; k < 2; ++k)
-            grids.back().shift[k] = fine_fraction(shift[k] + static_cast<double>(i) * r2_steps[k]);
-        grids.back().first = strata;
-        strata += grids.back().size();
+        const bool of_lamp = lights[patches[i].light].kind == LightSample::Kind::area;
+        all.push_back(strata_of(patches[i], of_lamp,
+                                static_cast<double>(count) * patches[i].watts / watts));
+        Strata& strata = all.back();
+        for (std::size_t k = 0; k < 4; ++k)
+            strata.shift[k] = fine_fraction(shift[k] + static_cast<double>(i) * r2_steps[k % 2]);
+        strata.first = first;
+        first += strata.size();
     }
-    return grids;
+    return all;
 }
 
 /// A pencil on its way.
 struct Branch {
     Flight flight;
-    /// By the sides of its stratum, and by those of the part of the area light that its point stands for.
+    /// By the sides of its stratum of directions, and by those of its part of an area light.
     std::array<RayChange, 4> change;
     std::size_t changes = 2;  ///< how many of them
 
@@ -129,59 +151,97 @@ public:
         }
     }
 
-    void trace(const Grid& grid, std::uint64_t stratum, TracedPencils& traced) const {
-        Rng rng(seed_, Stage::pencils, grid.first + stratum);
-        if (grid.chance < 1 && rng.next_fine() >= grid.chance) return;
-        const LightSample& light = lights_[grid.patch.light];
-        const Vec3d point = grid.middle(stratum);
-        const PatchRay through = ray_through(light, grid.patch, point);
-        const Spectrum strength = strength_along(light, -through.direction.cast<float>());
-        if (is_black(strength)) return;
-        const double area = grid.side(0).cross(grid.side(1)).norm();
-        Branch start = start_of(light, point, through, grid);
-        start.flight.flux = strength * static_cast<float>(through.measure * area / grid.chance);
-        start.flight.start_flux = start.flight.flux.sum();
-        start.flight.start_medium = light.medium;
-        start.flight.wavelength.nm = light.bin.nm;
+    void trace(const Strata& strata, std::uint64_t stratum, TracedPencils& traced) const {
+        Rng rng(seed_, Stage::pencils, strata.first + stratum);
+        if (strata.chance < 1 && rng.next_fine() >= strata.chance) return;
+        const LightSample& light = lights_[strata.patch.light];
+        const auto start = strata.of_lamp ? start_on_lamp(light, strata, stratum)
+                                          : start_in_grid(light, strata, stratum);
+        if (!start) return;
         ++traced.traced;
-        follow(start, grid.patch, rng, traced);
+        follow(*start, strata.patch, rng, traced);
     }
 
 private:
-    Branch start_of(const LightSample& light, const Vec3d& point, const PatchRay& through,
-                    const Grid& grid) const {
-        Branch start;
+    // A branch along a ray with the light of an area of its rectangle; none where no light goes that way.
+    std::optional<Branch> start_along(const LightSample& light, const PatchRay& through,
+                                      double area, double chance) const {
         const Vec3 along = through.direction.cast<float>();
-        const bool directional = light.kind == LightSample::Kind::directional;
-        if (directional) {
-            const Vec3 at = point.cast<float>();
-            start.flight.ray = {at + distance_to_entry(light.bounds, at, along) * along, along};
-        } else {
+        const Spectrum strength = strength_along(light, -along);
+        if (is_black(strength)) return {};
+        Branch start;
+        if (light.kind != LightSample::Kind::directional)
             start.flight.ray = spawn_ray({light.position, light.normal, light.offset}, along);
-        }
-        const double distance = (point - light.position.cast<double>()).norm();
-        for (std::size_t i = 0; i < 2; ++i) {
-            const Vec3d side = grid.side(i) / std::sqrt(grid.chance);
-            if (directional)
-                start.change[i].place = side;
-            else
-                start.change[i].direction =
-                    (side - through.direction.dot(side) * through.direction) / distance;
-        }
-        if (light.kind == LightSample::Kind::area)
-            spread_over_light(light, grid.patch, through, start);
+        start.flight.flux = strength * static_cast<float>(through.measure * area / chance);
+        start.flight.start_flux = start.flight.flux.sum();
+        start.flight.start_medium = light.medium;
+        start.flight.wavelength.nm = light.bin.nm;
         return start;
     }
 
-    // Rays from beside the light's point to where the ray passes its caster.
-    void spread_over_light(const LightSample& light, const LightPatch& patch,
-                           const PatchRay& through, Branch& start) const {
-        const Vec3d from = light.position.cast<double>();
-        const Vec3d middle = bounds(scene_.shapes()[patch.caster]).center().cast<double>();
+    std::optional<Branch> start_in_grid(const LightSample& light, const Strata& strata,
+                                        std::uint64_t stratum) const {
+        const Vec3d point = strata.middle(stratum);
+        const PatchRay through = ray_through(light, strata.patch.rectangle, point);
+        const double area = strata.side(0).cross(strata.side(1)).norm();
+        auto start = start_along(light, through, area, strata.chance);
+        if (!start) return {};
+        const std::array<Vec3d, 2> sides = {strata.side(0), strata.side(1)};
+        if (light.kind == LightSample::Kind::directional) {
+            const Vec3 along = through.direction.cast<float>();
+            const Vec3 at = point.cast<float>();
+            start->flight.ray = {at + distance_to_entry(light.bounds, at, along) * along, along};
+            for (std::size_t i = 0; i < 2; ++i)
+                start->change[i].place = sides[i] / std::sqrt(strata.chance);
+        } else {
+            turn_through(sides, (point - light.position.cast<double>()).norm(),
+                         through.direction, std::sqrt(strata.chance), *start);
+        }
+        return start;
+    }
+
+    // Directions through the sides of a stratum at a distance from the start.
+    static void turn_through(const std::array<Vec3d, 2>& sides, double distance,
+                             const Vec3d& direction, double over, Branch& start) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Vec3d side = sides[i] / over;
+            start.change[i].direction = (side - direction.dot(side) * direction) / distance;
+        }
+    }
+
+    std::optional<Branch> start_on_lamp(const LightSample& light, const Strata& strata,
+                                        std::uint64_t stratum) const {
+        const LightSample place = place_on_lamp(scene_, light, strata.number(stratum, 2),
+                                                strata.number(stratum, 3));
+        const Vec3d from = place.position.cast<double>();
+        const CasterView view = caster_view(from, strata.patch.bounds, strata.patch.turn);
+        if (view.count == 0) return {};
+        // The first number chooses among the faces of a near caster's view.
+        const auto faces = static_cast<double>(view.count);
+        const double x = strata.number(stratum, 0) * faces;
+        const auto face = std::min(static_cast<std::size_t>(x), view.count - 1);
+        const ViewRectangle& rectangle = view.rectangles[face];
+        const Vec3d point =
+            rectangle.at(x - static_cast<double>(face), strata.number(stratum, 1));
+        const PatchRay through = ray_through(place, rectangle, point);
+        const double area = rectangle.area() * faces / static_cast<double>(strata.size());
+        auto start = start_along(place, through, area, strata.chance);
+        if (!start) return {};
+        const double cell = strata.side_of_cell() / std::pow(strata.chance, 0.25);
+        turn_through({cell * faces * rectangle.sides[0], cell * rectangle.sides[1]},
+                     (point - from).norm(), through.direction, 1, *start);
+        spread_over_lamp(place, cell * std::sqrt(light.area), strata.patch, through, *start);
+        return start;
+    }
+
+    // Rays from beside the lamp's place to where the ray passes its caster.
+    void spread_over_lamp(const LightSample& place, double side, const LightPatch& patch,
+                          const PatchRay& through, Branch& start) const {
+        const Vec3d from = place.position.cast<double>();
+        const Vec3d middle = patch.bounds.middle();
         const double distance = through.direction.dot(middle - from);
-        const double side = std::sqrt(light.area);
         if (!(distance > side)) return;
-        const Frame frame(light.normal);
+        const Frame frame(place.normal);
         start.changes = 4;
         for (std::size_t i = 0; i < 2; ++i) {
             const Vec3d way = side * (i == 0 ? frame.s : frame.t).cast<double>();
@@ -325,9 +385,9 @@ private:
     std::vector<std::optional<SpecularSurface>> exact_;  ///< one a shape, of exact casters
 };
 
-// The grid that has a stratum.
-const Grid& grid_with(const std::vector<Grid>& grids, std::uint64_t stratum) {
-    return *std::prev(std::ranges::upper_bound(grids, stratum, {}, &Grid::first));
+// The strata that one of all is among.
+const Strata& strata_with(const std::vector<Strata>& all, std::uint64_t stratum) {
+    return *std::prev(std::ranges::upper_bound(all, stratum, {}, &Strata::first));
 }
 
 }  // namespace
@@ -337,15 +397,16 @@ TracedPencils trace_pencils(const Scene& scene, std::span<const LightSample> lig
     const std::vector<LightPatch> patches = light_patches(scene, lights);
     TracedPencils all;
     if (patches.empty() || settings.count == 0) return all;
-    const std::vector<Grid> grids = grids_of(patches, settings.count, options.seed);
+    const std::vector<Strata> shared =
+        shared_strata(patches, lights, settings.count, options.seed);
     const PencilTracer tracer(scene, lights, settings, options.seed);
-    const std::uint64_t strata = grids.back().first + grids.back().size();
+    const std::uint64_t strata = shared.back().first + shared.back().size();
     std::vector<TracedPencils> parts(chunk_count(strata, strata_together));
     TraceProgress progress(options);
     parallel_chunks(options.threads, strata, strata_together, [&](const Chunk& chunk) {
         for (std::uint64_t i = chunk.first; i < chunk.end; ++i) {
-            const Grid& grid = grid_with(grids, i);
-            tracer.trace(grid, i - grid.first, parts[chunk.index]);
+            const Strata& own = strata_with(shared, i);
+            tracer.trace(own, i - own.first, parts[chunk.index]);
         }
         progress.add(static_cast<double>(chunk.end - chunk.first) / static_cast<double>(strata));
     });

@@ -76,6 +76,7 @@ AimedEmission::AimedEmission(const Scene& scene, Isa isa, Aim where, std::span<c
         first_cone_.push_back(static_cast<std::uint32_t>(cones_.size()));
         for (const AimedCone& aim : source.cones) cones_.push_back(plain(aim));
         cones_.resize(cones_.size() + source.discs.size());
+        has_targets_ = has_targets_ || !source.targets.empty();
     }
 }
 
@@ -96,12 +97,28 @@ double AimedEmission::least_carried() const {
     return least;
 }
 
+bool AimedEmission::has_extent() const {
+    return std::ranges::any_of(sources_, [this](const AimedSource& source) {
+        return caustics::has_extent(scene_.lights()[source.light]);
+    });
+}
+
 // Picks a source and one of its regions; x becomes what is left of it.
 std::uint32_t AimedEmission::choose(double& x, std::uint32_t& cone) const {
     const std::size_t source = pick_and_stretch(cumulative_, x);
     const std::size_t region = pick_and_stretch(sources_[source].cumulative, x);
     cone = first_cone_[source] + static_cast<std::uint32_t>(region);
     return static_cast<std::uint32_t>(source);
+}
+
+// Draws the place that a sample of a source with targets starts from, and aims from there.
+EmissionCone AimedEmission::cone_at_start(std::uint32_t source, std::uint32_t cone, Rng& rng,
+                                          SegmentEnd& start) const {
+    const AimedSource& from = sources_[source];
+    start = start_of(scene_.lights()[from.light], surroundings_, from, rng);
+    const AimedSphere& target = from.targets[cone - first_cone_[source]];
+    const DirectionCone aim = cone_from(start.position, target.sphere);
+    return plain({aim, Frame(aim.axis)});
 }
 
 std::optional<LightParticle> AimedEmission::emit(Rng& rng) const {
@@ -111,10 +128,13 @@ std::optional<LightParticle> AimedEmission::emit(Rng& rng) const {
     std::uint32_t cone = 0;
     const std::uint32_t source = choose(x, cone);
     AimedSample sample;
+    EmissionCone at = cones_[cone];
+    if (!sources_[source].targets.empty()) at = cone_at_start(source, cone, rng, sample.start);
     float* const w = sample.direction.data();
+    const std::uint32_t first = 0;
     // Nothing to put side by side; all kernels give the same bits.
     emission_kernels(Isa::plain)
-        .aim({1, &x, &y, cones_.data(), &cone},
+        .aim({1, &x, &y, &at, &first},
              {{&sample.disc.x(), &sample.disc.y()}, {w, w + 1, w + 2}});
     return send(source, cone, sample, rng);
 }
@@ -124,17 +144,31 @@ void AimedEmission::emit(const EmissionSamples& samples,
     if (sources_.empty()) return;
     constexpr std::size_t most = EmissionSamples::most;
     std::array<double, most> x;
-    std::array<std::uint32_t, most> source, cone;
+    std::array<std::uint32_t, most> source, cone, own;
+    std::array<SegmentEnd, most> start;
+    std::array<EmissionCone, most> at;
     alignas(64) std::array<std::array<float, most>, 5> to;
     std::ranges::copy(samples.x(), x.begin());
-    for (std::size_t i = 0; i < samples.size(); ++i) source[i] = choose(x[i], cone[i]);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        source[i] = choose(x[i], cone[i]);
+        if (!has_targets_) continue;
+        own[i] = static_cast<std::uint32_t>(i);
+        Rng rng = samples.rng(i);
+        at[i] = sources_[source[i]].targets.empty()
+                    ? cones_[cone[i]]
+                    : cone_at_start(source[i], cone[i], rng, start[i]);
+    }
     auto& [u, v, wx, wy, wz] = to;
-    kernels_.aim({samples.size(), x.data(), samples.y().data(), cones_.data(), cone.data()},
+    const EmissionCone* const cones = has_targets_ ? at.data() : cones_.data();
+    const std::uint32_t* const numbers = has_targets_ ? own.data() : cone.data();
+    kernels_.aim({samples.size(), x.data(), samples.y().data(), cones, numbers},
                  {{u.data(), v.data()}, {wx.data(), wy.data(), wz.data()}});
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        Rng rng = samples.rng(i);
-        const auto particle =
-            send(source[i], cone[i], {0, Vec2(u[i], v[i]), Vec3(wx[i], wy[i], wz[i])}, rng);
+        const bool is_placed = !sources_[source[i]].targets.empty();
+        Rng rng = samples.rng(i, is_placed ? 4 : 2);
+        const AimedSample sample{0, Vec2(u[i], v[i]), Vec3(wx[i], wy[i], wz[i]),
+                                 is_placed ? start[i] : SegmentEnd{}};
+        const auto particle = send(source[i], cone[i], sample, rng);
         if (particle) starts.push_back({*particle, rng, samples.path(i)});
     }
 }

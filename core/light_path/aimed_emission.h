@@ -42,6 +42,8 @@ public:
     /// Of the channel that is served worst, the share of particles with which it would be as noisy if they carried it
     /// evenly: 1 where all lights have one colour, near 0 where the only light of a colour is far weaker than others.
     double least_carried() const;
+    /// Whether one of the lights that shine there is larger than a point or a direction.
+    bool has_extent() const;
     /// No light or no caster, or they cannot see each other.
     bool empty() const { return sources_.empty(); }
 
@@ -49,6 +51,8 @@ private:
     AimedEmission(const Scene& scene, Isa isa, Aim where, std::span<const Light> lights,
                   std::uint32_t first_light);
 
+    EmissionCone cone_at_start(std::uint32_t source, std::uint32_t cone, Rng& rng,
+                               SegmentEnd& start) const;
     std::uint32_t choose(double& x, std::uint32_t& cone) const;
     /// `cone` is a region's number among those of all sources.
     std::optional<LightParticle> send(std::uint32_t source, std::uint32_t cone, AimedSample sample,
@@ -62,6 +66,7 @@ private:
     std::vector<Spectrum> flux_;             ///< of each source's particles
     std::vector<EmissionCone> cones_;        ///< of all sources' regions; those of discs are empty
     std::vector<std::uint32_t> first_cone_;  ///< of each source
+    bool has_targets_ = false;               ///< any of them
 };
 
 }  // namespace caustics

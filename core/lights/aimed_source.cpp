@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/interrupt.h"
+#include "core/geometry/exact_shape.h"
 
 namespace caustics {
 
@@ -133,6 +134,28 @@ void normalise(std::vector<double>& measures) {
     for (double& share : measures) share /= sum;
 }
 
+// A bound of how near a shape comes to a point.
+float least_distance(const Shape& shape, const BoundingSphere& round, const Vec3& point) {
+    float least = std::max((point - round.centre).norm() - round.radius,
+                           bounds(shape).exteriorDistance(point));
+    if (exact_is_flat(shape)) {
+        const auto on = AreaSampler(shape).sample(shape, 0, 0);
+        least = std::max(least, std::abs(on.normal.dot(point - on.position)));
+    }
+    return least;
+}
+
+void add_cones(const std::vector<DirectionCone>& cones, AimedSource& source) {
+    std::vector<Box> boxes;
+    for (const DirectionCone& cone : cones) {
+        source.cones.push_back({cone, Frame(cone.axis)});
+        source.cumulative.push_back(cone.solid_angle());
+        if (cones.size() > 1) boxes.push_back(box_of_cone(cone));
+    }
+    source.boxes = BoxTree(std::move(boxes));
+    normalise(source.cumulative);
+}
+
 }  // namespace
 
 DirectionCone cone_of_half_angle(const Vec3d& axis, double half_angle) {
@@ -155,14 +178,7 @@ double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSou
             cones = {DirectionCone{}};
             break;
         }
-    std::vector<Box> boxes;
-    for (const DirectionCone& cone : cones) {
-        source.cones.push_back({cone, Frame(cone.axis)});
-        source.cumulative.push_back(cone.solid_angle());
-        if (cones.size() > 1) boxes.push_back(box_of_cone(cone));
-    }
-    source.boxes = BoxTree(std::move(boxes));
-    normalise(source.cumulative);
+    add_cones(cones, source);
     return measure_of(cones);
 }
 
@@ -190,10 +206,54 @@ double aim_discs(const Surroundings& scene, AimedSource& source) {
     return total;
 }
 
+DirectionCone cone_from(const Vec3& place, const BoundingSphere& sphere) {
+    const Vec3 way = sphere.centre - place;
+    const float distance = way.norm();
+    return DirectionCone::from_sine(way / distance, sphere.radius / distance);
+}
+
+std::optional<double> aim_spheres(const Surroundings& scene, const Shape& from,
+                                  AimedSource& source) {
+    if (scene.everywhere) return {};
+    const BoundingSphere round = bounding_sphere(from);
+    std::vector<DirectionCone> cones;
+    std::vector<AimedSphere> targets;
+    for (const std::uint32_t caster : scene.casters) {
+        BoundingSphere sphere = bounding_sphere(scene.shapes[caster]);
+        sphere.radius *= 1 + 1e-5F;
+        const float nearest = least_distance(from, round, sphere.centre) * (1 - 1e-5F);
+        cones.push_back(cone_towards(round, {sphere, {}}));
+        if (!(nearest > sphere.radius) || cones.back().is_whole_sphere()) return {};
+        targets.push_back(
+            {sphere,
+             DirectionCone::from_sine(Vec3::UnitZ(), sphere.radius / nearest).one_minus_cos});
+    }
+    add_cones(cones, source);
+    source.targets = std::move(targets);
+    source.cumulative.clear();
+    double measure = 0;
+    for (const AimedSphere& target : source.targets) {
+        const double solid_angle = DirectionCone{Vec3::UnitZ(), target.widest}.solid_angle();
+        source.cumulative.push_back(solid_angle);
+        measure += solid_angle;
+    }
+    normalise(source.cumulative);
+    return measure;
+}
+
 Overlap cones_that_hold(const AimedSource& source, const AimedSample& sample) {
     return overlap_of(
         source, sample, [&](const Box& box) { return box.contains(sample.direction); },
         [&](std::uint32_t i) { return source.cones[i].cone.contains(sample.direction); });
+}
+
+Overlap targets_that_hold(const AimedSource& source, const AimedSample& sample) {
+    return overlap_of(
+        source, sample, [&](const Box& box) { return box.contains(sample.direction); },
+        [&](std::uint32_t i) {
+            return cone_from(sample.start.position, source.targets[i].sphere)
+                .contains(sample.direction);
+        });
 }
 
 Overlap discs_that_hold(const AimedSource& source, const AimedSample& sample, const Vec3& point,

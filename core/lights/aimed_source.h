@@ -25,6 +25,11 @@ struct AimedDisc {
     float radius = 0;
 };
 
+struct AimedSphere {
+    BoundingSphere sphere;
+    float widest = 0;  ///< AimedCone::one_minus_cos from the nearest place that rays start from
+};
+
 /// A light, or a piece of a flat area light, with the regions that together hold all its rays to
 /// the casters. The regions may overlap.
 struct AimedSource {
@@ -40,6 +45,9 @@ struct AimedSource {
     float max_cosine = 1;         ///< area lights: bound of the cosine over the cones
     Vec2 low = Vec2::Zero();      ///< area lights: this piece's numbers of AreaSampler::sample
     Vec2 high = Vec2::Ones();
+    /// Where directions are drawn from the place that a ray starts from: the spheres of the regions, each in a cone that just holds
+    /// it. The cones above hold those of all places. Else empty.
+    std::vector<AimedSphere> targets;
     /// A sphere that shines outwards: seen along a direction it is an even disc, without thinning.
     std::optional<BoundingSphere> facing_sphere;
 };
@@ -56,12 +64,20 @@ struct AimedSample {
     std::uint32_t region = 0;
     Vec2 disc = Vec2::Zero();        ///< of the unit disc, where the region is a disc
     Vec3 direction = Vec3::UnitZ();  ///< where it is a cone
+    SegmentEnd start = {};           ///< where the source has targets: the place that the ray starts from
 };
 
 /// Fills a source's cones from a sphere to all casters; returns their solid angle [sr].
 double aim_cones(const Surroundings& scene, const BoundingSphere& from, AimedSource& source);
 /// Fills its discs round all casters; returns their area [m^2].
 double aim_discs(const Surroundings& scene, AimedSource& source);
+
+/// The cone that holds a sphere's directions from a place outside of it.
+DirectionCone cone_from(const Vec3& place, const BoundingSphere& sphere);
+/// Fills a source's targets, and the cones that hold them, from the places of a shape to all casters; returns the targets' solid
+/// angle from the nearest places [sr]. Nothing where a caster's sphere may reach the shape.
+std::optional<double> aim_spheres(const Surroundings& scene, const Shape& from,
+                                  AimedSource& source);
 
 /// How many regions of a source hold a sample, its own among them, and how many boxes were tested to find them.
 struct Overlap {
@@ -73,6 +89,9 @@ Overlap cones_that_hold(const AimedSource& source, const AimedSample& sample);
 /// Discs across a direction that hold a point of the sample's disc.
 Overlap discs_that_hold(const AimedSource& source, const AimedSample& sample, const Vec3& point,
                         const Vec3& along);
+
+/// Cones from a sample's start to targets that hold its direction.
+Overlap targets_that_hold(const AimedSource& source, const AimedSample& sample);
 
 /// Whether a sample of a cone is one of the union of all: thinned by the number of those that hold it.
 bool kept_in_union(const AimedSource& source, const AimedSample& sample, Rng& rng);

@@ -64,6 +64,17 @@ SegmentEnd facing_point(const BoundingSphere& sphere, const Vec3& direction, Rng
     return {position, normal, rounding_offset(position)};
 }
 
+// Thinned by the cosine, by how much narrower the cone is than from the nearest place, and by the number of cones there.
+std::optional<Ray> send_from(const AimedSource& source, const AimedSample& sample, Rng& rng) {
+    const AimedSphere& target = source.targets[sample.region];
+    const float cosine = sample.start.geometric_normal.dot(sample.direction);
+    const float narrower =
+        cone_from(sample.start.position, target.sphere).one_minus_cos / target.widest;
+    const auto holding = static_cast<float>(targets_that_hold(source, sample).holding);
+    if (cosine * narrower <= rng.next() * source.max_cosine * holding) return {};
+    return spawn_ray(sample.start, sample.direction);
+}
+
 }  // namespace
 
 ObjectText AreaLight::text() {
@@ -84,48 +95,92 @@ void AreaLight::add_to(ValueHash& hash) const {
     hash.add(radiance);
 }
 
-// One source, or one a piece where the light is large.
-std::vector<AimedSource> AreaLight::aim(const Surroundings& scene) const {
-    std::vector<AimedSource> sources;
+// The source whose rays are drawn by cones from a sphere that holds so much of its area.
+AimedSource AreaLight::cones_from(const Surroundings& scene, const BoundingSphere& from,
+                                  double area) const {
     const Shape& on = scene.shapes[shape];
-    const int n = needs_pieces(scene, on) ? pieces : 1;
-    for (int i = 0; i < n * n; ++i) {
-        AimedSource source;
-        source.low =
-            Vec2(static_cast<float>(i % n), static_cast<float>(i / n)) / static_cast<float>(n);
-        source.high = Vec2(static_cast<float>(i % n + 1), static_cast<float>(i / n + 1)) /
-                      static_cast<float>(n);
-        const BoundingSphere from =
-            n == 1 ? bounding_sphere(on) : piece_bound(on, source.low, source.high);
-        const double measure = aim_cones(scene, from, source);
-        double area = sampler.area() / (n * n);
-        if (on.primitive == Primitive::sphere && !on.flip_normals) {
-            source.facing_sphere = from;
-            area /= 4;
-        }
-        if (exact_is_flat(on)) {
-            const Vec3 normal = sampler.sample(on, 0, 0).normal;
-            source.max_cosine = max_cosine(normal, source.cones);
-        }
-        source.power = radiance * static_cast<float>(area * measure) * source.max_cosine;
-        sources.push_back(std::move(source));
+    AimedSource source;
+    const double measure = aim_cones(scene, from, source);
+    if (on.primitive == Primitive::sphere && !on.flip_normals) {
+        source.facing_sphere = from;
+        area /= 4;
+    }
+    if (exact_is_flat(on))
+        source.max_cosine = max_cosine(sampler.sample(on, 0, 0).normal, source.cones);
+    source.power = radiance * static_cast<float>(area * measure) * source.max_cosine;
+    return source;
+}
+
+// The source whose rays are drawn by cones from each place.
+std::optional<AimedSource> AreaLight::spheres_from_places(const Surroundings& scene) const {
+    const Shape& on = scene.shapes[shape];
+    if (on.primitive == Primitive::sphere) return {};
+    AimedSource source;
+    const auto measure = aim_spheres(scene, on, source);
+    if (!measure) return {};
+    if (exact_is_flat(on))
+        source.max_cosine = max_cosine(sampler.sample(on, 0, 0).normal, source.cones);
+    source.power = radiance * static_cast<float>(sampler.area() * *measure) * source.max_cosine;
+    return source;
+}
+
+// Sources of equal parts of a flat light.
+std::vector<AimedSource> AreaLight::pieces_of(const Surroundings& scene) const {
+    std::vector<AimedSource> sources;
+    for (int i = 0; i < pieces * pieces; ++i) {
+        const Vec2 low = Vec2(static_cast<float>(i % pieces), static_cast<float>(i / pieces)) /
+                         static_cast<float>(pieces);
+        const Vec2 high =
+            Vec2(static_cast<float>(i % pieces + 1), static_cast<float>(i / pieces + 1)) /
+            static_cast<float>(pieces);
+        sources.push_back(cones_from(scene, piece_bound(scene.shapes[shape], low, high),
+                                     sampler.area() / (pieces * pieces)));
+        sources.back().low = low;
+        sources.back().high = high;
     }
     return sources;
 }
 
-std::optional<Ray> AreaLight::send(const Surroundings& scene, const AimedSource& source,
-                                   const AimedSample& sample, Rng& rng) const {
-    if (!kept_in_union(source, sample, rng)) return {};
-    const Vec3& direction = sample.direction;
-    if (source.facing_sphere)
-        return spawn_ray(facing_point(*source.facing_sphere, direction, rng), direction);
+// Cones from each place where they are narrower than those of the light, which may be drawn piece by piece.
+std::vector<AimedSource> AreaLight::aim(const Surroundings& scene) const {
+    const Shape& on = scene.shapes[shape];
+    const BoundingSphere from = bounding_sphere(on);
+    const auto by_cones = [&] {
+        return needs_pieces(scene, on) ? pieces_of(scene)
+                                       : alone(cones_from(scene, from, sampler.area()));
+    };
+    std::optional<AimedSource> by_spheres = spheres_from_places(scene);
+    if (!by_spheres) return by_cones();
+    double from_middle = 0;
+    for (const AimedSphere& target : by_spheres->targets)
+        from_middle += cone_from(from.centre, target.sphere).solid_angle();
+    std::vector<AimedSource> sources = by_cones();
+    double by_pieces = 0;
+    for (const AimedSource& source : sources)
+        for (const AimedCone& aim : source.cones)
+            by_pieces += aim.cone.solid_angle() / static_cast<double>(sources.size());
+    return from_middle <= by_pieces ? alone(*std::move(by_spheres)) : std::move(sources);
+}
+
+SegmentEnd AreaLight::start(const Surroundings& scene, const AimedSource& source, Rng& rng) const {
     const Vec2 size = source.high - source.low;
     const float u0 = source.low.x() + size.x() * rng.next();
     const float u1 = source.low.y() + size.y() * rng.next();
-    const auto start = sampler.sample(scene.shapes[shape], u0, u1);
-    const float cosine = start.normal.dot(direction);
+    const auto from = sampler.sample(scene.shapes[shape], u0, u1);
+    return {from.position, from.normal, from.offset};
+}
+
+std::optional<Ray> AreaLight::send(const Surroundings& scene, const AimedSource& source,
+                                   const AimedSample& sample, Rng& rng) const {
+    const Vec3& direction = sample.direction;
+    if (!source.targets.empty()) return send_from(source, sample, rng);
+    if (!kept_in_union(source, sample, rng)) return {};
+    if (source.facing_sphere)
+        return spawn_ray(facing_point(*source.facing_sphere, direction, rng), direction);
+    const SegmentEnd from = start(scene, source, rng);
+    const float cosine = from.geometric_normal.dot(direction);
     if (cosine <= rng.next() * source.max_cosine) return {};
-    return spawn_ray({start.position, start.normal, start.offset}, direction);
+    return spawn_ray(from, direction);
 }
 
 std::optional<LightArrival> AreaLight::arrival(const Surroundings& scene, const Vec3& at,

@@ -23,6 +23,8 @@ struct AreaLight {
     std::string line(const Surroundings& scene, const Vec3d& origin) const;
     void add_to(ValueHash& hash) const;
     std::vector<AimedSource> aim(const Surroundings& scene) const;
+    /// A place of a source that has targets.
+    SegmentEnd start(const Surroundings& scene, const AimedSource& source, Rng& rng) const;
     std::optional<Ray> send(const Surroundings& scene, const AimedSource& source,
                             const AimedSample& sample, Rng& rng) const;
     std::optional<LightArrival> arrival(const Surroundings& scene, const Vec3& at, Rng& rng) const;
@@ -30,6 +32,11 @@ struct AreaLight {
     float pdf_w(float distance2, float cos_light) const {
         return distance2 / (cos_light * static_cast<float>(sampler.area()));
     }
+
+private:
+    AimedSource cones_from(const Surroundings& scene, const BoundingSphere& from, double area) const;
+    std::optional<AimedSource> spheres_from_places(const Surroundings& scene) const;
+    std::vector<AimedSource> pieces_of(const Surroundings& scene) const;
 };
 
 }  // namespace caustics

@@ -38,6 +38,18 @@ std::vector<AimedSource> aim(const Light& light, const Surroundings& scene) {
     return std::visit([&](const auto& kind) { return kind.aim(scene); }, light);
 }
 
+SegmentEnd start_of(const Light& light, const Surroundings& scene, const AimedSource& source,
+                    Rng& rng) {
+    return std::visit(
+        [&](const auto& kind) -> SegmentEnd {
+            if constexpr (requires { kind.start(scene, source, rng); })
+                return kind.start(scene, source, rng);
+            else
+                throw std::logic_error("a light without targets has no places");
+        },
+        light);
+}
+
 std::optional<Ray> send(const Light& light, const Surroundings& scene, const AimedSource& source,
                         const AimedSample& sample, Rng& rng) {
     return std::visit([&](const auto& kind) { return kind.send(scene, source, sample, rng); },

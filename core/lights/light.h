@@ -18,6 +18,7 @@ namespace caustics {
 /// - `text`, `read`: its keys in a scene file, and itself, relative to the scene's origin;
 /// - `line`: what `info` prints; `add_to`: what a photon map depends on;
 /// - `aim`, `send`: sources of light for the casters [W], and a ray of one (none: it is thinned out);
+/// - `start`, where sources have targets: the place that a ray starts from;
 /// - `arrival`, but for what is met by chance alone: what comes straight to a place;
 /// - `point`, where its light comes from one point or direction; beams start there;
 /// - `background`, where rays that meet nothing find it;
@@ -30,6 +31,9 @@ std::string type_of(const Light& light);
 std::string line_of(const Light& light, const Surroundings& scene, const Vec3d& origin);
 void add_to(ValueHash& hash, const Light& light);
 std::vector<AimedSource> aim(const Light& light, const Surroundings& scene);
+/// The place that a ray starts from of a source with targets: two numbers.
+SegmentEnd start_of(const Light& light, const Surroundings& scene, const AimedSource& source,
+                    Rng& rng);
 std::optional<Ray> send(const Light& light, const Surroundings& scene, const AimedSource& source,
                         const AimedSample& sample, Rng& rng);
 std::optional<LightArrival> arrival_from(const Light& light, const Surroundings& scene,

@@ -54,6 +54,14 @@ public:
         words_ = first_words;
         used_ = used;
     }
+    /// The same with other words in place of its first eight.
+    Rng(std::uint64_t seed, Stage stage, std::uint64_t path,
+        const std::array<std::uint32_t, 4>& first_words,
+        const std::array<std::uint32_t, 4>& next_words, unsigned used)
+        : Rng(seed, stage, path, first_words, used) {
+        next_words_ = next_words;
+        has_next_words_ = true;
+    }
 
     /// Uniform in [0, 1), 24 bits.
     float next() { return static_cast<float>(next_word() >> 8U) * 0x1p-24F; }
@@ -66,7 +74,8 @@ public:
 
 private:
     void refill() {
-        words_ = philox4x32(counter_, key_);
+        words_ = has_next_words_ ? next_words_ : philox4x32(counter_, key_);
+        has_next_words_ = false;
         ++counter_[0];
         used_ = 0;
     }
@@ -74,7 +83,9 @@ private:
     std::array<std::uint32_t, 2> key_;
     std::array<std::uint32_t, 4> counter_;
     std::array<std::uint32_t, 4> words_{};
+    std::array<std::uint32_t, 4> next_words_{};
     unsigned used_ = 4;
+    bool has_next_words_ = false;
 };
 
 }  // namespace caustics

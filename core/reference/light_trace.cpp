@@ -77,7 +77,7 @@ private:
     std::uint64_t added_ = 0;
 };
 
-// Of stratified paths. The fewer there are, the finer are the strata; the variance of a pixel's mean grows as the
+// Of stratified paths. The fewer there are, the evener each is spread; the variance of a pixel's mean grows as the
 // root of their number.
 constexpr std::uint64_t batches = 4;
 
@@ -111,7 +111,7 @@ public:
           film_(scene.camera()),
           eye_absorption_(eye_medium(scene).absorption) {
         if (params.emission == LightTraceParams::Emission::stratified)
-            strata_ = StratifiedSquare::at_most(params.paths / batches);
+            even_ = EvenPaths::at_most(emission_, params.paths / batches);
     }
 
     std::optional<CameraLayer> camera_layer(const RunOptions& options) const override {
@@ -159,9 +159,9 @@ private:
         Tally tally(cells);
         OrderedPaths paths{scene_,        emission_,    params_.paths, params_.max_bounces,
                            options_.seed, paths_.stage, paths_.whole};
-        for (std::uint64_t batch = 0; strata_ && batch < batches; ++batch) {
-            paths.paths = strata_->size();
-            paths.strata = strata_;
+        for (std::uint64_t batch = 0; even_ && batch < batches; ++batch) {
+            paths.paths = even_->size();
+            paths.even = even_;
             if (disperses(scene_))
                 paths.wavelength_shift = Rng(options_.seed, Stage::wavelength, batch).next_fine();
             total.add(trace_in_order<Arrival>(paths, part_of(options, paths), collect,
@@ -172,7 +172,7 @@ private:
             paths.first += paths.paths;
         }
         paths.paths = params_.paths - paths.first;
-        paths.strata.reset();
+        paths.even.reset();
         paths.wavelength_shift.reset();
         total.add(trace_in_order<Arrival>(paths, part_of(options, paths), collect,
                                           [&tally](const Arrival& arrival) {
@@ -193,7 +193,7 @@ private:
     }
 
     Estimate estimate(const Tally& tally, std::size_t cell) const {
-        const std::uint64_t stratified = strata_ ? batches * strata_->size() : 0;
+        const std::uint64_t stratified = even_ ? batches * even_->size() : 0;
         return tally.estimate(cell, static_cast<double>(params_.paths),
                               static_cast<double>(params_.paths - stratified));
     }
@@ -271,7 +271,7 @@ private:
     AimedEmission emission_;
     FilmProjection film_;
     Spectrum eye_absorption_;
-    std::optional<StratifiedSquare> strata_;  // of a batch
+    std::optional<EvenPaths> even_;  // one batch
 };
 
 template <class P>
@@ -309,7 +309,7 @@ std::vector<Parameter<LightTraceParams>> caustic_parameters() {
             &P::emission,
             {{"random", P::Emission::random}, {"stratified", P::Emission::stratified}},
             {.key = "emission",
-             .meaning = "Draws light paths at random, or in four batches of jittered strata."})
+             .meaning = "Draws light paths at random, or in four batches that are spread evenly."})
             .only_if([](const P& p) { return p.emission != P::Emission::random; }));
     return parameters;
 }

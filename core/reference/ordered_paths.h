@@ -8,8 +8,8 @@
 #include "core/base/interrupt.h"
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
+#include "core/light_path/even_paths.h"
 #include "core/light_path/light_path.h"
-#include "core/light_path/stratified_square.h"
 #include "core/light_path/whole_path.h"
 
 namespace caustics {
@@ -25,9 +25,9 @@ struct OrderedPaths {
     /// Where given: of all events; what is left after a diffuse reflection counts.
     std::optional<WholePathSettings> whole = {};
     std::uint64_t first = 0;
-    /// Where given, as many as there are paths, one in each; they start side by side and are followed in packets.
+    /// Where given, a batch of as many as there are paths; they start side by side and are followed in packets.
     /// Not of whole paths.
-    std::optional<StratifiedSquare> strata = {};
+    std::optional<EvenPaths> even = {};
     std::optional<double> wavelength_shift = {};  ///< LightPathSettings
 
     static constexpr std::uint64_t chunk = 4096;
@@ -38,7 +38,7 @@ struct OrderedPaths {
     void trace_chunk(std::uint64_t index, LightPathCounts& counts, const Sink& sink) const {
         const std::uint64_t begin = first + index * chunk;
         const std::uint64_t end = std::min(begin + chunk, first + paths);
-        if (strata)
+        if (even)
             trace_together(begin, end, counts, sink);
         else
             trace_one_by_one(begin, end, counts, sink);
@@ -66,7 +66,7 @@ private:
         }
     }
 
-    // Neighbours in the square start side by side.
+    // Neighbours in a square start side by side.
     template <typename Sink>
     void trace_together(std::uint64_t begin, std::uint64_t end, LightPathCounts& counts,
                         const Sink& sink) const {
@@ -78,9 +78,8 @@ private:
         for (; begin < end; begin += samples.size()) {
             throw_if_interrupted();
             const std::size_t count = std::min<std::uint64_t>(end - begin, EmissionSamples::most);
-            samples.draw({seed, static_cast<std::uint32_t>(stage), begin, count},
-                         emission.kernels());
-            strata->place(begin - first, samples.x(), samples.y());
+            even->draw({seed, static_cast<std::uint32_t>(stage), begin, count}, first,
+                       emission.kernels(), samples);
             starts.clear();
             deposits.clear();
             emission.emit(samples, starts);

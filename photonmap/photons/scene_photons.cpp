@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/light_path/aimed_emission.h"
 #include "core/light_path/empty_caustic.h"
-#include "core/light_path/stratified_square.h"
+#include "core/light_path/even_paths.h"
 #include "photonmap/photons/photon_yield.h"
 
 namespace caustics::photonmap {
@@ -32,9 +32,8 @@ class ScenePaths final : public PathTracer {
 public:
     struct Settings {
         LightPathSettings path;
-        /// Strata of the paths: path number i is in stratum i, or, where `repeated`, i modulo
-        /// their number. Other paths are random.
-        std::optional<StratifiedSquare> strata;
+        /// The first paths are such a batch, or, where `repeated`, all are, batch after batch. Other paths are random.
+        std::optional<EvenPaths> even;
         bool repeated = false;
         std::uint64_t seed = 1;
         Stage stage = Stage::photons;
@@ -45,7 +44,7 @@ public:
 
     void trace(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const override {
         chunk.counts.emitted += last - first;
-        if (settings_.strata)
+        if (settings_.even)
             trace_together(first, last, chunk);
         else
             for (; first < last; ++first) trace_alone(first, chunk);
@@ -59,12 +58,12 @@ private:
         std::vector<DepositOfMany> deposits;
     };
 
-    // Neighbours in the square start side by side.
+    // Neighbours in a square start side by side.
     void trace_together(std::uint64_t first, std::uint64_t last, PhotonChunk& chunk) const {
         Batch batch;
         while (first < last) {
-            const std::size_t count = std::min<std::uint64_t>(last - first, EmissionSamples::most);
-            draw(first, count, batch.samples);
+            draw(first, last, batch.samples);
+            const std::size_t count = batch.samples.size();
             batch.starts.clear();
             emission_.emit(batch.samples, batch.starts);
             chunk.counts.aimed += batch.starts.size();
@@ -82,18 +81,19 @@ private:
         follow_alone(*particle, path, rng, chunk);
     }
 
-    void draw(std::uint64_t first, std::size_t count, EmissionSamples& samples) const {
-        const auto stage = static_cast<std::uint32_t>(settings_.stage);
-        samples.draw({settings_.seed, stage, first, count}, emission_.kernels());
-        const std::uint64_t size = settings_.strata->size();
-        for (std::size_t i = 0; i < count;) {
-            const std::uint64_t stratum = settings_.repeated ? (first + i) % size : first + i;
-            if (stratum >= size) return;
-            const std::size_t run = std::min<std::uint64_t>(count - i, size - stratum);
-            settings_.strata->place(stratum, samples.x().subspan(i, run),
-                                    samples.y().subspan(i, run));
-            i += run;
-        }
+    // Draws paths from `first` on, as many as belong together and fit.
+    void draw(std::uint64_t first, std::uint64_t last, EmissionSamples& samples) const {
+        const std::uint64_t size = settings_.even->size();
+        const std::uint64_t first_of_batch = settings_.repeated ? first - first % size : 0;
+        const bool is_even = first - first_of_batch < size;
+        if (is_even) last = std::min(last, first_of_batch + size);
+        const ConsecutivePaths paths{settings_.seed, static_cast<std::uint32_t>(settings_.stage),
+                                     first,
+                                     std::min<std::uint64_t>(last - first, EmissionSamples::most)};
+        if (is_even)
+            settings_.even->draw(paths, first_of_batch, emission_.kernels(), samples);
+        else
+            samples.draw(paths, emission_.kernels());
     }
 
     void follow(Batch& batch, PhotonChunk& chunk) const {
@@ -126,7 +126,7 @@ private:
 /// Paths to trace: their number, and how they are emitted.
 struct Plan {
     std::uint64_t emitted = 0;
-    std::optional<StratifiedSquare> strata;  ///< of the first paths
+    std::optional<EvenPaths> even;  ///< the first of them
 };
 
 /// What the pilot's parts, alike and independent, stored.
@@ -175,7 +175,7 @@ public:
         if (emission_.empty()) return none();
         if (params_.emitted > 0) {
             Plan plan{params_.emitted, {}};
-            if (stratified()) plan.strata = StratifiedSquare::at_most(plan.emitted);
+            if (stratified()) plan.even = EvenPaths::at_most(emission_, plan.emitted);
             return trace_planned(plan);
         }
         if (ask_ == AskYield::yes) ask_yield();
@@ -198,12 +198,12 @@ private:
         return static_cast<std::uint64_t>(std::clamp(params_.max_bounces, 1, 64));
     }
 
-    ScenePaths::Settings settings(const std::optional<StratifiedSquare>& strata) const {
+    ScenePaths::Settings settings(const std::optional<EvenPaths>& even) const {
         std::optional<double> wavelength_shift;
-        if (strata && disperses(scene_))
+        if (even && disperses(scene_))
             wavelength_shift = Rng(options_.seed, Stage::wavelength, 0).next_fine();
         return {.path = {params_.max_bounces, params_.interaction, traced_, wavelength_shift},
-                .strata = strata,
+                .even = even,
                 .seed = options_.seed};
     }
 
@@ -222,7 +222,7 @@ private:
             .emitted = plan.emitted,
             .capacity = per_path * std::min(plan.emitted, most_photons / per_path),
             .certain = params_.photons};
-        return trace_photons(ScenePaths(scene_, emission_, settings(plan.strata)),
+        return trace_photons(ScenePaths(scene_, emission_, settings(plan.even)),
                              emission_.total_power(), target, options_);
     }
 
@@ -239,8 +239,8 @@ private:
     Plan plan_of(double paths) const {
         const auto least = static_cast<std::uint64_t>(std::ceil(paths));
         if (!stratified()) return {least, {}};
-        const StratifiedSquare strata = StratifiedSquare::at_least(least);
-        return {strata.size(), strata};
+        const EvenPaths even = EvenPaths::at_least(emission_, least);
+        return {even.size(), even};
     }
 
     ScenePaths yield_paths() const {
@@ -270,7 +270,7 @@ private:
     }
 
     Pilot run_pilot(const Plan& plan) const {
-        ScenePaths::Settings pilot_settings = settings(plan.strata);
+        ScenePaths::Settings pilot_settings = settings(plan.even);
         pilot_settings.path.traced = nullptr;
         pilot_settings.repeated = true;
         pilot_settings.stage = Stage::photon_pilot;

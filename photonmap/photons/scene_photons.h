@@ -13,10 +13,10 @@ enum class AskYield { yes, no };
 /// Traces the photons of a scene that `params` ask for. Counts stay exact and flux unbiased:
 ///
 /// - `emitted`: so many paths, each of them counts. Stratified, the first of them are the largest
-///   whole batch (StratifiedSquare), the few that are left over are random; all weigh the same, so
+///   whole batch (EvenPaths), the few that are left over are random; all weigh the same, so
 ///   the mean over them is unbiased.
 /// - `photons`, random emission and roulette: inverse binomial sampling (trace_photons).
-/// - `photons` otherwise: strata depend on each other and a split path brings several photons, so
+/// - `photons` otherwise: stratified paths depend on each other and a split path brings several photons, so
 ///   that stopping at a photon would be biased. The number of paths is therefore fixed beforehand,
 ///   from a pilot with random numbers of its own, such that enough photons come but for one map in
 ///   thousands; those beyond are dropped at random (drop_photons), and the power's divisor follows.

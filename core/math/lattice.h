@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace caustics {
+
+/// Steps of Roberts' sequences in one, three and four dimensions (The unreasonable effectiveness of quasirandom sequences,
+/// 2018): the powers -1, -2, ... of the root of x^(d+1) = x + 1, as parts of 2^64. Points shift + i * step, modulo 2^64, lie evenly for
+/// any number of them. The roots are of fields of different degrees, so that the three sequences can stand beside each other.
+inline constexpr std::array<std::uint64_t, 1> r1_steps = {0x9E3779B97F4A7C15};
+inline constexpr std::array<std::uint64_t, 3> r3_steps = {0xD1B54A32D192ED03, 0xABC98388FB8FAC02,
+                                                          0x8CB92BA72F3D8DD7};
+inline constexpr std::array<std::uint64_t, 4> r4_steps = {0xDB4F0B9175AE2165, 0xBBE0563303A4615F,
+                                                          0xA0F2EC75A1FE1575, 0x89E182857D9ED688};
+
+/// A number's place in [0, 1) as 32 bits.
+constexpr std::uint32_t high_word(std::uint64_t part) {
+    return static_cast<std::uint32_t>(part >> 32U);
+}
+
+}  // namespace caustics
