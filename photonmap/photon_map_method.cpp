@@ -45,8 +45,9 @@ std::vector<Parameter<P>> photon_parameters() {
             {{"random", P::Emission::random}, {"stratified", P::Emission::stratified}},
             {.key = "emission",
              .meaning =
-                 "Draws light paths at random, or one jittered path from each stratum: with less "
-                 "noise, but with kernel point the nearest N then read up to 1/(2N) low.",
+                 "Draws light paths at random, or spread evenly: one from each stratum, or from a "
+                 "lamp by low-discrepancy points. That has less noise, but with kernel point the "
+                 "nearest N then read up to 1/(2N) low.",
              .source = "[J96 sec. 2]"})
             .only_if(is_traced),
         parameter::choice<P>(&P::interaction,

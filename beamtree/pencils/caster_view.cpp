@@ -23,9 +23,8 @@ CasterView faces_that_see(const Vec3d& from, const BoxCorners& corners) {
         const Vec3d s = Vec3d::Unit((face / 2 + 1) % 3);
         const Vec3d t = axis.cross(s);
         const auto all_beyond = [&](const Vec3d& side) {
-            return std::ranges::all_of(corners, [&](const Vec3d& corner) {
-                return (axis - side).dot(corner - from) < 0;
-            });
+            return std::ranges::all_of(
+                corners, [&](const Vec3d& corner) { return (axis - side).dot(corner - from) < 0; });
         };
         if (all_beyond(s) || all_beyond(-s) || all_beyond(t) || all_beyond(-t) ||
             all_beyond(Vec3d::Zero()))
@@ -45,8 +44,8 @@ CasterBounds caster_bounds(const Shape& shape) {
         round.corners[static_cast<std::size_t>(i)] =
             box.corner(static_cast<Box::CornerType>(i)).cast<double>();
     const BoundingSphere sphere = bounding_sphere(shape);
-    round.radius = static_cast<double>(sphere.radius) +
-                   (sphere.centre.cast<double>() - round.middle()).norm();
+    round.radius =
+        static_cast<double>(sphere.radius) + (sphere.centre.cast<double>() - round.middle()).norm();
     return round;
 }
 
@@ -100,8 +99,7 @@ ViewRectangle in_space(const PlaneRectangle& rectangle, const Vec3d& origin) {
             {rectangle.size().x() * s, rectangle.size().y() * t}};
 }
 
-CasterView caster_view(const Vec3d& from, const CasterBounds& caster,
-                       std::optional<double> angle) {
+CasterView caster_view(const Vec3d& from, const CasterBounds& caster, std::optional<double> angle) {
     const Vec3d way = caster.middle() - from;
     const double distance = way.norm();
     const Vec3d axis = way / distance;
@@ -111,7 +109,8 @@ CasterView caster_view(const Vec3d& from, const CasterBounds& caster,
     PlaneRectangle rectangle = rectangle_round(*seen, axis, *angle);
     if (distance > caster.radius) {
         // The ball's outline is a circle about the axis.
-        const double outline = caster.radius / std::sqrt(distance * distance - caster.radius * caster.radius);
+        const double outline =
+            caster.radius / std::sqrt(distance * distance - caster.radius * caster.radius);
         const Vec2d reach = Vec2d::Constant((1 + slack) * outline);
         rectangle.low = rectangle.low.cwiseMax(-reach);
         rectangle.high = rectangle.high.cwiseMin(reach);

@@ -21,9 +21,8 @@ constexpr std::uint64_t lamp_places = 64;
 constexpr double least_of_lamp = 1e-3;
 
 const AreaLight* lamp_of(const Scene& scene, const LightSample& light) {
-    return light.kind == LightSample::Kind::area
-               ? &std::get<AreaLight>(scene.lights()[light.light])
-               : nullptr;
+    return light.kind == LightSample::Kind::area ? &std::get<AreaLight>(scene.lights()[light.light])
+                                                 : nullptr;
 }
 
 class Patches {
@@ -85,8 +84,8 @@ private:
         const LightSample& sample = lights_[light];
         for (int i = 0; i < places; ++i)
             for (int j = 0; j < places; ++j) {
-                const PatchRay ray =
-                    ray_through(sample, rectangle, rectangle.at((i + 0.5) / places, (j + 0.5) / places));
+                const PatchRay ray = ray_through(
+                    sample, rectangle, rectangle.at((i + 0.5) / places, (j + 0.5) / places));
                 const Spectrum strength = strength_along(sample, -ray.direction.cast<float>());
                 patch.watts += static_cast<double>(strength.mean()) * ray.measure *
                                rectangle.area() / (places * places);
@@ -104,21 +103,18 @@ private:
                          .bounds = round,
                          .turn = seen ? best_turn(*seen, axis) : 0};
         for (std::uint64_t i = 0; i < lamp_places; ++i) {
-            const auto number = [&](std::size_t k) {
-                return static_cast<double>(high_word((i + 1) * r4_steps[k])) * 0x1p-32;
-            };
+            const auto number = [&](std::size_t k) { return on_lattice(0, i + 1, r4_steps[k]); };
             const LightSample place = place_on_lamp(scene_, lights_[light], number(2), number(3));
-            const CasterView view =
-                caster_view(place.position.cast<double>(), round, patch.turn);
+            const CasterView view = caster_view(place.position.cast<double>(), round, patch.turn);
             for (std::size_t k = 0; k < view.count; ++k) {
                 const ViewRectangle& rectangle = view.rectangles[k];
                 const PatchRay ray =
                     ray_through(place, rectangle, rectangle.at(number(0), number(1)));
                 const double along = static_cast<double>(place.strength.mean());
-                const double towards = static_cast<double>(
-                    strength_along(place, -ray.direction.cast<float>()).mean());
-                patch.watts += (towards + least_of_lamp * along) * ray.measure *
-                               rectangle.area() / static_cast<double>(lamp_places);
+                const double towards =
+                    static_cast<double>(strength_along(place, -ray.direction.cast<float>()).mean());
+                patch.watts += (towards + least_of_lamp * along) * ray.measure * rectangle.area() /
+                               static_cast<double>(lamp_places);
             }
         }
         if (patch.watts > 0) patches_.push_back(patch);

@@ -17,7 +17,7 @@ struct LightPatch {
     ViewRectangle rectangle = {};
     CasterBounds bounds = {};  ///< where the light is an area light
     double turn = 0;           ///< of the views there
-    double watts = 0;     ///< that go through it, as some of its places tell
+    double watts = 0;          ///< that go through it, as some of its places tell
 };
 
 /// A ray through a point of a rectangle.

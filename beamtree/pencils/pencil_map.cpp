@@ -77,12 +77,14 @@ void PencilMap::shorten_prints(int threads) {
     const std::size_t nodes = std::max<std::size_t>(1, leaves_.size() >> levels);
     double mean = 0;
     for (std::size_t node = nodes; node < 2 * nodes; ++node)
-        mean += static_cast<double>(around[node].diagonal().squaredNorm()) / static_cast<double>(nodes);
+        mean +=
+            static_cast<double>(around[node].diagonal().squaredNorm()) / static_cast<double>(nodes);
     parallel_chunks(threads, leaves_.size(), leaves_of_chunk, [&](const Chunk& chunk) {
         for (std::size_t leaf = chunk.first; leaf < chunk.end; ++leaf) {
             std::size_t node = std::max<std::size_t>(1, (leaves_.size() + leaf) >> levels);
             double room = mean / static_cast<double>(2 * around[node].diagonal().squaredNorm());
-            for (int up = 0; up < most_doublings && node > 1 && room > 1; ++up, room /= 2) node >>= 1;
+            for (int up = 0; up < most_doublings && node > 1 && room > 1; ++up, room /= 2)
+                node >>= 1;
             const float longest = around[node].diagonal().norm();
             for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
                 for (Vec3& side : prints_[i].sides)
@@ -191,8 +193,9 @@ Spectrum PencilMap::irradiance(const ReceiverPoint& point,
 }
 
 Spectrum PencilMap::radiance(const ReceiverPoint& point, std::vector<std::uint32_t>& stack) const {
-    return sum(point, stack, [&point](const Vec3& wi) {
-        return evaluate(*point.bsdf, point.uv, point.shading_normal, point.wo, wi);
+    const Bsdf bsdf = bsdf_at(*point.bsdf, point.uv);
+    return sum(point, stack, [&](const Vec3& wi) {
+        return evaluate(bsdf, point.uv, point.shading_normal, point.wo, wi);
     });
 }
 

@@ -8,7 +8,6 @@
 #include "beamtree/beams/trace_progress.h"
 #include "beamtree/light/specular_surface.h"
 #include "beamtree/pencils/light_patch.h"
-#include "beamtree/rest/spread_evenly.h"
 #include "core/base/parallel.h"
 #include "core/geometry/exact_shape.h"
 #include "core/light_path/flight.h"
@@ -32,10 +31,11 @@ constexpr double smallest_side = 1e-5;
 struct Strata {
     LightPatch patch;
     bool of_lamp = false;
-    std::array<std::uint64_t, 2> counts = {1, 1};  ///< along a grid's sides; of a lattice, the first
-    std::array<double, 4> shift = {0, 0, 0, 0};    ///< of a grid over one of its strata; of a lattice
-    double chance = 1;                             ///< that its pencils are traced
-    std::uint64_t first = 0;                       ///< number of its first stratum
+    std::array<std::uint64_t, 2> counts = {1,
+                                           1};   ///< along a grid's sides; of a lattice, the first
+    std::array<double, 4> shift = {0, 0, 0, 0};  ///< of a grid over one of its strata; of a lattice
+    double chance = 1;                           ///< that its pencils are traced
+    std::uint64_t first = 0;                     ///< number of its first stratum
 
     std::uint64_t size() const { return of_lamp ? counts[0] : (counts[0] + 1) * (counts[1] + 1); }
     Vec3d side(std::size_t i) const {
@@ -51,8 +51,7 @@ struct Strata {
     }
     /// A number of a lattice's point, from 0 to 1.
     double number(std::uint64_t stratum, std::size_t k) const {
-        const double step = static_cast<double>(high_word(stratum * r4_steps[k])) * 0x1p-32;
-        return fine_fraction(shift[k] + step);
+        return on_lattice(shift[k], stratum, r4_steps[k]);
     }
     /// A side of a lattice's cell along each number.
     double side_of_cell() const { return std::pow(static_cast<double>(counts[0]), -0.25); }
@@ -86,11 +85,12 @@ std::vector<Strata> shared_strata(const std::vector<LightPatch>& patches,
     std::uint64_t first = 0;
     for (std::size_t i = 0; i < patches.size(); ++i) {
         const bool of_lamp = lights[patches[i].light].kind == LightSample::Kind::area;
-        all.push_back(strata_of(patches[i], of_lamp,
-                                static_cast<double>(count) * patches[i].watts / watts));
+        all.push_back(
+            strata_of(patches[i], of_lamp, static_cast<double>(count) * patches[i].watts / watts));
         Strata& strata = all.back();
+        // The steps in another order: else a lamp's patches would share points.
         for (std::size_t k = 0; k < 4; ++k)
-            strata.shift[k] = fine_fraction(shift[k] + static_cast<double>(i) * r2_steps[k % 2]);
+            strata.shift[k] = on_lattice(shift[k], i, of_lamp ? r4_steps[3 - k] : r2_steps[k % 2]);
         strata.first = first;
         first += strata.size();
     }
@@ -194,8 +194,8 @@ private:
             for (std::size_t i = 0; i < 2; ++i)
                 start->change[i].place = sides[i] / std::sqrt(strata.chance);
         } else {
-            turn_through(sides, (point - light.position.cast<double>()).norm(),
-                         through.direction, std::sqrt(strata.chance), *start);
+            turn_through(sides, (point - light.position.cast<double>()).norm(), through.direction,
+                         std::sqrt(strata.chance), *start);
         }
         return start;
     }
@@ -211,8 +211,8 @@ private:
 
     std::optional<Branch> start_on_lamp(const LightSample& light, const Strata& strata,
                                         std::uint64_t stratum) const {
-        const LightSample place = place_on_lamp(scene_, light, strata.number(stratum, 2),
-                                                strata.number(stratum, 3));
+        const LightSample place =
+            place_on_lamp(scene_, light, strata.number(stratum, 2), strata.number(stratum, 3));
         const Vec3d from = place.position.cast<double>();
         const CasterView view = caster_view(from, strata.patch.bounds, strata.patch.turn);
         if (view.count == 0) return {};
@@ -221,8 +221,7 @@ private:
         const double x = strata.number(stratum, 0) * faces;
         const auto face = std::min(static_cast<std::size_t>(x), view.count - 1);
         const ViewRectangle& rectangle = view.rectangles[face];
-        const Vec3d point =
-            rectangle.at(x - static_cast<double>(face), strata.number(stratum, 1));
+        const Vec3d point = rectangle.at(x - static_cast<double>(face), strata.number(stratum, 1));
         const PatchRay through = ray_through(place, rectangle, point);
         const double area = rectangle.area() * faces / static_cast<double>(strata.size());
         auto start = start_along(place, through, area, strata.chance);
@@ -397,8 +396,7 @@ TracedPencils trace_pencils(const Scene& scene, std::span<const LightSample> lig
     const std::vector<LightPatch> patches = light_patches(scene, lights);
     TracedPencils all;
     if (patches.empty() || settings.count == 0) return all;
-    const std::vector<Strata> shared =
-        shared_strata(patches, lights, settings.count, options.seed);
+    const std::vector<Strata> shared = shared_strata(patches, lights, settings.count, options.seed);
     const PencilTracer tracer(scene, lights, settings, options.seed);
     const std::uint64_t strata = shared.back().first + shared.back().size();
     std::vector<TracedPencils> parts(chunk_count(strata, strata_together));

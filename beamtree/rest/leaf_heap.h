@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -21,23 +22,39 @@ inline std::size_t first_of_leaf(std::size_t leaf, std::size_t items, std::size_
 /// Puts items with a `position` into the order of the leaves: halves their number across the longest side, level by level.
 template <typename Item>
 void sort_into_leaves(std::vector<Item>& items, std::size_t leaves, int threads) {
+    // Moves these in place of the items, which are large.
+    struct Place {
+        Vec3 position;
+        std::uint32_t item;
+    };
+    std::vector<Place> places;
+    places.reserve(items.size());
+    for (const Item& item : items)
+        places.push_back({item.position, static_cast<std::uint32_t>(places.size())});
     const auto at = [&](std::size_t leaf) {
-        return items.begin() +
-               static_cast<std::ptrdiff_t>(first_of_leaf(leaf, items.size(), leaves));
+        return places.begin() +
+               static_cast<std::ptrdiff_t>(first_of_leaf(leaf, places.size(), leaves));
     };
     for (std::size_t width = leaves; width > 1; width /= 2)
         parallel_chunks(threads, leaves / width, 1, [&](const Chunk& chunk) {
             const std::size_t leaf = chunk.first * width;
-            Box box;
-            for (auto item = at(leaf); item != at(leaf + width); ++item) box.extend(item->position);
-            if (box.isEmpty()) return;
+            if (at(leaf) == at(leaf + width)) return;
+            Vec3 low = at(leaf)->position, high = low;
+            for (auto place = at(leaf); place != at(leaf + width); ++place) {
+                low = low.cwiseMin(place->position);
+                high = high.cwiseMax(place->position);
+            }
             Eigen::Index axis = 0;
-            box.sizes().maxCoeff(&axis);
+            (high - low).maxCoeff(&axis);
             std::nth_element(at(leaf), at(leaf + width / 2), at(leaf + width),
-                             [axis](const Item& a, const Item& b) {
+                             [axis](const Place& a, const Place& b) {
                                  return a.position[axis] < b.position[axis];
                              });
         });
+    std::vector<Item> sorted;
+    sorted.reserve(items.size());
+    for (const Place& place : places) sorted.push_back(items[place.item]);
+    items = std::move(sorted);
 }
 
 /// Finds the boxes of a heap's nodes from those of its leaves.

@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include "beamtree/rest/spread_evenly.h"
 #include "beamtree/tracing/cut_edge.h"
 #include "core/light_path/flight.h"
+#include "core/math/lattice.h"
 #include "core/math/rng.h"
 
 namespace caustics::beamtree {
@@ -147,10 +147,9 @@ void RestPhotons::trace(const Level& level, const LeftOut& part,
                                     part.corners[2]->position);
     const std::size_t first = photons.size();
     for (std::uint64_t i = 0; i < count; ++i) {
-        const auto number = static_cast<double>(i);
-        const PathPoint point = path.inside(
-            part.corners, weights_in_triangle(fine_fraction(shift_u + number * r2_steps[0]),
-                                              fine_fraction(shift_v + number * r2_steps[1])));
+        const PathPoint point =
+            path.inside(part.corners, weights_in_triangle(on_lattice(shift_u, i, r2_steps[0]),
+                                                          on_lattice(shift_v, i, r2_steps[1])));
         if (!goes_on(point)) continue;
         const double share = closeness(set.light, part, point.origin.position, measured) / wanted;
         Flight flight{{}, point.origin.weight * static_cast<float>(measured * share)};

@@ -129,13 +129,15 @@ std::optional<LightParticle> AimedEmission::emit(Rng& rng) const {
     const std::uint32_t source = choose(x, cone);
     AimedSample sample;
     EmissionCone at = cones_[cone];
-    if (!sources_[source].targets.empty()) at = cone_at_start(source, cone, rng, sample.start);
+    if (!sources_[source].targets.empty()) {
+        at = cone_at_start(source, cone, rng, sample.start);
+        sample.width = at.one_minus_cos;
+    }
     float* const w = sample.direction.data();
     const std::uint32_t first = 0;
     // Nothing to put side by side; all kernels give the same bits.
     emission_kernels(Isa::plain)
-        .aim({1, &x, &y, &at, &first},
-             {{&sample.disc.x(), &sample.disc.y()}, {w, w + 1, w + 2}});
+        .aim({1, &x, &y, &at, &first}, {{&sample.disc.x(), &sample.disc.y()}, {w, w + 1, w + 2}});
     return send(source, cone, sample, rng);
 }
 
@@ -167,7 +169,8 @@ void AimedEmission::emit(const EmissionSamples& samples,
         const bool is_placed = !sources_[source[i]].targets.empty();
         Rng rng = samples.rng(i, is_placed ? 4 : 2);
         const AimedSample sample{0, Vec2(u[i], v[i]), Vec3(wx[i], wy[i], wz[i]),
-                                 is_placed ? start[i] : SegmentEnd{}};
+                                 is_placed ? start[i] : SegmentEnd{},
+                                 is_placed ? at[i].one_minus_cos : 0};
         const auto particle = send(source[i], cone[i], sample, rng);
         if (particle) starts.push_back({*particle, rng, samples.path(i)});
     }

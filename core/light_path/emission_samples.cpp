@@ -23,15 +23,15 @@ void EmissionSamples::draw(const ConsecutivePaths& paths, const EmissionKernels&
 }
 
 void EmissionSamples::draw_lattice(const ConsecutivePaths& paths, std::uint64_t first_of_lattice) {
-    constexpr std::array<std::uint64_t, 8> steps = {
-        r4_steps[0], r4_steps[1], r4_steps[2], r4_steps[3],
-        r3_steps[0], r3_steps[1], r3_steps[2], r1_steps[0]};
+    constexpr std::array<std::uint64_t, 8> steps = {r4_steps[0], r4_steps[1], r4_steps[2],
+                                                    r4_steps[3], r3_steps[0], r3_steps[1],
+                                                    r3_steps[2], r1_steps[0]};
     paths_ = paths;
     on_lattice_ = true;
     Rng shift(paths.seed, static_cast<Stage>(paths.stage), first_of_lattice);
     for (std::size_t k = 0; k < steps.size(); ++k) {
-        std::uint64_t at = (std::uint64_t{shift.next_word()} << 32U) +
-                           (paths.first - first_of_lattice) * steps[k];
+        std::uint64_t at =
+            (std::uint64_t{shift.next_word()} << 32U) + (paths.first - first_of_lattice) * steps[k];
         for (std::size_t i = 0; i < paths.count; ++i, at += steps[k]) words_[k][i] = high_word(at);
     }
     set_points();

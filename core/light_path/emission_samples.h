@@ -49,7 +49,8 @@ private:
 
     ConsecutivePaths paths_{};
     bool on_lattice_ = false;
-    alignas(64) std::array<std::array<std::uint32_t, most>, 8> words_;  ///< four, or eight of a lattice
+    alignas(
+        64) std::array<std::array<std::uint32_t, most>, 8> words_;  ///< four, or eight of a lattice
     alignas(64) std::array<double, most> x_;
     alignas(64) std::array<double, most> y_;
 };

@@ -27,7 +27,7 @@ struct AimedDisc {
 
 struct AimedSphere {
     BoundingSphere sphere;
-    float widest = 0;  ///< AimedCone::one_minus_cos from the nearest place that rays start from
+    float widest = 0;  ///< DirectionCone::one_minus_cos from the nearest place that rays start from
 };
 
 /// A light, or a piece of a flat area light, with the regions that together hold all its rays to
@@ -64,7 +64,9 @@ struct AimedSample {
     std::uint32_t region = 0;
     Vec2 disc = Vec2::Zero();        ///< of the unit disc, where the region is a disc
     Vec3 direction = Vec3::UnitZ();  ///< where it is a cone
-    SegmentEnd start = {};           ///< where the source has targets: the place that the ray starts from
+    /// Where the source has targets: the place that the ray starts from, and DirectionCone::one_minus_cos from there.
+    SegmentEnd start = {};
+    float width = 0;
 };
 
 /// Fills a source's cones from a sphere to all casters; returns their solid angle [sr].

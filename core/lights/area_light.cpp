@@ -68,8 +68,7 @@ SegmentEnd facing_point(const BoundingSphere& sphere, const Vec3& direction, Rng
 std::optional<Ray> send_from(const AimedSource& source, const AimedSample& sample, Rng& rng) {
     const AimedSphere& target = source.targets[sample.region];
     const float cosine = sample.start.geometric_normal.dot(sample.direction);
-    const float narrower =
-        cone_from(sample.start.position, target.sphere).one_minus_cos / target.widest;
+    const float narrower = sample.width / target.widest;
     const auto holding = static_cast<float>(targets_that_hold(source, sample).holding);
     if (cosine * narrower <= rng.next() * source.max_cosine * holding) return {};
     return spawn_ray(sample.start, sample.direction);

@@ -34,7 +34,8 @@ struct AreaLight {
     }
 
 private:
-    AimedSource cones_from(const Surroundings& scene, const BoundingSphere& from, double area) const;
+    AimedSource cones_from(const Surroundings& scene, const BoundingSphere& from,
+                           double area) const;
     std::optional<AimedSource> spheres_from_places(const Surroundings& scene) const;
     std::vector<AimedSource> pieces_of(const Surroundings& scene) const;
 };

@@ -75,6 +75,19 @@ Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& w
     return bsdf.mirror ? Spectrum(value * (1 - bsdf.mirror->weight)) : value;
 }
 
+Bsdf bsdf_at(const Bsdf& bsdf, const Vec2& uv) {
+    Bsdf at{.twosided = bsdf.twosided, .mirror = bsdf.mirror};
+    std::visit(
+        [&]<class Model>(const Model& model) {
+            if constexpr (Receiver<Model>)
+                at.model = model.at(uv);
+            else
+                at.model = model;
+        },
+        bsdf.model);
+    return at;
+}
+
 Spectrum albedo(const Bsdf& bsdf, const Vec2& uv) {
     const Spectrum value = ask_receiver<Spectrum>(
         bsdf, [&](const auto& model) { return model.albedo(uv); }, Spectrum::Ones());

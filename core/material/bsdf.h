@@ -20,7 +20,7 @@ struct MirrorPart {
 /// A surface's scattering. One-sided models (all but Dielectric) are black from behind unless
 /// `twosided`, as in Mitsuba. A new model is a file of its own and a place in the list below. What is asked of
 /// it: `text` and `read`, its keys in a scene file and itself; `to_mitsuba` and `to_povray`, where those know it;
-/// of a receiver's, four functions that those below ask for, f_r, albedo, sample and pdf, and
+/// of a receiver's, five functions that those below ask for, f_r, albedo, at, sample and pdf, and
 /// `add_scattering_to`, what a map of all photons depends on, and `lobe_half_width` where it has a lobe; of a caster's, `split` (specular_split.h) and
 /// `add_to`, what every photon map depends on; `medium` where it bounds two, and
 /// `is_dispersive` where wavelengths part.
@@ -46,6 +46,10 @@ std::optional<float> lobe_half_width(const Bsdf& bsdf);
 /// f_r [1/sr] of a receiver, without the cosine. `n` is the unit shading normal on the viewer's
 /// side; `wo`, `wi` are unit and point away from the surface. 0 when either is below n.
 Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi);
+
+/// A receiver's bsdf whose textures are their values at texture coordinates: where many directions are asked about at one
+/// place, it answers all of them as `bsdf` does there. A caster's is the same.
+Bsdf bsdf_at(const Bsdf& bsdf, const Vec2& uv);
 
 /// The model of a surface, without a mirror part, in the words of another program.
 MitsubaBsdf to_mitsuba(const Bsdf& bsdf);

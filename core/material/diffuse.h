@@ -16,6 +16,7 @@ struct Diffuse {
 
     Spectrum f_r(const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) const;
     Spectrum albedo(const Vec2& uv) const;
+    Diffuse at(const Vec2& uv) const { return {evaluate(reflectance, uv)}; }
     std::optional<Vec3> sample(const Vec3& n, const Vec3& wo, const Vec3& u) const;
     float pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const;
 

@@ -55,6 +55,11 @@ Spectrum Phong::albedo(const Vec2& uv) const {
     return evaluate(diffuse_reflectance, uv) + evaluate(specular_reflectance, uv);
 }
 
+Phong Phong::at(const Vec2& uv) const {
+    return {evaluate(diffuse_reflectance, uv), evaluate(specular_reflectance, uv), exponent, model,
+            lobe_share};
+}
+
 std::optional<Vec3> Phong::sample(const Vec3& n, const Vec3& wo, const Vec3& u) const {
     if (u[2] >= lobe_share) return Frame(n).to_world(cosine_hemisphere(u[0], u[1]));
     const float cosine = std::pow(u[0], 1 / (exponent + 1));

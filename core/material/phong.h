@@ -26,6 +26,7 @@ struct Phong {
     Spectrum f_r(const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) const;
     /// k_d + k_s: what is scattered of light seen straight on.
     Spectrum albedo(const Vec2& uv) const;
+    Phong at(const Vec2& uv) const;
     std::optional<Vec3> sample(const Vec3& n, const Vec3& wo, const Vec3& u) const;
     float pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const;
 

@@ -19,6 +19,7 @@ struct Schlick {
 
     Spectrum f_r(const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi) const;
     Spectrum albedo(const Vec2& uv) const;
+    Schlick at(const Vec2& uv) const { return {evaluate(reflectance, uv), alpha}; }
     /// Half of the samples by the cosine, half by the half-vector lobe Z(t).
     std::optional<Vec3> sample(const Vec3& n, const Vec3& wo, const Vec3& u) const;
     float pdf(const Vec3& n, const Vec3& wo, const Vec3& wi) const;

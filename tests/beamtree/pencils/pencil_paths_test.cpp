@@ -16,11 +16,10 @@
 namespace caustics::beamtree {
 namespace {
 
-TracedPencils traced(const Scene& scene, std::uint64_t count, int threads = 1,
-                     int light_samples = 16) {
+TracedPencils traced(const Scene& scene, std::uint64_t count, int threads = 1) {
     RunOptions options;
     options.threads = threads;
-    return trace_pencils(scene, sample_lights(scene, light_samples, 1), {count}, options);
+    return trace_pencils(scene, whole_lamps(scene, sample_lights(scene, 1, 1)), {count}, options);
 }
 
 double flux_of(const TracedPencils& pencils) {
@@ -37,11 +36,10 @@ std::pair<double, double> flux_of_particles(const Scene& scene) {
     return {all.mean[0], all.standard_error[0]};
 }
 
-void expect_the_flux_of_particles(const Scene& scene, double tolerance, int light_samples = 16) {
+void expect_the_flux_of_particles(const Scene& scene, double tolerance) {
     const auto [flux, error] = flux_of_particles(scene);
     ASSERT_GT(flux, 0);
-    EXPECT_NEAR(flux_of(traced(scene, 100'000, 1, light_samples)) / flux, 1,
-                tolerance + 4 * error / flux);
+    EXPECT_NEAR(flux_of(traced(scene, 100'000)) / flux, 1, tolerance + 4 * error / flux);
 }
 
 SceneDesc room_with(std::vector<Shape> shapes) {
@@ -132,6 +130,27 @@ TEST(Pencils, BringAllDirectionalLight) {
                    support::horizontal("floor", 0, 40, true, support::diffuse(0.5F))};
     desc.lights = {support::directional_light({0.1, 0.2, -1}, 2)};
     expect_the_flux_of_particles(Scene(std::move(desc)), 0.01);
+}
+
+// Lamps that see balls from afar, whose plane goes through a ball, that touch the box of one, and round one; flat, curved and of triangles.
+TEST(Pencils, BringAllLightOfLamps) {
+    const Bsdf black = support::diffuse(0);
+    const Transform beside(Eigen::Translation3d(-1, 0.4, 0.9) * Eigen::Scaling(0.3));
+    const std::vector<std::function<Shape()>> lamps = {
+        [&] { return support::horizontal("lamp", 2, 0.5, false, black); },
+        [&] { return support::rectangle("lamp", {1, 0.7, 0.1}, {0.2, 0, 0}, {0, 0.2, 0}, black); },
+        [&] { return support::horizontal("lamp", 0.42, 0.3, false, black); },
+        [&] { return support::sphere("lamp", {-1, 0.4, 0.9}, 0.3, black); },
+        [&] { return support::mesh("lamp", tessellate_sphere(8), beside, black); }};
+    for (std::size_t i = 0; i < lamps.size(); ++i) {
+        SCOPED_TRACE(i);
+        const Bsdf glass = support::glass(1.5F);
+        SceneDesc desc = room_with({support::sphere("near", {0, 0, 0}, 0.4, glass),
+                                    support::sphere("far", {1.2, 0.1, -0.8}, 0.5, glass)});
+        desc.shapes.push_back(lamps[i]());
+        desc.shapes.back().radiance = Spectrum(Spectrum::Constant(5));
+        expect_the_flux_of_particles(Scene(std::move(desc)), 0.01);
+    }
 }
 
 // Facets, and light of many events.

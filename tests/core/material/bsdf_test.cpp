@@ -203,6 +203,27 @@ TEST(Bsdf, AMirrorPartTakesItsWeightFromTheRest) {
     }
 }
 
+TEST(Bsdf, AtAPlaceAnswersWithTheTexturesValuesThere) {
+    const Checkerboard board{Spectrum(0.1F, 0.2F, 0.3F), Spectrum(0.4F, 0.1F, 0.2F)};
+    Phong phong;
+    phong.diffuse_reflectance = board;
+    phong.exponent = 7;
+    phong.model = Phong::Model::classic;
+    const std::vector<Bsdf> all = {
+        {Diffuse{board}}, {Schlick{board, 0.3F}, true}, {phong, false, MirrorPart{0.25F}}};
+    const Vec3 n = Vec3::UnitZ(), wo = polar(0.7, 0), wi = polar(0.5, 2.5);
+    for (const Bsdf& bsdf : all)
+        for (const Vec2& uv : {Vec2(0.2F, 0.3F), Vec2(0.7F, 0.3F)}) {
+            const Bsdf at = bsdf_at(bsdf, uv);
+            EXPECT_EQ(at.twosided, bsdf.twosided);
+            EXPECT_TRUE(
+                (evaluate(at, Vec2(9, 8), n, wo, wi) == evaluate(bsdf, uv, n, wo, wi)).all());
+            EXPECT_TRUE((albedo(at, Vec2(9, 8)) == albedo(bsdf, uv)).all());
+        }
+    const Bsdf glass = support::glass(1.5F);
+    EXPECT_TRUE(is_caster(bsdf_at(glass, Vec2::Zero())));
+}
+
 TEST(Bsdf, WhatScattersInOneDirectionOnlyHasNoDensity) {
     const Vec3 up = Vec3::UnitZ();
     for (const Bsdf& bsdf : {support::glass(1.5F), support::mirror()})
