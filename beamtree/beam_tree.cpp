@@ -110,7 +110,8 @@ Planned planned(const Scene& scene, const BeamTreeParams& params, const RunOptio
         return std::cmp_less_equal(print.events, plan.beam_events);
     });
     planned.report.counters["pencil_prints"] = pencils.traced.prints.size();
-    planned.pencils = PencilMap(std::move(pencils.traced.prints), pencils.lights, options.threads);
+    planned.pencils =
+        PencilMap(std::move(pencils.traced.prints), pencils.lights, options.isa, options.threads);
     return planned;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "beamtree/beams/bin_share.h"
+#include "beamtree/pencils/pencil_leaf.h"
 #include "beamtree/rest/leaf_heap.h"
 #include "core/base/parallel.h"
 #include "core/geometry/surface_offset.h"
@@ -45,70 +46,23 @@ Vec3d across_ray(const Vec3& side, const Vec3d& wi) {
     return way - way.dot(wi) * wi;
 }
 
-void put(std::array<std::array<float, 8>, 3>& row, std::size_t i, const Vec3& v) {
-    for (std::size_t axis = 0; axis < 3; ++axis) row[axis][i] = v[static_cast<Eigen::Index>(axis)];
+void put(float (&rows)[3][pencil_width], std::size_t i, const Vec3& v) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) rows[axis][i] = v[axis];
 }
 
-Vec3 get(const std::array<std::array<float, 8>, 3>& row, std::size_t i) {
-    return {row[0][i], row[1][i], row[2][i]};
+Vec3 get(const float (&rows)[3][pencil_width], std::size_t i) {
+    return {rows[0][i], rows[1][i], rows[2][i]};
 }
 
-}  // namespace
-
-PencilMap::PencilMap(std::vector<PencilPrint> prints, std::span<const LightSample> lights,
-                     int threads)
-    : prints_(std::move(prints)) {
-    for (const LightSample& light : lights) bins_.push_back(light.bin);
-    if (prints_.empty()) return;
-    leaves_.resize(std::bit_ceil((prints_.size() + leaf_size - 1) / leaf_size));
-    sort_into_leaves(prints_, leaves_.size(), threads);
-    shorten_prints(threads);
-    place_prints(threads);
-}
-
-std::uint64_t PencilMap::bytes() const {
-    return prints_.size() * sizeof(PencilPrint) + leaves_.size() * sizeof(Leaf) +
-           boxes_.size() * sizeof(Box);
-}
-
-void PencilMap::shorten_prints(int threads) {
-    const std::vector<Box> around = boxes_of_positions(prints_, leaves_.size());
-    constexpr int levels = std::countr_zero(most_over_a_point / leaf_size);
-    const std::size_t nodes = std::max<std::size_t>(1, leaves_.size() >> levels);
-    double mean = 0;
-    for (std::size_t node = nodes; node < 2 * nodes; ++node)
-        mean +=
-            static_cast<double>(around[node].diagonal().squaredNorm()) / static_cast<double>(nodes);
-    parallel_chunks(threads, leaves_.size(), leaves_of_chunk, [&](const Chunk& chunk) {
-        for (std::size_t leaf = chunk.first; leaf < chunk.end; ++leaf) {
-            std::size_t node = std::max<std::size_t>(1, (leaves_.size() + leaf) >> levels);
-            double room = mean / static_cast<double>(2 * around[node].diagonal().squaredNorm());
-            for (int up = 0; up < most_doublings && node > 1 && room > 1; ++up, room /= 2)
-                node >>= 1;
-            const float longest = around[node].diagonal().norm();
-            for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
-                for (Vec3& side : prints_[i].sides)
-                    if (const float length = side.norm(); longest > 0 && length > longest)
-                        side *= longest / length;
-        }
-    });
-}
-
-void PencilMap::place_prints(int threads) {
-    boxes_.resize(2 * leaves_.size());
-    parallel_chunks(threads, leaves_.size(), leaves_of_chunk, [&](const Chunk& chunk) {
-        for (std::size_t leaf = chunk.first; leaf < chunk.end; ++leaf) {
-            leaves_[leaf].height.fill(-1);
-            for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
-                boxes_[leaves_.size() + leaf].extend(
-                    place(leaves_[leaf], i - first_of(leaf), prints_[i]));
-        }
-    });
-    unite(boxes_);
+PencilLeaf empty_leaf() {
+    PencilLeaf leaf{};
+    std::ranges::fill(leaf.height, -1.0F);
+    std::ranges::fill(leaf.area, 1.0F);
+    return leaf;
 }
 
 // Puts a print into a leaf; returns its box.
-Box PencilMap::place(Leaf& leaf, std::size_t k, const PencilPrint& print) {
+Box place(PencilLeaf& leaf, std::size_t k, const PencilPrint& print) {
     const Vec3d wi = print.wi.cast<double>().normalized();
     const auto [a, b] =
         widened({across_ray(print.sides[0], wi), across_ray(print.sides[1], wi)}, wi);
@@ -118,6 +72,9 @@ Box PencilMap::place(Leaf& leaf, std::size_t k, const PencilPrint& print) {
                          8 * rounding_offset(print.position);
     put(leaf.position, k, print.position);
     put(leaf.normal, k, print.normal);
+    put(leaf.wi, k, print.wi);
+    put(leaf.flux, k, print.flux);
+    leaf.light[k] = print.light;
     const std::array<Vec3d, 2> by_side = {b.cross(wi) / turn, wi.cross(a) / turn};
     for (std::size_t i = 0; i < 2; ++i) {
         put(leaf.by_side[i], k, by_side[i].cast<float>());
@@ -138,52 +95,136 @@ Box PencilMap::place(Leaf& leaf, std::size_t k, const PencilPrint& print) {
     return {print.position - wider, print.position + wider};
 }
 
-template <typename Weight>
-void PencilMap::add_leaf(std::size_t leaf, const ReceiverPoint& point, const PencilWindow& window,
-                         const Weight& weight, SpectrumSum& sum) const {
-    const Leaf& at = leaves_[leaf];
-    const Vec3& x = point.position;
-    const float radius = window.radius();
-    Leaf::Row u, v, room;
-    for (std::size_t i = 0; i < leaf_size; ++i) {
-        const float dx = x.x() - at.position[0][i];
-        const float dy = x.y() - at.position[1][i];
-        const float dz = x.z() - at.position[2][i];
-        const auto along = [&](const std::array<Leaf::Row, 3>& way) {
-            return way[0][i] * dx + way[1][i] * dy + way[2][i] * dz;
-        };
-        u[i] = along(at.by_side[0]);
-        v[i] = along(at.by_side[1]);
-        const float off_u = 0.5F + radius * at.by_metre[0][i] - std::abs(u[i]);
-        const float off_v = 0.5F + radius * at.by_metre[1][i] - std::abs(v[i]);
-        const float off_plane = at.height[i] - std::abs(along(at.normal));
-        const float beside = off_u < off_v ? off_u : off_v;
-        room[i] = beside < off_plane ? beside : off_plane;
+}  // namespace
+
+const PencilKernels& pencil_kernels([[maybe_unused]] Isa isa) {
+#ifdef CAUSTICS_X86_KERNELS
+    if (isa == Isa::avx512) return avx512_pencil_kernels();
+    if (isa == Isa::avx2) return avx2_pencil_kernels();
+#endif
+    return plain_pencil_kernels();
+}
+
+PencilQuery pencil_query(const ReceiverPoint& point) {
+    PencilQuery query{};
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        query.position[axis] = point.position[axis];
+        query.normal[axis] = point.geometric_normal[axis];
     }
-    for (std::size_t i = 0; i < leaf_size; ++i) {
-        if (!(room[i] >= 0)) continue;
-        const PencilPrint& print = prints_[first_of(leaf) + i];
-        const float cosine = print.wi.dot(point.geometric_normal);
-        if (!(cosine > 0)) continue;
-        const double density =
-            window.density({u[i], v[i]}, {get(at.by_side[0], i), get(at.by_side[1], i)},
-                           static_cast<double>(at.area[i]), static_cast<double>(cosine));
-        if (!(density > 0)) continue;
-        const Spectrum light =
-            print.flux * weight(print.wi) * share_of_bin(bins_[print.light], point.nm);
-        sum += light.cast<double>() * density;
+    if (point.cell == nullptr) return query;
+    const auto& corners = point.cell->corners;
+    const Vec2d across = corners[2] - corners[0], along = corners[3] - corners[1];
+    const double area = std::abs(across.x() * along.y() - across.y() * along.x()) / 2;
+    if (!(area > 0)) return query;
+    query.over_area = 1 / area;
+    query.radius = static_cast<float>(point.cell->radius);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3 corner = point.cell->corner(i).cast<float>();
+        for (Eigen::Index axis = 0; axis < 3; ++axis) query.corner[i][axis] = corner[axis];
+    }
+    return query;
+}
+
+PencilMap::PencilMap(std::vector<PencilPrint> prints, std::span<const LightSample> lights, Isa isa,
+                     int threads)
+    : kernels_(&pencil_kernels(isa)), count_(prints.size()) {
+    for (const LightSample& light : lights) bins_.push_back(light.bin);
+    if (prints.empty()) return;
+    leaves_.resize(std::bit_ceil((count_ + pencil_width - 1) / pencil_width));
+    sort_into_leaves(prints, leaves_.size(), threads);
+    shorten_prints(prints, threads);
+    place_prints(prints, threads);
+}
+
+std::uint64_t PencilMap::bytes() const {
+    return leaves_.size() * sizeof(PencilLeaf) + boxes_.size() * sizeof(PencilBoxes);
+}
+
+void PencilMap::shorten_prints(std::vector<PencilPrint>& prints, int threads) const {
+    const std::vector<Box> around = boxes_of_positions(prints, leaves_.size());
+    constexpr int levels = std::countr_zero(most_over_a_point / pencil_width);
+    const std::size_t nodes = std::max<std::size_t>(1, leaves_.size() >> levels);
+    double mean = 0;
+    for (std::size_t node = nodes; node < 2 * nodes; ++node)
+        mean +=
+            static_cast<double>(around[node].diagonal().squaredNorm()) / static_cast<double>(nodes);
+    parallel_chunks(threads, leaves_.size(), leaves_of_chunk, [&](const Chunk& chunk) {
+        for (std::size_t leaf = chunk.first; leaf < chunk.end; ++leaf) {
+            std::size_t node = std::max<std::size_t>(1, (leaves_.size() + leaf) >> levels);
+            double room = mean / static_cast<double>(2 * around[node].diagonal().squaredNorm());
+            for (int up = 0; up < most_doublings && node > 1 && room > 1; ++up, room /= 2)
+                node >>= 1;
+            const float longest = around[node].diagonal().norm();
+            for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
+                for (Vec3& side : prints[i].sides)
+                    if (const float length = side.norm(); longest > 0 && length > longest)
+                        side *= longest / length;
+        }
+    });
+}
+
+void PencilMap::place_prints(const std::vector<PencilPrint>& prints, int threads) {
+    std::vector<Box> boxes(2 * leaves_.size());
+    parallel_chunks(threads, leaves_.size(), leaves_of_chunk, [&](const Chunk& chunk) {
+        for (std::size_t leaf = chunk.first; leaf < chunk.end; ++leaf) {
+            leaves_[leaf] = empty_leaf();
+            for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
+                boxes[leaves_.size() + leaf].extend(
+                    place(leaves_[leaf], i - first_of(leaf), prints[i]));
+        }
+    });
+    unite(boxes);
+    // Of every third level, so that steps of three levels end at the leaves.
+    top_ = std::size_t{1} << (static_cast<unsigned>(std::bit_width(leaves_.size()) - 1) % 3);
+    boxes_.resize(leaves_.size() / pencil_width * 2);
+    for (std::size_t node = top_; node < leaves_.size(); node *= pencil_width)
+        for (std::size_t i = node; i < 2 * node; ++i)
+            for (std::size_t k = 0; k < pencil_width; ++k) {
+                const Box& box = boxes[pencil_width * i + k];
+                put(boxes_[i].low, k, box.min());
+                put(boxes_[i].high, k, box.max());
+            }
+}
+
+template <typename Take>
+void PencilMap::for_each_touched(const PencilQuery& query, std::vector<std::uint32_t>& stack,
+                                 const Take& take) const {
+    // The last first, so that leaves come in their order.
+    const auto push = [&](std::size_t node) { stack.push_back(static_cast<std::uint32_t>(node)); };
+    stack.clear();
+    for (std::size_t node = 2 * top_; node-- > top_;) push(node);
+    while (!stack.empty()) {
+        const std::size_t node = stack.back();
+        stack.pop_back();
+        if (node >= leaves_.size()) {
+            take(leaves_[node - leaves_.size()]);
+            continue;
+        }
+        std::uint32_t touched = kernels_->touched(boxes_[node], query);
+        while (touched != 0) {
+            const auto last = static_cast<std::uint32_t>(std::bit_width(touched)) - 1;
+            push(pencil_width * node + last);
+            touched ^= 1U << last;
+        }
     }
 }
 
 template <typename Weight>
 Spectrum PencilMap::sum(const ReceiverPoint& point, std::vector<std::uint32_t>& stack,
                         const Weight& weight) const {
+    if (count_ == 0) return black();
+    const PencilQuery query = pencil_query(point);
     SpectrumSum sum = SpectrumSum::Zero();
-    if (prints_.empty()) return black();
-    const PencilWindow window(point);
-    for_each_leaf(
-        boxes_, stack, [&](const Box& box) { return window.may_touch(box); },
-        [&](std::size_t leaf) { add_leaf(leaf, point, window, weight, sum); });
+    alignas(64) double density[pencil_width];
+    for_each_touched(query, stack, [&](const PencilLeaf& leaf) {
+        if (!kernels_->densities(leaf, query, density)) return;
+        for (std::size_t i = 0; i < pencil_width; ++i) {
+            if (!(density[i] > 0)) continue;
+            const Spectrum light = get(leaf.flux, i).array() * weight(get(leaf.wi, i)) *
+                                   share_of_bin(bins_[leaf.light[i]], point.nm);
+            sum += light.cast<double>() * density[i];
+        }
+    });
     return sum.cast<float>();
 }
 

@@ -173,7 +173,7 @@ TEST(Pencils, KeepTheirLightOnCells) {
                                                 static_cast<float>(-0.2 * thinness), 0)},
             .flux = Spectrum::Constant(2),
             .flat = true};
-        const PencilMap map({print}, std::vector<LightSample>(1), 1);
+        const PencilMap map({print}, std::vector<LightSample>(1), Isa::plain, 1);
         double sum = 0;
         constexpr int cells = 40;
         constexpr double side = 0.5 / cells;

@@ -1,0 +1,156 @@
+#pragma once
+
+#include "beamtree/pencils/pencil_leaf.h"
+
+namespace caustics::beamtree {
+
+/// The loops over a pencil map's leaves and boxes, compiled once for each instruction set: over arrays and without branches, so
+/// that the compiler puts a leaf into a register. `static`, because every source that includes them has its own.
+
+static inline float least(float a, float b) { return a < b ? a : b; }
+static inline float most(float a, float b) { return a > b ? a : b; }
+static inline float magnitude(float a) { return a < 0 ? -a : a; }
+static inline double within_half(double a) {
+    const double low = a < -0.5 ? -0.5 : a;
+    return low > 0.5 ? 0.5 : low;
+}
+
+static uint32_t touched_boxes(const PencilBoxes& boxes, const PencilQuery& query) {
+    float squared[pencil_width] = {};
+    for (size_t axis = 0; axis < 3; ++axis)
+        for (size_t i = 0; i < pencil_width; ++i) {
+            const float x = query.position[axis];
+            const float beyond = most(boxes.low[axis][i] - x, x - boxes.high[axis][i]);
+            const float outside = most(beyond, 0.0F);
+            squared[i] += outside * outside;
+        }
+    uint32_t bits = 0;
+    for (size_t i = 0; i < pencil_width; ++i)
+        bits |= (squared[i] <= query.radius * query.radius ? 1U : 0U) << i;
+    return bits;
+}
+
+/// Where points lie along a print's sides, for each print.
+struct AlongSides {
+    alignas(64) float u[pencil_width];
+    alignas(64) float v[pencil_width];
+};
+
+// Finds where the point lies; false where no print may hold it or a part of its cell. `cosine` of those that may not becomes 0.
+static bool near_prints(const PencilLeaf& leaf, const PencilQuery& query, AlongSides& at,
+                        float cosine[pencil_width]) {
+    uint32_t any = 0;
+    for (size_t i = 0; i < pencil_width; ++i) {
+        const float dx = query.position[0] - leaf.position[0][i];
+        const float dy = query.position[1] - leaf.position[1][i];
+        const float dz = query.position[2] - leaf.position[2][i];
+        const float u =
+            leaf.by_side[0][0][i] * dx + leaf.by_side[0][1][i] * dy + leaf.by_side[0][2][i] * dz;
+        const float v =
+            leaf.by_side[1][0][i] * dx + leaf.by_side[1][1][i] * dy + leaf.by_side[1][2][i] * dz;
+        const float off_plane =
+            magnitude(leaf.normal[0][i] * dx + leaf.normal[1][i] * dy + leaf.normal[2][i] * dz);
+        const float towards = leaf.wi[0][i] * query.normal[0] + leaf.wi[1][i] * query.normal[1] +
+                              leaf.wi[2][i] * query.normal[2];
+        const float room_u = 0.5F + query.radius * leaf.by_metre[0][i] - magnitude(u);
+        const float room_v = 0.5F + query.radius * leaf.by_metre[1][i] - magnitude(v);
+        const float room = least(least(room_u, room_v), leaf.height[i] - off_plane);
+        at.u[i] = u;
+        at.v[i] = v;
+        cosine[i] = room >= 0 ? most(towards, 0.0F) : 0.0F;
+        any |= cosine[i] > 0 ? 1U : 0U;
+    }
+    return any != 0;
+}
+
+// The part of an edge's share of the area of a polygon on the unit square about the origin: the integral along it of its v, cut to the
+// square, over the u that are on the square.
+static inline double area_under(double u0, double v0, double u1, double v1) {
+    const double du = u1 - u0;
+    const double slope = (v1 - v0) / (du == 0 ? 1 : du);
+    const double from = within_half(u0);
+    const double to = within_half(u1);
+    const double a = v0 + (from - u0) * slope;
+    const double b = v1 + (to - u1) * slope;
+    const double low = within_half(a);
+    const double high = within_half(b);
+    // The edge stays outside at a's end, crosses the square, and stays outside at b's.
+    const double sum = (low - a) * low + (b - high) * high + (high - low) * (0.5 * (low + high));
+    const double rise = b - a;
+    const double mean = rise == 0 ? low : sum / (rise == 0 ? 1 : rise);
+    return (to - from) * mean;
+}
+
+/// Where the corners of a cell lie along a print's sides, for each print, and the box round them.
+struct CellAlongSides {
+    AlongSides corner[4];
+    AlongSides low;
+    AlongSides high;
+};
+
+static void place_cell(const PencilLeaf& leaf, const PencilQuery& query, const AlongSides& at,
+                       CellAlongSides& cell) {
+    cell.low = at;
+    cell.high = at;
+    for (size_t c = 0; c < 4; ++c) {
+        const float* const way = query.corner[c];
+        AlongSides& corner = cell.corner[c];
+        for (size_t i = 0; i < pencil_width; ++i) {
+            const float u =
+                at.u[i] + (leaf.by_side[0][0][i] * way[0] + leaf.by_side[0][1][i] * way[1] +
+                           leaf.by_side[0][2][i] * way[2]);
+            const float v =
+                at.v[i] + (leaf.by_side[1][0][i] * way[0] + leaf.by_side[1][1][i] * way[1] +
+                           leaf.by_side[1][2][i] * way[2]);
+            corner.u[i] = u;
+            corner.v[i] = v;
+            cell.low.u[i] = least(cell.low.u[i], u);
+            cell.low.v[i] = least(cell.low.v[i], v);
+            cell.high.u[i] = most(cell.high.u[i], u);
+            cell.high.v[i] = most(cell.high.v[i], v);
+        }
+    }
+}
+
+static bool leaf_densities(const PencilLeaf& leaf, const PencilQuery& query,
+                           double density[pencil_width]) {
+    AlongSides at;
+    alignas(64) float cosine[pencil_width];
+    if (!near_prints(leaf, query, at, cosine)) return false;
+    CellAlongSides cell;
+    place_cell(leaf, query, at, cell);
+    alignas(64) float lit[pencil_width];     // the cosine where the cell is not beside the print
+    alignas(64) float partly[pencil_width];  // the same where it is not within the print
+    uint32_t any_partly = 0;
+    for (size_t i = 0; i < pencil_width; ++i) {
+        const float outside =
+            most(most(cell.low.u[i], -cell.high.u[i]), most(cell.low.v[i], -cell.high.v[i]));
+        const float farthest =
+            most(most(cell.high.u[i], -cell.low.u[i]), most(cell.high.v[i], -cell.low.v[i]));
+        lit[i] = outside > 0.5F ? 0.0F : cosine[i];
+        partly[i] = farthest > 0.5F ? lit[i] : 0.0F;
+        any_partly |= partly[i] > 0 ? 1U : 0U;
+    }
+#pragma GCC ivdep
+    for (size_t i = 0; i < pencil_width; ++i)
+        density[i] = static_cast<double>(lit[i]) / static_cast<double>(leaf.area[i]);
+    if (any_partly == 0) return true;
+    alignas(64) double part[pencil_width] = {};
+    for (size_t c = 0; c < 4; ++c) {
+        const AlongSides& from = cell.corner[c];
+        const AlongSides& to = cell.corner[(c + 1) % 4];
+        for (size_t i = 0; i < pencil_width; ++i)
+            part[i] += area_under(static_cast<double>(from.u[i]), static_cast<double>(from.v[i]),
+                                  static_cast<double>(to.u[i]), static_cast<double>(to.v[i]));
+    }
+#pragma GCC ivdep
+    for (size_t i = 0; i < pencil_width; ++i) {
+        const double covered = (part[i] < 0 ? -part[i] : part[i]) * query.over_area;
+        density[i] = partly[i] > 0 ? covered : density[i];
+    }
+    return true;
+}
+
+static constexpr PencilKernels pencil_loops{&touched_boxes, &leaf_densities};
+
+}  // namespace caustics::beamtree

@@ -1,0 +1,7 @@
+#include "beamtree/pencils/pencil_loops.h"
+
+namespace caustics::beamtree {
+
+const PencilKernels& plain_pencil_kernels() { return pencil_loops; }
+
+}  // namespace caustics::beamtree
