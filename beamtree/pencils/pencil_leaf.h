@@ -18,12 +18,12 @@ struct alignas(64) PencilBoxes {
 /// A leaf's prints. Places that are left over have a height below 0.
 struct alignas(64) PencilLeaf {
     float position[3][pencil_width];
-    float normal[3][pencil_width];  ///< geometric, unit
-    float wi[3][pencil_width];      ///< unit, where the rays come from
     /// Times what leads from the position: a point's numbers along the sides of a print, -1/2 to 1/2 on it [1/m].
     float by_side[2][3][pencil_width];
     float by_metre[2][pencil_width];  ///< their lengths [1/m]
     float height[pencil_width];       ///< how far off its plane its rays count, to both sides [m]
+    float normal[3][pencil_width];    ///< geometric, unit
+    float wi[3][pencil_width];        ///< unit, where the rays come from
     float area[pencil_width];         ///< across the rays [m^2]
     float flux[3][pencil_width];      ///< [W]
     uint32_t light[pencil_width];     ///< index of the light sample

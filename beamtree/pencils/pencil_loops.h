@@ -36,9 +36,10 @@ struct AlongSides {
     alignas(64) float v[pencil_width];
 };
 
-// Finds where the point lies; false where no print may hold it or a part of its cell. `cosine` of those that may not becomes 0.
-static bool near_prints(const PencilLeaf& leaf, const PencilQuery& query, AlongSides& at,
-                        float cosine[pencil_width]) {
+// Finds where the point lies along the sides; false where no print may hold it or a part of its cell. `room` of those that may not is
+// below 0.
+static bool beside_no_side(const PencilLeaf& leaf, const PencilQuery& query, AlongSides& at,
+                           float room[pencil_width]) {
     uint32_t any = 0;
     for (size_t i = 0; i < pencil_width; ++i) {
         const float dx = query.position[0] - leaf.position[0][i];
@@ -48,16 +49,30 @@ static bool near_prints(const PencilLeaf& leaf, const PencilQuery& query, AlongS
             leaf.by_side[0][0][i] * dx + leaf.by_side[0][1][i] * dy + leaf.by_side[0][2][i] * dz;
         const float v =
             leaf.by_side[1][0][i] * dx + leaf.by_side[1][1][i] * dy + leaf.by_side[1][2][i] * dz;
+        const float room_u = 0.5F + query.radius * leaf.by_metre[0][i] - magnitude(u);
+        const float room_v = 0.5F + query.radius * leaf.by_metre[1][i] - magnitude(v);
+        at.u[i] = u;
+        at.v[i] = v;
+        room[i] = least(least(room_u, room_v), leaf.height[i]);
+        any |= room[i] >= 0 ? 1U : 0U;
+    }
+    return any != 0;
+}
+
+// Finds the cosines of rays that come to the point, or 0; false where none do.
+static bool arriving(const PencilLeaf& leaf, const PencilQuery& query,
+                     const float room[pencil_width], float cosine[pencil_width]) {
+    uint32_t any = 0;
+    for (size_t i = 0; i < pencil_width; ++i) {
+        const float dx = query.position[0] - leaf.position[0][i];
+        const float dy = query.position[1] - leaf.position[1][i];
+        const float dz = query.position[2] - leaf.position[2][i];
         const float off_plane =
             magnitude(leaf.normal[0][i] * dx + leaf.normal[1][i] * dy + leaf.normal[2][i] * dz);
         const float towards = leaf.wi[0][i] * query.normal[0] + leaf.wi[1][i] * query.normal[1] +
                               leaf.wi[2][i] * query.normal[2];
-        const float room_u = 0.5F + query.radius * leaf.by_metre[0][i] - magnitude(u);
-        const float room_v = 0.5F + query.radius * leaf.by_metre[1][i] - magnitude(v);
-        const float room = least(least(room_u, room_v), leaf.height[i] - off_plane);
-        at.u[i] = u;
-        at.v[i] = v;
-        cosine[i] = room >= 0 ? most(towards, 0.0F) : 0.0F;
+        const float inside = least(room[i], leaf.height[i] - off_plane);
+        cosine[i] = inside >= 0 ? most(towards, 0.0F) : 0.0F;
         any |= cosine[i] > 0 ? 1U : 0U;
     }
     return any != 0;
@@ -116,7 +131,9 @@ static bool leaf_densities(const PencilLeaf& leaf, const PencilQuery& query,
                            double density[pencil_width]) {
     AlongSides at;
     alignas(64) float cosine[pencil_width];
-    if (!near_prints(leaf, query, at, cosine)) return false;
+    alignas(64) float room[pencil_width];
+    if (!beside_no_side(leaf, query, at, room) || !arriving(leaf, query, room, cosine))
+        return false;
     CellAlongSides cell;
     place_cell(leaf, query, at, cell);
     alignas(64) float lit[pencil_width];     // the cosine where the cell is not beside the print

@@ -23,7 +23,7 @@ constexpr float wider_box = 1e-5F;
 // A side of a print is at most as long as the box of so many prints about it. More prints over a point cost time and gain little.
 constexpr std::size_t most_over_a_point = 64;
 // Where light is denser than on average, so many times twice as many: there errors weigh most, and few points ask.
-constexpr int most_doublings = 6;
+constexpr int most_doublings = 9;
 // Leaves that a thread takes at a time.
 constexpr std::size_t leaves_of_chunk = 64;
 

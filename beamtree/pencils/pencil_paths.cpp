@@ -26,6 +26,9 @@ constexpr float faint = 0.125F;
 constexpr double longest_side = 0.1;
 constexpr double smallest_side = 1e-5;
 
+// The sides of a lamp's print over those of its cell. Hundreds lie over each point: smaller ones are as even, and blur less.
+constexpr double print_over_cell = 0.8;
+
 /// A patch in equal strata: a grid of its rectangle, of which those at the edges reach beyond it, or the cells of a lattice over all places
 /// of an area light and all directions from them.
 struct Strata {
@@ -226,7 +229,7 @@ private:
         const double area = rectangle.area() * faces / static_cast<double>(strata.size());
         auto start = start_along(place, through, area, strata.chance);
         if (!start) return {};
-        const double cell = strata.side_of_cell() / std::pow(strata.chance, 0.25);
+        const double cell = print_over_cell * strata.side_of_cell() / std::pow(strata.chance, 0.25);
         turn_through({cell * faces * rectangle.sides[0], cell * rectangle.sides[1]},
                      (point - from).norm(), through.direction, 1, *start);
         spread_over_lamp(place, cell * std::sqrt(light.area), strata.patch, through, *start);

@@ -23,8 +23,9 @@ constexpr double first_share = 1.0 / 256;
 constexpr double enough = 1.0 / 8;
 // The first trial's polygons, where there are few.
 constexpr double fewest_polygons = 4;
-// From trial to trial.
+// From trial to trial; the least where more would be a long one.
 constexpr double least_growth = 8;
+constexpr double least_before_long = 2;
 constexpr double most_growth = 32;
 // Seconds that the work takes in the last trial, at least, and as a share of what the first trial took.
 constexpr double told_seconds = 0.15;
@@ -126,14 +127,15 @@ CostForecast::Trials CostForecast::trials(const Method& method, std::uint64_t po
     const Trial first = trial(method, std::clamp(few, least, 1.0), pixel_step_);
     Trials trials{first, first, first.share >= enough};
     const double told = std::max(told_seconds, told_part * first.took);
-    double growth = 1 / first.took;
+    double growth = std::clamp(1 / first.took, least_growth, most_growth);
     while (!trials.are_enough && trials.last.is_whole && trials.last.took < long_) {
         trials.before = trials.last;
-        const double share = trials.last.share * std::clamp(growth, least_growth, most_growth);
-        trials.last = trial(method, std::min(share, 1.0), pixel_step_);
+        trials.last = trial(method, std::min(growth * trials.last.share, 1.0), pixel_step_);
         const double more = trials.last.took - first.took;
         trials.are_enough = trials.last.share >= enough || more >= told;
-        growth = told / std::max(more, 1e-9);
+        growth = std::clamp(told / std::max(more, 1e-9), least_growth, most_growth);
+        if (growth * more > long_ - first.took)
+            growth = std::max((long_ - first.took) / more, least_before_long);
     }
     return trials;
 }
