@@ -52,6 +52,7 @@ class Scored:
 
     def __init__(self, cell):
         self.scene, self.method, self.parameters = cell.scene, cell.method, cell.parameters
+        self.told_method = cell.told_method()
         rows = [row for row in cell.records if row.get("rmse")]
         self.reference = rows[0].get("reference", "")  # the same for all pictures of one scene as it was set
         seeds = records.by_seed(rows).values()
@@ -221,7 +222,7 @@ def contests(cells, question):
         groups = {}
         for cell in own:
             if cell.seconds() > 0 and cell.mean() > 0:
-                groups.setdefault(cell.method, []).append(cell)
+                groups.setdefault(cell.told_method, []).append(cell)
         lines += ["", f"## {markdown(title)}", ""] + contest(groups, question, unit)
     return "\n".join(lines) + "\n"
 

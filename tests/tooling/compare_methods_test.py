@@ -27,7 +27,7 @@ from report import intervals, records
 
 COLUMNS = ("trial", "status", "scene", "method", "seed", "repeat", "threads", "isa", "photons_stored", "nearest", "alpha",
            "mesh_resolution", "render_cpu_s", "indirect_cpu_s", "total_s", "rmse", "relmse", "variance", "mean_ratio", "reference",
-           "reference_stderr", "reference_mean", "code_version", "effort")
+           "reference_stderr", "reference_mean", "code_version", "effort", "pencils_traced", "flux_share_rest")
 
 
 def rows(method, efforts, errors, seeds=5, scatter=0.01, reference="lighttrace:1"):
@@ -37,7 +37,7 @@ def rows(method, efforts, errors, seeds=5, scatter=0.01, reference="lighttrace:1
             step = 0 if seeds == 1 else scatter * error * (2 * seed / (seeds - 1) - 1)
             yield dict(zip(COLUMNS, [f"{method}{effort}s{seed}", "done", "pool", method, str(seed), "1", "1", "plain", "",
                                      "", "", "", str(effort), "", str(effort), repr(error + step), "0.1", repr(error**2 / 2),
-                                     "1", reference, "0.01", "1", "v", str(effort)]))
+                                     "1", reference, "0.01", "1", "v", str(effort), "", ""]))
 
 
 def outputs(*records):
@@ -68,6 +68,17 @@ class Comparison(unittest.TestCase):
         self.assertAlmostEqual(float(row["reference_square"]), 1e-4)
         self.assertAlmostEqual(float(row["bias_square"]), 0.25 - 0.125 - 1e-4)
         self.assertAlmostEqual(float(row["efficiency"]), 4)
+
+    def test_pure_and_completed_beams_are_rows_of_their_own(self):
+        by = lambda column, value, name: [{**row, column: value, "trial": name + row["trial"]}
+                                          for row in rows("beamtree", (1, 2), (0.3, 0.2))]
+        written = outputs(rows("beamtree", (1, 2), (0.4, 0.3)), by("pencils_traced", "5000", "p"), by("flux_share_rest", "0.1", "r"))
+        own = list(csv.DictReader(written["statistics.csv"].splitlines()))
+        self.assertEqual(sorted({row["completed_by"] for row in own}), ["", "pencils", "photons"])
+        self.assertEqual(len(own), 6)
+        for table in ("equal_time.md", "equal_error.md"):
+            for name in ("beamtree", "beamtree, completed by pencils", "beamtree, completed by photons"):
+                self.assertIn(f"\n| {name} |", written[table])
 
     def test_an_unknown_measure_is_no_swept_parameter(self):
         def cells(column, value, plan=None, more={}):

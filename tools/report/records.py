@@ -43,7 +43,8 @@ ASKED_COUNTS = ("photons", "emitted", "paths")
 NUMBERS = ("seed", "repeat", "nearest", "alpha", "mesh_resolution", "threads", "spp", "polygons", "beams", "cone_point_tests",
            "beam_point_tests", "beam_point_hits", "map_bytes", "rss_start_bytes", "peak_rss_bytes", "elapsed_s", "load_average",
            "other_cores", "jobs", "timeout_s", "memory_limit_bytes") + MEASURES + ASKED_COUNTS
-LABELS = ("isa", "code_version")  # never numbers, whatever they look like
+COMPLETED_BY = "completed_by"
+LABELS = ("isa", "code_version", COMPLETED_BY)  # never numbers, whatever they look like
 # CPU seconds of a trial's parts, each empty where a method has no such part: what all tools add up.
 BUILD = ("precompute_cpu_s", "balance_cpu_s")
 INDIRECT = ("indirect_cpu_s",)
@@ -110,6 +111,11 @@ class Cell:
         share, mean = self.spread("reference_stderr"), self.spread("reference_mean")
         return share.median * mean.median if share and mean and share.median * mean.median > 0 else None
 
+    def told_method(self):
+        """The method, and what carries the light that its beams do not."""
+        other = self.parameters.get(COMPLETED_BY)
+        return f"{self.method}, completed by {other}" if other else self.method
+
     def seeds(self):
         return len({record["seed"] for record in self.records})
 
@@ -127,6 +133,13 @@ class Records:
 
     def scenes(self):
         return sorted({cell.scene for cell in self.cells}, key=natural)
+
+
+def completed_by(row):
+    """What carries the light of beams that are not traced, or nothing where beams carry all: rows of their own in every table."""
+    if float(row.get("pencils_traced") or 0) > 0:
+        return "pencils"
+    return "photons" if float(row.get("flux_share_rest") or 0) > 0 else ""
 
 
 def cpu_seconds(row, parts=CPU_PARTS):
@@ -195,13 +208,15 @@ def read(path):
         else:
             left_out[row["status"]] = left_out.get(row["status"], 0) + 1
     check_trials(path, done)
+    for _, row in done:
+        row[COMPLETED_BY] = completed_by(row)
     if not done:
         counts = ", ".join(f"{count} {status}" for status, count in left_out.items())
         raise RecordsError(f"{path}: no row has the status done ({counts})")
     unknown = [name for name in header[header.index("code_version") + 1:] if name not in NOT_SWEPT]
     swept = swept_columns(path, unknown, [row for _, row in done])
     parameters = [name for name in ("photons", "emitted") if name in swept] + list(FIXED_PARAMETERS[:3])
-    parameters += [name for name in swept if name not in parameters]
+    parameters += [name for name in swept if name not in parameters] + [COMPLETED_BY]
     parameters += [name for name in OPTIONAL_PARAMETERS if name in header] + list(FIXED_PARAMETERS[3:])
     cells, photons_counted = group(path, done, parameters)
     if photons_counted:
