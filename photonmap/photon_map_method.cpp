@@ -49,7 +49,8 @@ std::vector<Parameter<P>> photon_parameters() {
                  "lamp by low-discrepancy points. That has less noise, but with kernel point the "
                  "nearest N then read up to 1/(2N) low.",
              .source = "[J96 sec. 2]"})
-            .only_if(is_traced),
+            .only_if(is_traced)
+            .usually("stratified; random with kernel point"),
         parameter::choice<P>(&P::interaction,
                              {{"roulette", Interaction::roulette}, {"split", Interaction::split}},
                              {.key = "interaction",
@@ -232,7 +233,7 @@ std::array<PointKey, 4> point_keys(const JsonNode& node, const P& params) {
               "with it the filter's mean is not 1, and light is not kept"}}};
 }
 
-// Keys that the kernel "point" alone has choose it.
+// Keys that the kernel "point" alone has choose it. The kernel chooses how photons are emitted and filtered.
 void settle_kernel(const JsonNode& node, P& params) {
     for (const PointKey& each : point_keys(node, params)) {
         if (!each.asked || params.kernel == KernelKind::point) continue;
@@ -242,8 +243,10 @@ void settle_kernel(const JsonNode& node, P& params) {
                       " (leave out " + each.key + ", or kernel)");
         params.kernel = KernelKind::point;
     }
-    if (!node.has("filter") && params.kernel == KernelKind::photon)
-        params.filter = FilterKind::epanechnikov;
+    if (params.kernel == KernelKind::photon) {
+        if (!node.has("filter")) params.filter = FilterKind::epanechnikov;
+        if (!node.has("emission")) params.emission = P::Emission::stratified;
+    }
     const auto pixels = node.find("pixel_footprint");
     if (!pixels) return;
     if (params.kernel == KernelKind::point)

@@ -14,9 +14,9 @@
 
 namespace caustics::beamtree {
 
-/// Those of an instruction set.
+/// The kernels of an instruction set.
 const PencilKernels& pencil_kernels(Isa isa);
-/// Of its cell; of the point itself where it has none, or one without area.
+/// The query of a point's cell, or of the point alone where it has no cell with an area.
 PencilQuery pencil_query(const ReceiverPoint& point);
 
 /// The light that pencils bring to points: that of the prints that lie on a point, or on its cell (ReceiverPoint::cell),

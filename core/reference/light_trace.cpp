@@ -214,7 +214,7 @@ private:
         if (scene_.occluded({d.position, d.geometric_normal, d.offset}, SegmentEnd{eye})) return {};
         const double cos3 = seen->cos_theta * seen->cos_theta * seen->cos_theta;
         const double weight = static_cast<double>(cosine) /
-                              (seen->distance * seen->distance * cos3 * camera.pixel_area());
+                              (seen->distance * seen->distance * cos3 * film_.pixel_area());
         const auto pixel =
             static_cast<std::size_t>(seen->y) * static_cast<std::size_t>(camera.width) +
             static_cast<std::size_t>(seen->x);

@@ -42,6 +42,7 @@ FilmProjection::FilmProjection(const Camera& camera)
     : to_local_(camera.to_world.inverse()),
       eye_(camera.to_world.translation()),
       half_extent_(camera.half_extent()),
+      pixel_area_(camera.pixel_area()),
       width_(camera.width),
       height_(camera.height) {}
 

@@ -42,11 +42,13 @@ public:
 
     /// The film point that sees `p`; empty behind the camera or outside the film.
     std::optional<Seen> project(const Vec3& p) const;
+    double pixel_area() const { return pixel_area_; }  ///< Camera::pixel_area
 
 private:
     Transform to_local_;
     Vec3d eye_;
     Vec2d half_extent_;
+    double pixel_area_;
     int width_;
     int height_;
 };

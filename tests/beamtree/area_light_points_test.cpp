@@ -210,7 +210,10 @@ TEST(AreaLightPoints, ASphereInAMirrorIsAsBrightAsItsImage) {
         return sum / truth;
     };
     for (std::uint64_t seed = 1; seed <= 4; ++seed) EXPECT_NEAR(ratio(16, seed), 1, 0.03) << seed;
-    EXPECT_NEAR(ratio(128, 1), 1, 0.015);
+    // So many points are left to pencils, of which each seed has 1 % of noise.
+    double mean = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) mean += ratio(128, seed) / 4;
+    EXPECT_NEAR(mean, 1, 0.01);
 }
 
 }  // namespace

@@ -76,7 +76,12 @@ TEST(PhotonMapParams, EmittedReplacesPhotons) {
 }
 
 TEST(PhotonMapParams, ChooseTheEmissionAndTheInteraction) {
-    EXPECT_EQ(params_of("{}").emission, PhotonMapParams::Emission::random);
+    EXPECT_EQ(params_of("{}").emission, PhotonMapParams::Emission::stratified);
+    EXPECT_EQ(params_of(R"({"emission": "random"})").emission, PhotonMapParams::Emission::random);
+    for (const std::string with_point :
+         {R"("preset": "jensen1996")", R"("kernel": "point")", R"("tree": "balanced")"})
+        EXPECT_EQ(params_of("{" + with_point + "}").emission, PhotonMapParams::Emission::random)
+            << with_point;
     EXPECT_EQ(params_of("{}").interaction, Interaction::roulette);
     const PhotonMapParams given =
         params_of(R"({"emission": "stratified", "interaction": "split"})");
