@@ -38,13 +38,15 @@ GalleryScene furnace() {
         desc.shapes.push_back(ball);
         return desc;
     };
-    for (const Vec2d& p : spread(asked, {0, 0}, 1.2)) {
+    for (const Vec2d& p : spread(4 * asked, {0, 0}, 1.2)) {
         const Vec3d at(p.x(), p.y(), -half);
         const double d = at.norm();
         scene.points.push_back({at, Vec3d::UnitZ(), Vec3d::Zero(),
                                 pi_d * radiance * radius * radius / (d * d) * half / d});
     }
-    scene.series = {path_trace(0.05, 100), light_trace(0.25, 0.05), photon_map(0.08)};
+    // Light of lamps with area scatters more than that of points, even where its paths are spread evenly.
+    scene.series = {path_trace(0.05, 100), light_trace(0.25, 0.05),
+                    photon_map(0.08, {}, 20'000, 30)};
     for (Series& each : scene.series)
         for (Effort& effort : each.efforts) effort.parameters.emplace_back("max_bounces=100");
     return scene;

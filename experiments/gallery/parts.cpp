@@ -158,9 +158,8 @@ Series path_trace(double tolerance, int paths) {
 
 // Of N photons an estimate scatters by 1 / sqrt(N - 2). Four times N of eight times as many photons
 // are found in discs of half the area: scatter and blur both fall.
-Series photon_map(double tolerance, const std::string& more) {
+Series photon_map(double tolerance, const std::string& more, int photons, int nearest) {
     Series series{"photonmap", {}, 2, tolerance, 0, more};
-    int photons = 10'000, nearest = 20;
     for (int step = 0; step < 3; ++step, photons *= 8, nearest *= 4)
         series.efforts.push_back(
             {fine,

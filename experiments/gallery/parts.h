@@ -50,7 +50,9 @@ std::vector<KnownPoint> known_on_ring(const Meridian& light, double z, bool up, 
 /// The usual series. `radius`: discs of `lighttrace`, small against what the light varies over.
 Series light_trace(double radius, double tolerance, std::uint64_t paths = 100'000);
 Series path_trace(double tolerance, int paths);
-Series photon_map(double tolerance, const std::string& more = "");
+/// The first of three efforts has so many photons and nearest ones.
+Series photon_map(double tolerance, const std::string& more = "", int photons = 10'000,
+                  int nearest = 20);
 /// Beam tree and caustic polygons over meshes of `coarsest` bands or cells, twice and four times as many.
 Series beam_tree(double factor, double tolerance, const std::string& more = "", int coarsest = 16);
 Series caustic_polygons(double factor, double tolerance, const std::string& more = "",

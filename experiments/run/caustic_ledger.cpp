@@ -121,12 +121,14 @@ std::optional<std::string> note_of_photons(const Method& method, const BuildRepo
 std::optional<std::string> note_of_pencils(const BuildReport& report) {
     const double by_beams = resolved_or(report, "beam_share", 1);
     if (by_beams > 1 - least_share_of_note) return {};
+    const bool only_pencils = by_beams < least_share_of_note;
     return fmt::format(
-        "pencils of light paths carry {:.1f} % of the caustic, and beams the rest: each pencil's "
-        "light is even over the image of its stratum (a larger number, pencils, makes them "
-        "smaller; "
-        "rest=max_beams asks for beams of all events, beam_events for those of few)",
-        100 * (1 - by_beams));
+        "pencils (light paths with derivatives) carry {} of the caustic's light, and beams {}. "
+        "More "
+        "pencils make it sharper (pencils). Beams carry light of up to so many events by "
+        "beam_events, and of all events by rest=max_beams",
+        only_pencils ? "all" : fmt::format("{:.1f} %", 100 * (1 - by_beams)),
+        only_pencils ? "none" : "the rest");
 }
 
 }  // namespace

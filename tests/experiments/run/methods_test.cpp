@@ -94,7 +94,7 @@ TEST(Methods, AreDescribedByTheSameTextsAsEver) {
               R"("receiver_resolution":16})");
     EXPECT_EQ(
         text("photonmap", {}),
-        R"({"adaptive":false,"emission":"random","estimator":"unbiased",)"
+        R"({"adaptive":false,"emission":"stratified","estimator":"unbiased",)"
         R"("filter":"epanechnikov","interaction":"roulette","kernel":"photon","max_bounces":1000,"nearest":50,"passes":1,)"
         R"("photons":100000,"pixel_footprint":true,"tables":false,"tree":"packed"})");
     EXPECT_EQ(text("photonmap", {"kernel=point"}),
