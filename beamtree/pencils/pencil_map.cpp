@@ -22,7 +22,8 @@ constexpr float height_of_flat = 1e-3F;
 constexpr float wider_box = 1e-5F;
 // A side of a print is at most as long as the box of so many prints about it. More prints over a point cost time and gain little.
 constexpr std::size_t most_over_a_point = 64;
-// Where light is denser than on average, so many times twice as many: there errors weigh most, and few points ask.
+// Of lamps with area, whose prints overlap: where light is denser than on average, so many times twice as many. There errors weigh
+// most, and few points ask.
 constexpr int most_doublings = 9;
 // Leaves that a thread takes at a time.
 constexpr std::size_t leaves_of_chunk = 64;
@@ -132,7 +133,7 @@ PencilMap::PencilMap(std::vector<PencilPrint> prints, std::span<const LightSampl
     if (prints.empty()) return;
     leaves_.resize(std::bit_ceil((count_ + pencil_width - 1) / pencil_width));
     sort_into_leaves(prints, leaves_.size(), threads);
-    shorten_prints(prints, threads);
+    shorten_prints(prints, lights, threads);
     place_prints(prints, threads);
 }
 
@@ -140,25 +141,32 @@ std::uint64_t PencilMap::bytes() const {
     return leaves_.size() * sizeof(PencilLeaf) + boxes_.size() * sizeof(PencilBoxes);
 }
 
-void PencilMap::shorten_prints(std::vector<PencilPrint>& prints, int threads) const {
+void PencilMap::shorten_prints(std::vector<PencilPrint>& prints,
+                               std::span<const LightSample> lights, int threads) const {
     const std::vector<Box> around = boxes_of_positions(prints, leaves_.size());
+    const auto square = [&](std::size_t node) {
+        return static_cast<double>(around[node].diagonal().squaredNorm());
+    };
     constexpr int levels = std::countr_zero(most_over_a_point / pencil_width);
     const std::size_t nodes = std::max<std::size_t>(1, leaves_.size() >> levels);
     double mean = 0;
     for (std::size_t node = nodes; node < 2 * nodes; ++node)
-        mean +=
-            static_cast<double>(around[node].diagonal().squaredNorm()) / static_cast<double>(nodes);
+        mean += square(node) / static_cast<double>(nodes);
     parallel_chunks(threads, leaves_.size(), leaves_of_chunk, [&](const Chunk& chunk) {
         for (std::size_t leaf = chunk.first; leaf < chunk.end; ++leaf) {
             std::size_t node = std::max<std::size_t>(1, (leaves_.size() + leaf) >> levels);
-            double room = mean / static_cast<double>(2 * around[node].diagonal().squaredNorm());
+            const float longest = around[node].diagonal().norm();
+            double room = mean / (2 * square(node));
             for (int up = 0; up < most_doublings && node > 1 && room > 1; ++up, room /= 2)
                 node >>= 1;
-            const float longest = around[node].diagonal().norm();
-            for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i)
+            const float longest_of_lamp = around[node].diagonal().norm();
+            for (std::size_t i = first_of(leaf); i < first_of(leaf + 1); ++i) {
+                const bool is_of_lamp = lights[prints[i].light].kind == LightSample::Kind::area;
+                const float most = is_of_lamp ? longest_of_lamp : longest;
                 for (Vec3& side : prints[i].sides)
-                    if (const float length = side.norm(); longest > 0 && length > longest)
-                        side *= longest / length;
+                    if (const float length = side.norm(); most > 0 && length > most)
+                        side *= most / length;
+            }
         }
     });
 }

@@ -40,7 +40,8 @@ private:
     std::size_t first_of(std::size_t leaf) const {
         return first_of_leaf(leaf, count_, leaves_.size());
     }
-    void shorten_prints(std::vector<PencilPrint>& prints, int threads) const;
+    void shorten_prints(std::vector<PencilPrint>& prints, std::span<const LightSample> lights,
+                        int threads) const;
     void place_prints(const std::vector<PencilPrint>& prints, int threads);
     template <typename Take>
     void for_each_touched(const PencilQuery& query, std::vector<std::uint32_t>& stack,
