@@ -23,8 +23,8 @@ struct LightPatch {
 /// A ray through a point of a rectangle.
 struct PatchRay {
     Vec3d direction;  ///< unit
-    /// The flux through a small area of the rectangle is the sample's strength times this times the area: solid angle over
-    /// area [1/m^2], or 1 for a directional light.
+    /// Flux through a small area of the rectangle, over that area and the light's strength: solid angle per area [1/m^2],
+    /// or 1 for a directional light.
     double measure;
 };
 PatchRay ray_through(const LightSample& light, const ViewRectangle& rectangle, const Vec3d& point);

@@ -10,6 +10,10 @@ namespace caustics::beamtree {
 static inline float least(float a, float b) { return a < b ? a : b; }
 static inline float most(float a, float b) { return a > b ? a : b; }
 static inline float magnitude(float a) { return a < 0 ? -a : a; }
+/// Dot product of a row's vector and (x, y, z).
+static inline float dot(const float (&rows)[3][pencil_width], size_t i, float x, float y, float z) {
+    return rows[0][i] * x + rows[1][i] * y + rows[2][i] * z;
+}
 static inline double within_half(double a) {
     const double low = a < -0.5 ? -0.5 : a;
     return low > 0.5 ? 0.5 : low;
@@ -30,25 +34,35 @@ static uint32_t touched_boxes(const PencilBoxes& boxes, const PencilQuery& query
     return bits;
 }
 
-/// Where points lie along a print's sides, for each print.
+/// Offsets of the query point from the eight prints.
+struct Offsets {
+    alignas(64) float x[pencil_width];
+    alignas(64) float y[pencil_width];
+    alignas(64) float z[pencil_width];
+};
+
+static void find_offsets(const PencilLeaf& leaf, const PencilQuery& query, Offsets& from) {
+    for (size_t i = 0; i < pencil_width; ++i) {
+        from.x[i] = query.position[0] - leaf.position[0][i];
+        from.y[i] = query.position[1] - leaf.position[1][i];
+        from.z[i] = query.position[2] - leaf.position[2][i];
+    }
+}
+
+/// Coordinates of a point along the two sides of each print.
 struct AlongSides {
     alignas(64) float u[pencil_width];
     alignas(64) float v[pencil_width];
 };
 
-// Finds where the point lies along the sides; false where no print may hold it or a part of its cell. `room` of those that may not is
-// below 0.
-static bool beside_no_side(const PencilLeaf& leaf, const PencilQuery& query, AlongSides& at,
-                           float room[pencil_width]) {
+// Finds the point's coordinates along the sides. `room` is below 0 for prints that hold no part of the cell. Returns false if all
+// are.
+static bool beside_no_side(const PencilLeaf& leaf, const PencilQuery& query, const Offsets& from,
+                           AlongSides& at, float room[pencil_width]) {
     uint32_t any = 0;
     for (size_t i = 0; i < pencil_width; ++i) {
-        const float dx = query.position[0] - leaf.position[0][i];
-        const float dy = query.position[1] - leaf.position[1][i];
-        const float dz = query.position[2] - leaf.position[2][i];
-        const float u =
-            leaf.by_side[0][0][i] * dx + leaf.by_side[0][1][i] * dy + leaf.by_side[0][2][i] * dz;
-        const float v =
-            leaf.by_side[1][0][i] * dx + leaf.by_side[1][1][i] * dy + leaf.by_side[1][2][i] * dz;
+        const float u = dot(leaf.by_side[0], i, from.x[i], from.y[i], from.z[i]);
+        const float v = dot(leaf.by_side[1], i, from.x[i], from.y[i], from.z[i]);
         const float room_u = 0.5F + query.radius * leaf.by_metre[0][i] - magnitude(u);
         const float room_v = 0.5F + query.radius * leaf.by_metre[1][i] - magnitude(v);
         at.u[i] = u;
@@ -59,18 +73,13 @@ static bool beside_no_side(const PencilLeaf& leaf, const PencilQuery& query, Alo
     return any != 0;
 }
 
-// Finds the cosines of rays that come to the point, or 0; false where none do.
-static bool arriving(const PencilLeaf& leaf, const PencilQuery& query,
+// Finds the cosines of rays that reach the point, and 0 for all others. Returns false if none do.
+static bool arriving(const PencilLeaf& leaf, const PencilQuery& query, const Offsets& from,
                      const float room[pencil_width], float cosine[pencil_width]) {
     uint32_t any = 0;
     for (size_t i = 0; i < pencil_width; ++i) {
-        const float dx = query.position[0] - leaf.position[0][i];
-        const float dy = query.position[1] - leaf.position[1][i];
-        const float dz = query.position[2] - leaf.position[2][i];
-        const float off_plane =
-            magnitude(leaf.normal[0][i] * dx + leaf.normal[1][i] * dy + leaf.normal[2][i] * dz);
-        const float towards = leaf.wi[0][i] * query.normal[0] + leaf.wi[1][i] * query.normal[1] +
-                              leaf.wi[2][i] * query.normal[2];
+        const float off_plane = magnitude(dot(leaf.normal, i, from.x[i], from.y[i], from.z[i]));
+        const float towards = dot(leaf.wi, i, query.normal[0], query.normal[1], query.normal[2]);
         const float inside = least(room[i], leaf.height[i] - off_plane);
         cosine[i] = inside >= 0 ? most(towards, 0.0F) : 0.0F;
         any |= cosine[i] > 0 ? 1U : 0U;
@@ -78,8 +87,8 @@ static bool arriving(const PencilLeaf& leaf, const PencilQuery& query,
     return any != 0;
 }
 
-// The part of an edge's share of the area of a polygon on the unit square about the origin: the integral along it of its v, cut to the
-// square, over the u that are on the square.
+// An edge's term of the area of a polygon within the unit square about the origin: the integral of v du along the edge, with u and v
+// clamped to the square.
 static inline double area_under(double u0, double v0, double u1, double v1) {
     const double du = u1 - u0;
     const double slope = (v1 - v0) / (du == 0 ? 1 : du);
@@ -111,12 +120,8 @@ static void place_cell(const PencilLeaf& leaf, const PencilQuery& query, const A
         const float* const way = query.corner[c];
         AlongSides& corner = cell.corner[c];
         for (size_t i = 0; i < pencil_width; ++i) {
-            const float u =
-                at.u[i] + (leaf.by_side[0][0][i] * way[0] + leaf.by_side[0][1][i] * way[1] +
-                           leaf.by_side[0][2][i] * way[2]);
-            const float v =
-                at.v[i] + (leaf.by_side[1][0][i] * way[0] + leaf.by_side[1][1][i] * way[1] +
-                           leaf.by_side[1][2][i] * way[2]);
+            const float u = at.u[i] + dot(leaf.by_side[0], i, way[0], way[1], way[2]);
+            const float v = at.v[i] + dot(leaf.by_side[1], i, way[0], way[1], way[2]);
             corner.u[i] = u;
             corner.v[i] = v;
             cell.low.u[i] = least(cell.low.u[i], u);
@@ -129,10 +134,13 @@ static void place_cell(const PencilLeaf& leaf, const PencilQuery& query, const A
 
 static bool leaf_densities(const PencilLeaf& leaf, const PencilQuery& query,
                            double density[pencil_width]) {
+    Offsets from_prints;
+    find_offsets(leaf, query, from_prints);
     AlongSides at;
     alignas(64) float cosine[pencil_width];
     alignas(64) float room[pencil_width];
-    if (!beside_no_side(leaf, query, at, room) || !arriving(leaf, query, room, cosine))
+    if (!beside_no_side(leaf, query, from_prints, at, room) ||
+        !arriving(leaf, query, from_prints, room, cosine))
         return false;
     CellAlongSides cell;
     place_cell(leaf, query, at, cell);

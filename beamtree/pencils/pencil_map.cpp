@@ -22,8 +22,8 @@ constexpr float height_of_flat = 1e-3F;
 constexpr float wider_box = 1e-5F;
 // A side of a print is at most as long as the box of so many prints about it. More prints over a point cost time and gain little.
 constexpr std::size_t most_over_a_point = 64;
-// Of lamps with area, whose prints overlap: where light is denser than on average, so many times twice as many. There errors weigh
-// most, and few points ask.
+// Doublings of that number for lamps with area, whose prints overlap anyway: one for each doubling of the light's density over its mean.
+// Errors weigh most there, and few points are there.
 constexpr int most_doublings = 9;
 // Leaves that a thread takes at a time.
 constexpr std::size_t leaves_of_chunk = 64;
@@ -182,7 +182,7 @@ void PencilMap::place_prints(const std::vector<PencilPrint>& prints, int threads
         }
     });
     unite(boxes);
-    // Of every third level, so that steps of three levels end at the leaves.
+    // Every third level has boxes, counted from the leaves.
     top_ = std::size_t{1} << (static_cast<unsigned>(std::bit_width(leaves_.size()) - 1) % 3);
     boxes_.resize(leaves_.size() / pencil_width * 2);
     for (std::size_t node = top_; node < leaves_.size(); node *= pencil_width)

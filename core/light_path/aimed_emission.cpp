@@ -111,7 +111,7 @@ std::uint32_t AimedEmission::choose(double& x, std::uint32_t& cone) const {
     return static_cast<std::uint32_t>(source);
 }
 
-// Draws the place that a sample of a source with targets starts from, and aims from there.
+// Samples the start of a ray of a source with targets, and returns the cone from there to the target.
 EmissionCone AimedEmission::cone_at_start(std::uint32_t source, std::uint32_t cone, Rng& rng,
                                           SegmentEnd& start) const {
     const AimedSource& from = sources_[source];

@@ -42,7 +42,7 @@ public:
     /// Of the channel that is served worst, the share of particles with which it would be as noisy if they carried it
     /// evenly: 1 where all lights have one colour, near 0 where the only light of a colour is far weaker than others.
     double least_carried() const;
-    /// Whether one of the lights that shine there is larger than a point or a direction.
+    /// True if a light that shines there is larger than a point or a direction.
     bool has_extent() const;
     /// No light or no caster, or they cannot see each other.
     bool empty() const { return sources_.empty(); }

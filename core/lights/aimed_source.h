@@ -45,8 +45,8 @@ struct AimedSource {
     float max_cosine = 1;         ///< area lights: bound of the cosine over the cones
     Vec2 low = Vec2::Zero();      ///< area lights: this piece's numbers of AreaSampler::sample
     Vec2 high = Vec2::Ones();
-    /// Where directions are drawn from the place that a ray starts from: the spheres of the regions, each in a cone that just holds
-    /// it. The cones above hold those of all places. Else empty.
+    /// Bounding spheres of the casters, if directions are sampled from the start of each ray: in the cone that just holds the
+    /// sphere. `cones` then bound the cones of all starts. Otherwise empty.
     std::vector<AimedSphere> targets;
     /// A sphere that shines outwards: seen along a direction it is an even disc, without thinning.
     std::optional<BoundingSphere> facing_sphere;

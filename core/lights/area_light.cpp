@@ -64,6 +64,13 @@ SegmentEnd facing_point(const BoundingSphere& sphere, const Vec3& direction, Rng
     return {position, normal, rounding_offset(position)};
 }
 
+// Sets the bound of the cosine, and the power, by the area times the solid angle of a source's regions [m^2 sr].
+void set_power(const AreaLight& light, const Shape& on, double extent, AimedSource& source) {
+    if (exact_is_flat(on))
+        source.max_cosine = max_cosine(light.sampler.sample(on, 0, 0).normal, source.cones);
+    source.power = light.radiance * static_cast<float>(extent) * source.max_cosine;
+}
+
 // Thinned by the cosine, by how much narrower the cone is than from the nearest place, and by the number of cones there.
 std::optional<Ray> send_from(const AimedSource& source, const AimedSample& sample, Rng& rng) {
     const AimedSphere& target = source.targets[sample.region];
@@ -104,9 +111,7 @@ AimedSource AreaLight::cones_from(const Surroundings& scene, const BoundingSpher
         source.facing_sphere = from;
         area /= 4;
     }
-    if (exact_is_flat(on))
-        source.max_cosine = max_cosine(sampler.sample(on, 0, 0).normal, source.cones);
-    source.power = radiance * static_cast<float>(area * measure) * source.max_cosine;
+    set_power(*this, on, area * measure, source);
     return source;
 }
 
@@ -117,9 +122,7 @@ std::optional<AimedSource> AreaLight::spheres_from_places(const Surroundings& sc
     AimedSource source;
     const auto measure = aim_spheres(scene, on, source);
     if (!measure) return {};
-    if (exact_is_flat(on))
-        source.max_cosine = max_cosine(sampler.sample(on, 0, 0).normal, source.cones);
-    source.power = radiance * static_cast<float>(sampler.area() * *measure) * source.max_cosine;
+    set_power(*this, on, sampler.area() * *measure, source);
     return source;
 }
 
@@ -140,7 +143,7 @@ std::vector<AimedSource> AreaLight::pieces_of(const Surroundings& scene) const {
     return sources;
 }
 
-// Cones from each place where they are narrower than those of the light, which may be drawn piece by piece.
+// Aims from each point of the light if those cones are narrower than the cones from the light or from its pieces.
 std::vector<AimedSource> AreaLight::aim(const Surroundings& scene) const {
     const Shape& on = scene.shapes[shape];
     const BoundingSphere from = bounding_sphere(on);

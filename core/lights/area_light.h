@@ -23,7 +23,7 @@ struct AreaLight {
     std::string line(const Surroundings& scene, const Vec3d& origin) const;
     void add_to(ValueHash& hash) const;
     std::vector<AimedSource> aim(const Surroundings& scene) const;
-    /// A place of a source that has targets.
+    /// Samples the start of a ray of a source with targets.
     SegmentEnd start(const Surroundings& scene, const AimedSource& source, Rng& rng) const;
     std::optional<Ray> send(const Surroundings& scene, const AimedSource& source,
                             const AimedSample& sample, Rng& rng) const;

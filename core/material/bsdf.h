@@ -47,8 +47,8 @@ std::optional<float> lobe_half_width(const Bsdf& bsdf);
 /// side; `wo`, `wi` are unit and point away from the surface. 0 when either is below n.
 Spectrum evaluate(const Bsdf& bsdf, const Vec2& uv, const Vec3& n, const Vec3& wo, const Vec3& wi);
 
-/// A receiver's bsdf whose textures are their values at texture coordinates: where many directions are asked about at one
-/// place, it answers all of them as `bsdf` does there. A caster's is the same.
+/// A copy of a receiver's bsdf with its textures evaluated at `uv`. It serves to evaluate many directions at one point. A caster's
+/// bsdf is copied unchanged.
 Bsdf bsdf_at(const Bsdf& bsdf, const Vec2& uv);
 
 /// The model of a surface, without a mirror part, in the words of another program.

@@ -77,8 +77,7 @@ private:
     std::uint64_t added_ = 0;
 };
 
-// Of stratified paths. The fewer there are, the evener each is spread; the variance of a pixel's mean grows as the
-// root of their number.
+// Number of batches of even paths. Larger batches have less noise: the variance of a pixel's mean grows as the root of this number.
 constexpr std::uint64_t batches = 4;
 
 struct LightTraceContext : QueryContext {

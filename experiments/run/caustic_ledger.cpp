@@ -124,8 +124,7 @@ std::optional<std::string> note_of_pencils(const BuildReport& report) {
     const bool only_pencils = by_beams < least_share_of_note;
     return fmt::format(
         "pencils (light paths with derivatives) carry {} of the caustic's light, and beams {}. "
-        "More "
-        "pencils make it sharper (pencils). Beams carry light of up to so many events by "
+        "More pencils make it sharper (pencils). Beams carry light of up to so many events by "
         "beam_events, and of all events by rest=max_beams",
         only_pencils ? "all" : fmt::format("{:.1f} %", 100 * (1 - by_beams)),
         only_pencils ? "none" : "the rest");

@@ -81,7 +81,7 @@ private:
         follow_alone(*particle, path, rng, chunk);
     }
 
-    // Draws paths from `first` on, as many as belong together and fit.
+    // Draws consecutive paths from `first`: at most EmissionSamples::most, all of one batch.
     void draw(std::uint64_t first, std::uint64_t last, EmissionSamples& samples) const {
         const std::uint64_t size = settings_.even->size();
         const std::uint64_t first_of_batch = settings_.repeated ? first - first % size : 0;

@@ -12,7 +12,6 @@ long as `beamtree`.
 
 import json
 import os
-import resource
 import statistics
 import subprocess
 import sys
@@ -20,6 +19,7 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from report import exr
+from timed_run import processor_seconds
 
 SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../experiments/scenes")
 FILM = ("--set", "/sensor/film/width=240", "--set", "/sensor/film/height=180", "--spp", "4")
@@ -58,10 +58,7 @@ class Pictures:
         """Processor seconds of a picture."""
         command = [self.program, "render", self.scene, *FILM, "--method", method, "--seed", str(seed), "--threads", str(threads),
                    "-o", output]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run(command + [word for param in params for word in ("--param", param)], check=True, capture_output=True)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return processor_seconds(command + [word for param in params for word in ("--param", param)])
 
     def compared(self, picture, truth):
         told = subprocess.run([self.program, "compare", picture, truth, "--json"], check=True, capture_output=True, text=True)

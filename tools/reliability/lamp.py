@@ -9,9 +9,7 @@ pictures by `lighttrace`, of 64 samples and 60 million paths each; its noise is 
 """
 
 import os
-import resource
 import statistics
-import subprocess
 import sys
 import tempfile
 
@@ -19,6 +17,7 @@ import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from report import exr
+from timed_run import processor_seconds
 
 SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../experiments/scenes")
 FILM = ("--set", "/sensor/film/width=160", "--set", "/sensor/film/height=120")
@@ -31,10 +30,7 @@ BESIDE_POINTS = ((), ("pixel_footprint=false",), ("emission=random",), ("emissio
 def render(program, scene, method, params, seed, output, *more):
     """Processor seconds of a picture."""
     command = [program, "render", os.path.join(SCENES, scene), *FILM, "--method", method, "--seed", str(seed), "--few-light-paths", "-o", output, *more]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command + [word for param in params for word in ("--param", param)], check=True, capture_output=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return processor_seconds(command + [word for param in params for word in ("--param", param)])
 
 
 def caustic(path):

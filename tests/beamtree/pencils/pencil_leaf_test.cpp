@@ -21,7 +21,7 @@ struct Outline {
     std::vector<Vec2d> corners;
 
     const Vec2d& after(std::size_t i) const { return corners[(i + 1) % corners.size()]; }
-    /// Keeps what lies on the print's side of one of its edges, sign * p[axis] <= 1 / 2.
+    /// Clips to the half plane sign * p[axis] <= 1 / 2.
     void cut(Eigen::Index axis, double sign) {
         std::vector<Vec2d> kept;
         for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -53,7 +53,7 @@ class Cases {
 public:
     explicit Cases(std::uint64_t number) : rng_(1, Stage::test, number) {}
 
-    /// Prints of all sizes and shapes about the origin, on a plane across z; every fifth place is left over.
+    /// A leaf of random prints on the plane z = 0. About one slot in five is empty.
     PencilLeaf leaf() {
         PencilLeaf leaf{};
         for (std::size_t i = 0; i < pencil_width; ++i) {
@@ -108,7 +108,7 @@ private:
     Rng rng_;
 };
 
-/// What a print brings, by cutting the cell.
+/// The density of a print, by clipping the cell.
 double density_by_cutting(const PencilLeaf& leaf, std::size_t i, const PencilQuery& query) {
     if (leaf.height[i] < 0) return 0;
     const Vec3 at =
@@ -157,7 +157,7 @@ TEST(PencilLeaf, BringsThePartOfACellThatCuttingLeaves) {
             const double numbers_by_metre =
                 static_cast<double>(leaf.by_metre[0][i] + leaf.by_metre[1][i]);
             const double rounding = 1e-6 * (1 + way * numbers_by_metre);
-            // What a shift of the cell's outline by the rounding changes: as much as its length on the print.
+            // A shift of the cell's outline by the rounding changes the area by at most the outline's length times it.
             const double outline =
                 std::min(4.0, 4 * static_cast<double>(query.radius) * numbers_by_metre);
             if (query.over_area == 0)

@@ -32,7 +32,7 @@ ConsecutivePaths paths_from(std::uint64_t first, std::size_t count) {
     return {5, static_cast<std::uint32_t>(Stage::test), first, count};
 }
 
-/// Counts particles that pass a square of 5 cm on a plane halfway, where every place of the lamp sends some.
+/// Counts the particles through a square of 5 cm on the plane z = 1, which light of every point of the lamp crosses.
 double passing(const AimedEmission& emission, const EvenPaths& even, std::uint64_t batch) {
     std::vector<LightPathStart> starts;
     EmissionSamples samples;
